@@ -1,0 +1,1 @@
+"""akap_editor."""

@@ -1,0 +1,1 @@
+"""Deformation methods behind one contract, one file each."""

@@ -1,0 +1,156 @@
+"""The paper's deformer: vector field, Dirichlet solve, log spirals; and memory of the rest shape."""
+
+import math
+import time
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import InputError, SolverError
+from ..geometry.checks import Complexes, Floats, as_indices, as_points
+from ..geometry.mesh import MeshPoints, TriMesh, signed_areas
+from ..geometry.operators import killing_energy, to_complex, to_points
+from .akvf import KillingSystem
+from .deformer import StepReport, StepResult
+from .log_spiral import LogSpirals, linear_flow
+from .rest_memory import SymmetricDirichlet, descend
+
+Trajectory = Literal["spiral", "linear"]
+
+_SHORTEST = 2.0**-10  # share of a substep below which a move that would flip a face is given up
+_THINNEST = 1e-3  # a face may not shrink below this share of its rest area in one move
+
+
+class AkapDeformer:
+    """As-Killing-as-possible deformation (Solomon, Ben-Chen, Butscher and Guibas 2011).
+
+    mesh: the rest pose.
+    memory: 0 is the paper's method, path-dependent; up to 1, each substep also descends towards the rest shape.
+    dirichlet: with the second solve (4); trajectory: "spiral" (16) or "linear"; the four combinations are
+    the variants of Fig. 8.
+    pin_weight: λ on the row as in eq. 5; with area-weighted energies 10 to 1000 behave alike.
+    max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer way
+    is cut, because following one field too far distorts (Fig. 2).
+    max_substeps: where given, a step ends after so many and leaves the rest of the way to the next.
+    Raises InputError on settings out of range.
+    """
+
+    def __init__(
+        self,
+        mesh: TriMesh,
+        memory: float = 0.0,
+        dirichlet: bool = True,
+        trajectory: Trajectory = "spiral",
+        pin_weight: float = 100.0,
+        max_step: float = 0.01,
+        max_substeps: int | None = None,
+    ) -> None:
+        if not 0 <= memory <= 1:
+            raise InputError(f"memory: expected a number from 0 to 1, got {memory!r}")
+        if trajectory not in ("spiral", "linear"):
+            raise InputError(f"trajectory: expected 'spiral' or 'linear', got {trajectory!r}")
+        if not (pin_weight > 0 and math.isfinite(pin_weight)):
+            raise InputError(f"pin_weight: expected a positive number, got {pin_weight!r}")
+        if not max_step > 0:
+            raise InputError(f"max_step: expected a positive number, got {max_step!r}")
+        if max_substeps is not None and max_substeps < 1:
+            raise InputError(f"max_substeps: expected 1 or more, got {max_substeps!r}")
+        self._mesh = mesh
+        self._memory = float(memory)
+        self._dirichlet = bool(dirichlet)
+        self._max_length = max_step * math.sqrt(mesh.rest_areas.sum())
+        self._max_substeps = max_substeps
+        self._system = KillingSystem(mesh, pin_weight)
+        self._flow = LogSpirals(mesh).flow if trajectory == "spiral" else linear_flow
+        self._rest = SymmetricDirichlet(mesh)
+        self._pin_energy_weight = pin_weight**2
+        self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
+
+    def set_pins(self, points: MeshPoints) -> None:
+        """Choose the pins; moves nothing. Raises InputError where a face is not one of the mesh."""
+        as_indices(points.faces, "points.faces", None, len(self._mesh.faces))
+        self._points = points
+        self._corners = self._mesh.faces[points.faces]
+        pinned = np.unique(self._mesh.component[self._corners[:, :1]])
+        self._held = ~np.isin(self._mesh.component, pinned)
+        self._system.set_pins(points)
+
+    def vector_field(self, positions: ArrayLike, velocities: ArrayLike) -> Floats:
+        """U_opt of eq. 4, (n, 2), at a pose (n, 2) for pin velocities (k, 2), pixels per unit of time."""
+        pose = as_points(positions, "positions", len(self._mesh.vertices))
+        wanted = as_points(velocities, "velocities", len(self._points))
+        self._system.factorize(pose)
+        return to_points(self._system.field(to_complex(wanted), self._dirichlet)[0])
+
+    def step(self, positions: ArrayLike, targets: ArrayLike) -> StepResult:
+        """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2); see `Deformer.step`."""
+        started = time.perf_counter()
+        pose = to_complex(as_points(positions, "positions", len(self._mesh.vertices)))
+        goals = to_complex(as_points(targets, "targets", len(self._points)))
+        field, blocked, count = np.zeros_like(pose), False, 0
+        if len(goals):
+            starts = self._pin_positions(pose)
+            needed = max(1, math.ceil(np.abs(goals - starts).max() / self._max_length))
+            count = min(needed, self._max_substeps or needed)
+            for index in range(1, count + 1):
+                aims = goals if index == needed else starts + (index / needed) * (goals - starts)
+                pose, field, cut = self._substep(pose, aims)
+                blocked = blocked or cut
+        result = to_points(pose)
+        faces = self._mesh.faces
+        return StepResult(
+            result,
+            to_points(field),
+            StepReport(
+                seconds=time.perf_counter() - started,
+                substeps=count,
+                energy=killing_energy(result, faces, to_points(field)),
+                flipped=int((signed_areas(result, faces) <= 0).sum()),
+                pin_error=float(np.abs(goals - self._pin_positions(pose)).max(initial=0.0)),
+                blocked=blocked,
+            ),
+        )
+
+    def _pin_positions(self, pose: Complexes) -> Complexes:
+        return (self._points.weights * pose[self._corners]).sum(axis=1)
+
+    def _substep(self, pose: Complexes, aims: Complexes) -> tuple[Complexes, Complexes, bool]:
+        """One field and one move: section 2.4, with velocities towards ``aims`` from where the pins are."""
+        self._system.factorize(to_points(pose))
+        field, _ = self._system.field(aims - self._pin_positions(pose), self._dirichlet)
+        moved, cut = self._move(pose, field)
+        if self._memory:
+            moved = self._remember(moved, aims)
+        if not np.isfinite(moved).all():
+            raise SolverError("the step has no finite result")
+        return moved, field, cut
+
+    def _move(self, pose: Complexes, field: Complexes) -> tuple[Complexes, bool]:
+        """Follow the field as far as no face flips; also whether that was less than the whole way."""
+        mesh = self._mesh
+        least = np.minimum(_THINNEST * mesh.rest_areas, 0.5 * signed_areas(to_points(pose), mesh.faces))
+        t = 1.0
+        while t >= _SHORTEST:
+            moved = self._flow(pose, field, t)
+            if (signed_areas(to_points(moved), mesh.faces) > least).all():
+                return moved, t < 1.0
+            t /= 2
+        return pose, True
+
+    def _remember(self, pose: Complexes, aims: Complexes) -> Complexes:
+        """One descent step towards the rest shape, pins held softly at ``aims``.
+
+        Near an isometry the Hessian of the energy is 2 (K + λ² WᵀW): half the preconditioned gradient is
+        Newton's step.
+        """
+
+        def value(candidate: Complexes) -> float:
+            off = self._pin_positions(candidate) - aims
+            return self._rest.value(candidate) + self._pin_energy_weight * float((np.abs(off) ** 2).sum())
+
+        off = self._pin_positions(pose) - aims
+        gradient = self._rest.gradient(pose) + 2 * self._system.pull(off)
+        direction = -0.5 * self._system.precondition(gradient)
+        direction[self._held] = 0.0
+        return descend(pose, value, gradient, direction, self._memory)

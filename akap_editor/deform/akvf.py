@@ -1,0 +1,134 @@
+"""As-Killing-as-possible vector fields (paper, sections 2.1 and 2.2)."""
+
+import numpy as np
+
+from ..geometry.checks import Complexes, Floats, Ints
+from ..geometry.mesh import MeshPoints, TriMesh
+from ..geometry.operators import element_pattern, killing_elements, to_complex
+from .cholesky import SparseCholesky, SymmetricPattern
+
+
+class KillingSystem:
+    """The two linear systems of the paper on one mesh: (7) with the pins, (8) with the boundary fixed.
+
+    Both patterns depend on the mesh alone, since a pin couples only vertices of one face: their symbolic
+    factorizations are made once. ``pin_weight`` is the paper's λ as in eq. 5, on the row; energies are weighted
+    by area, so that its meaning depends neither on the size nor on the density of the mesh.
+
+    A component whose pins leave it free to turn, or that has none, would make (7) singular: the vertices of one
+    of its faces are then held to the velocity of its pin, or to zero, which moves it without turning.
+    """
+
+    def __init__(self, mesh: TriMesh, pin_weight: float) -> None:
+        self._mesh = mesh
+        self._weight = pin_weight**2
+        size = 2 * len(mesh.vertices)
+        rows, columns = element_pattern(mesh.faces)
+        self._pattern = SymmetricPattern(rows, columns, size)
+        self._pinned = SparseCholesky(self._pattern)
+        on_boundary = np.zeros(len(mesh.vertices), dtype=bool)
+        on_boundary[mesh.boundary_vertices] = True
+        self._interior = np.flatnonzero(~on_boundary).astype(np.int32)
+        self._interior_cholesky: SparseCholesky | None = None
+        if len(self._interior):
+            kept = (2 * self._interior[:, None] + np.arange(2)).ravel()
+            inner, self._inner_nonzeros = self._pattern.restricted(kept)
+            self._interior_cholesky = SparseCholesky(inner)
+        self._nonzeros = np.zeros(self._pattern.count)
+        self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
+
+    def set_pins(self, points: MeshPoints) -> None:
+        """Choose the constraints C of eq. 3 and what holds parts that they leave free."""
+        mesh = self._mesh
+        anchors, leaders = _anchors(mesh, points)
+        self._leaders = leaders
+        faces = np.concatenate([points.faces, np.repeat(anchors, 3)])
+        weights = np.concatenate([points.weights, np.tile(np.eye(3), (len(anchors), 1))])
+        self._corners = mesh.faces[faces]
+        self._weights = weights
+        outer = self._weight * weights[:, :, None] * weights[:, None, :]
+        rows = 2 * np.broadcast_to(self._corners[:, :, None], outer.shape)
+        columns = 2 * np.broadcast_to(self._corners[:, None, :], outer.shape)
+        lower = rows >= columns
+        entries, rows, columns = outer[lower], rows[lower], columns[lower]
+        self._pin_entries = np.tile(entries, 2)
+        self._pin_slots = self._slots(
+            np.concatenate([rows, rows + 1]), np.concatenate([columns, columns + 1])
+        )
+        # Where all pins sit on boundary vertices, (8) returns what (7) gave.
+        interior_vertex = np.zeros(len(mesh.vertices), dtype=bool)
+        interior_vertex[self._interior] = True
+        self._needs_interior = bool((interior_vertex[self._corners] & (weights != 0)).any())
+
+    def factorize(self, positions: Floats) -> None:
+        """Prepare both systems at the pose ``positions`` (n, 2). Raises SolverError."""
+        nonzeros = self._pattern.summed(killing_elements(positions, self._mesh.faces))
+        if self._interior_cholesky is not None and self._needs_interior:
+            self._interior_cholesky.factorize(nonzeros[self._inner_nonzeros])
+        np.add.at(nonzeros, self._pin_slots, self._pin_entries)
+        self._pinned.factorize(nonzeros)
+
+    def precondition(self, gradient: Complexes) -> Complexes:
+        """(K + λ² WᵀW)⁻¹ applied to a vector (n,), at the pose last factorized."""
+        return self._pinned.solve(gradient.view(np.float64)).view(np.complex128)
+
+    def pull(self, offsets: Complexes) -> Complexes:
+        """λ² Wᵀ applied to offsets (k,) of the pins: half the gradient of λ² ‖W p − targets‖², (n,)."""
+        return self._spread(np.append(self._weight * offsets, np.zeros(len(self._weights) - len(offsets))))
+
+    def field(self, velocities: Complexes, dirichlet: bool = True) -> tuple[Complexes, Complexes]:
+        """U_opt of (8) and U° of (7), (n,) each, for pin velocities (k,), at the pose last factorized.
+
+        (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = λ² Wᵀ(W U° − ũ): the residual that the
+        pins leave in (7), which by (7) is −K U°. Without ``dirichlet`` both are U°.
+        """
+        wanted = self._constraints(velocities)
+        smooth = self.precondition(self._spread(self._weight * wanted))
+        if not dirichlet or self._interior_cholesky is None or not self._needs_interior:
+            return smooth, smooth
+        reached = (self._weights * smooth[self._corners]).sum(axis=1)
+        force = self._spread(self._weight * (reached - wanted))[self._interior]
+        correction = self._interior_cholesky.solve(force.view(np.float64)).view(np.complex128)
+        optimal = smooth.copy()
+        optimal[self._interior] += correction
+        return optimal, smooth
+
+    def _constraints(self, velocities: Complexes) -> Complexes:
+        """Velocities of pins and anchors; an anchor follows its component's pin, or holds still."""
+        following = np.append(velocities, 0.0)[self._leaders]
+        return np.concatenate([velocities, np.repeat(following, 3)])
+
+    def _spread(self, values: Complexes) -> Complexes:
+        """Wᵀ applied to values (c,) at the constraints."""
+        shares = (self._weights * values[:, None]).ravel()
+        result = np.zeros(len(self._mesh.vertices), dtype=np.complex128)
+        np.add.at(result, self._corners.ravel(), shares)
+        return result
+
+    def _slots(self, rows: Ints, columns: Ints) -> Ints:
+        keys = self._pattern.columns * self._pattern.size + self._pattern.rows
+        return np.searchsorted(keys, columns.astype(np.int64) * self._pattern.size + rows)
+
+
+def _anchors(mesh: TriMesh, points: MeshPoints) -> tuple[Ints, Ints]:
+    """Faces that hold the components which fewer than two distinct pins control, and the pin each follows.
+
+    The pin's index is -1 for a component without pins.
+    """
+    labels = mesh.component[mesh.faces[:, 0]]
+    where = to_complex(mesh.evaluate(points, mesh.vertices)) if len(points) else np.zeros(0, complex)
+    pin_labels = labels[points.faces]
+    span = np.ptp(mesh.vertices, axis=0).max()
+    anchors, leaders = [], []
+    _, first_faces = np.unique(labels, return_index=True)
+    for label, first in enumerate(first_faces.tolist()):
+        pins = np.flatnonzero(pin_labels == label)
+        if not len(pins):
+            anchors.append(first)
+            leaders.append(-1)
+        elif np.abs(where[pins] - where[pins[0]]).max() <= 1e-9 * span:
+            anchors.append(int(points.faces[pins[0]]))
+            leaders.append(int(pins[0]))
+    return np.array(anchors, dtype=np.int32), np.array(leaders, dtype=np.int64)
+
+

@@ -1,0 +1,77 @@
+"""The contract of all deformation methods, and the table of those that there are."""
+
+import inspect
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from numpy.typing import ArrayLike
+
+from ..errors import InputError
+from ..geometry.checks import Floats
+from ..geometry.mesh import MeshPoints, TriMesh
+
+
+@dataclass(frozen=True)
+class StepReport:
+    """What one step cost and how good it is.
+
+    seconds; substeps; energy: Killing energy of the last field, square pixels; flipped: faces with a negative
+    area afterwards; pin_error: largest distance of a pin from its target, pixels; blocked: whether a move was
+    cut short because it would have flipped a face.
+    """
+
+    seconds: float
+    substeps: int
+    energy: float
+    flipped: int
+    pin_error: float
+    blocked: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class StepResult:
+    """positions: (n, 2) new pose; field: (n, 2) the last vector field, or None for methods without one."""
+
+    positions: Floats
+    field: Floats | None
+    report: StepReport
+
+
+class Deformer(Protocol):
+    """Bends a mesh by its pins.
+
+    What depends on topology is prepared in the constructor, what depends on where the pins are in `set_pins`,
+    the rest in `step`. Arguments are never modified. The result depends only on constructor, `set_pins` and
+    arguments. It is finite, or SolverError is raised. Moving, turning or scaling rest pose, positions and
+    targets together does the same to the result; renumbering the vertices renumbers it.
+    """
+
+    def set_pins(self, points: MeshPoints) -> None:
+        """Choose the pins, k points of the mesh; moves nothing."""
+
+    def step(self, positions: ArrayLike, targets: ArrayLike) -> StepResult:
+        """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2). Raises InputError, SolverError."""
+
+
+def _methods() -> dict[str, Any]:
+    from .akap import AkapDeformer
+
+    return {"akap": AkapDeformer}
+
+
+def method_names() -> list[str]:
+    """The names that `make_deformer` knows."""
+    return list(_methods())
+
+
+def make_deformer(method: str, mesh: TriMesh, **settings: Any) -> Deformer:
+    """A deformation method by name, its settings by keyword. Raises InputError on an unknown name or setting."""
+    methods = _methods()
+    if method not in methods:
+        raise InputError(f"method: expected one of {', '.join(methods)}, got {method!r}")
+    known = list(inspect.signature(methods[method]).parameters)[1:]
+    for name in settings:
+        if name not in known:
+            raise InputError(f"method {method}: expected settings among {', '.join(known)}, got {name!r}")
+    deformer: Deformer = methods[method](mesh, **settings)
+    return deformer

@@ -1,0 +1,45 @@
+"""Logarithmic-spiral trajectories of a vector field (paper, section 2.3)."""
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ..geometry.checks import Complexes
+from ..geometry.mesh import TriMesh
+
+_SERIES_BELOW = 1e-6
+
+
+def spiral_factor(s: Complexes) -> Complexes:
+    """φ(s) = (eˢ − 1) / s with φ(0) = 1: a point with velocity u on a spiral of rate s moves by φ(s) u."""
+    small = np.abs(s) < _SERIES_BELOW
+    safe = np.where(small, 1.0, s)
+    return np.where(small, 1.0 + s * (0.5 + s / 6.0), np.expm1(safe) / safe)
+
+
+class LogSpirals:
+    """Moves the vertices of a mesh along the averaged spirals of eq. 16.
+
+    Eqs. 14 and 15 in one formula that needs no center: with s = (u1 − u2) / (p1 − p2) for an edge, the flow is
+    γ(t) = p + t φ(t s) u, for spirals (s ≠ 0) and translations (s = 0) alike. Since p and u do not depend on
+    the neighbor, eq. 16 is p + t u · mean φ(t s).
+    """
+
+    def __init__(self, mesh: TriMesh) -> None:
+        self._start, self._end = mesh.edges.T
+        e, n = len(self._start), len(mesh.vertices)
+        ends = mesh.edges.T.ravel()
+        degree = np.bincount(ends, minlength=n)
+        edge = np.tile(np.arange(e), 2)
+        self._mean = csr_array((1.0 / degree[ends], (ends, edge)), shape=(n, e))
+
+    def flow(self, positions: Complexes, field: Complexes, t: float = 1.0) -> Complexes:
+        """Where the vertices (n,) are at time ``t`` (1 is the whole step) when they start with ``field`` (n,)."""
+        i, j = self._start, self._end
+        s = t * (field[i] - field[j]) / (positions[i] - positions[j])
+        factor = self._mean @ spiral_factor(s).view(np.float64).reshape(-1, 2)
+        return positions + t * field * factor.view(np.complex128)[:, 0]
+
+
+def linear_flow(positions: Complexes, field: Complexes, t: float = 1.0) -> Complexes:
+    """The straight steps that spirals replace: γ(t) = p + t u (Fig. 5)."""
+    return positions + t * field

@@ -1,0 +1,1 @@
+"""All that a session is, without a window: document, history, tools, recording."""

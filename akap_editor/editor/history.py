@@ -1,0 +1,80 @@
+"""Undo and redo: stacks of whole states, one entry a gesture."""
+
+from dataclasses import dataclass
+
+from .document import EditState
+
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """A state to go back to, and what was done after it."""
+
+    label: str
+    state: EditState
+
+
+class History:
+    """Stacks of `EditState`: whatever is in the state is undoable, and nobody has to write an inverse.
+
+    `begin` when a gesture starts, `commit` when it ends, `abort` returns the state from before, bit for bit.
+    """
+
+    def __init__(self) -> None:
+        self._undo: list[Entry] = []
+        self._redo: list[Entry] = []
+        self._open: Entry | None = None
+
+    def begin(self, label: str, state: EditState) -> None:
+        """Open a gesture at ``state``. Gestures do not nest."""
+        assert self._open is None, "a gesture is already open"
+        self._open = Entry(label, state)
+
+    def rename(self, label: str) -> None:
+        """Say better what the open gesture turned out to be."""
+        assert self._open is not None, "no gesture is open"
+        self._open = Entry(label, self._open.state)
+
+    def commit(self) -> None:
+        """Close the gesture as one entry; what was undone before can no longer be redone."""
+        assert self._open is not None, "no gesture is open"
+        self._undo.append(self._open)
+        self._redo.clear()
+        self._open = None
+
+    def abort(self) -> EditState:
+        """Close the gesture without an entry; the state from before it."""
+        assert self._open is not None, "no gesture is open"
+        entry, self._open = self._open, None
+        return entry.state
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a gesture is under way."""
+        return self._open is not None
+
+    def undo(self, now: EditState) -> EditState:
+        """The state before the last entry; ``now`` can be redone. Raises IndexError on an empty stack."""
+        entry = self._undo.pop()
+        self._redo.append(Entry(entry.label, now))
+        return entry.state
+
+    def redo(self, now: EditState) -> EditState:
+        """The state after the entry last undone. Raises IndexError on an empty stack."""
+        entry = self._redo.pop()
+        self._undo.append(Entry(entry.label, now))
+        return entry.state
+
+    @property
+    def undo_label(self) -> str | None:
+        """What undo would take back."""
+        return self._undo[-1].label if self._undo else None
+
+    @property
+    def redo_label(self) -> str | None:
+        """What redo would do again."""
+        return self._redo[-1].label if self._redo else None
+
+    @property
+    def depth(self) -> int:
+        """Number of entries that can be undone."""
+        return len(self._undo)

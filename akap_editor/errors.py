@@ -1,0 +1,17 @@
+"""The exceptions that callers may want to tell apart."""
+
+
+class AkapError(Exception):
+    """Base of every error this package raises on purpose; the message is one sentence for the user."""
+
+
+class InputError(AkapError, ValueError):
+    """The user's data is unusable; says what was expected and what came."""
+
+
+class SolverError(AkapError, ArithmeticError):
+    """The numbers gave no finite answer; the last good pose is still valid."""
+
+
+class DisplayError(AkapError):
+    """There is no usable display, window system or OpenGL 3.3 context."""

@@ -1,0 +1,1 @@
+"""Pure functions on arrays: outlines, meshes, differential operators, distortion."""

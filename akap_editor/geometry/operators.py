@@ -1,0 +1,96 @@
+"""Differential operators of piecewise linear functions on a triangle mesh.
+
+In formulas a point or vector (x, y) is the complex number x + iy, as in the paper's section 2.3.
+"""
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from .checks import Complexes, Floats, Ints
+from .mesh import TriMesh, signed_areas
+
+
+def to_complex(points: Floats) -> Complexes:
+    """(n, 2) float64 as (n,) complex128; a view where the array is contiguous."""
+    return np.ascontiguousarray(points).view(np.complex128)[:, 0]
+
+
+def to_points(values: Complexes) -> Floats:
+    """(n,) complex128 as (n, 2) float64; a view where the array is contiguous."""
+    return np.ascontiguousarray(values).view(np.float64).reshape(-1, 2)
+
+
+def hat_gradients(positions: Floats, faces: Ints) -> tuple[Floats, Floats, Floats]:
+    """Gradients of the three hat functions on each face: ∂x (m, 3), ∂y (m, 3), and the face areas (m,).
+
+    The gradient of a hat function is the opposite edge turned by 90° over twice the area (Botsch et al. 2010,
+    chapter 3).
+    """
+    areas = signed_areas(positions, faces)
+    x, y = positions[:, 0][faces], positions[:, 1][faces]
+    following, preceding = [1, 2, 0], [2, 0, 1]
+    scale = 0.5 / areas[:, None]
+    dx = (y[:, following] - y[:, preceding]) * scale
+    dy = (x[:, preceding] - x[:, following]) * scale
+    return dx, dy, areas
+
+
+def gradient_matrices(mesh: TriMesh) -> tuple[csr_array, csr_array]:
+    """Sparse (m, n) matrices G_x, G_y: derivatives on each rest face of a function given at the vertices."""
+    dx, dy, _ = hat_gradients(mesh.vertices, mesh.faces)
+    m, n = len(mesh.faces), len(mesh.vertices)
+    rows = np.repeat(np.arange(m), 3)
+    columns = mesh.faces.ravel()
+    return (
+        csr_array((dx.ravel(), (rows, columns)), shape=(m, n)),
+        csr_array((dy.ravel(), (rows, columns)), shape=(m, n)),
+    )
+
+
+def jacobians(mesh: TriMesh, positions: Floats) -> Floats:
+    """(m, 2, 2) Jacobians J[:, component, derivative] of the map from the rest pose to ``positions``."""
+    gx, gy = gradient_matrices(mesh)
+    return np.stack([gx @ positions, gy @ positions], axis=2)
+
+
+def killing_energy(positions: Floats, faces: Ints, field: Floats) -> float:
+    """∫‖J + Jᵀ‖² of a vector field (n, 2) on the mesh at ``positions`` (paper, eq. 2): 0 for rigid motions."""
+    dx, dy, areas = hat_gradients(positions, faces)
+    u, v = field[:, 0][faces], field[:, 1][faces]
+    stretch_x, stretch_y = (dx * u).sum(axis=1), (dy * v).sum(axis=1)
+    shear = (dy * u).sum(axis=1) + (dx * v).sum(axis=1)
+    return float(areas @ (4 * stretch_x**2 + 4 * stretch_y**2 + 2 * shear**2))
+
+
+# The lower triangle of a face's 6×6 matrix, degrees of freedom in the order x0 y0 x1 y1 x2 y2.
+_LOWER_ROWS, _LOWER_COLUMNS = np.tril_indices(6)
+
+
+def element_pattern(faces: Ints) -> tuple[Ints, Ints]:
+    """Rows and columns, (21 m,) each, of the entries that `killing_elements` returns, as 2n × 2n indices.
+
+    Degrees of freedom are interleaved: 2 i and 2 i + 1 are x and y of vertex i. An entry may lie above the
+    diagonal; its mirror image is the one meant.
+    """
+    dofs = (2 * faces[:, :, None] + np.arange(2)).reshape(-1, 6)
+    return dofs[:, _LOWER_ROWS].ravel(), dofs[:, _LOWER_COLUMNS].ravel()
+
+
+def killing_elements(positions: Floats, faces: Ints) -> Floats:
+    """Entries (21 m,) of K = Pᵀ P face by face, each weighted by its area (paper, eqs. 5-7, Appendix A).
+
+    Rows of P per face: 2 ∂x U1, √2 (∂y U1 + ∂x U2), 2 ∂y U2. Unlike in the printed eq. 6, the gradient is
+    split into ∂x and ∂y: the whole stacked G would penalize rotations.
+    """
+    dx, dy, areas = hat_gradients(positions, faces)
+    root = np.sqrt(2 * areas)[:, None]
+    gx, gy = dx * root, dy * root
+    m = len(faces)
+    xx = gx[:, :, None] * gx[:, None, :]
+    yy = gy[:, :, None] * gy[:, None, :]
+    element = np.empty((m, 3, 2, 3, 2))
+    element[:, :, 0, :, 0] = 2 * xx + yy
+    element[:, :, 1, :, 1] = 2 * yy + xx
+    element[:, :, 0, :, 1] = gy[:, :, None] * gx[:, None, :]
+    element[:, :, 1, :, 0] = gx[:, :, None] * gy[:, None, :]
+    return element.reshape(m, 6, 6)[:, _LOWER_ROWS, _LOWER_COLUMNS].ravel()

@@ -1,0 +1,157 @@
+"""From polygons to a quality mesh, by Triangle (Shewchuk 1996)."""
+
+import atexit
+import subprocess
+import sys
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from ..errors import InputError
+from .checks import Floats, Ints
+from .mesh import TriMesh, signed_areas
+from .outline import Outline
+from .triangle_worker import read_message, write_message
+
+TIME_LIMIT = 30.0  # seconds for one run of Triangle
+MIN_ANGLE = 28.0  # degrees; Triangle is proven to end up to 20.7 and does so in practice up to 33
+FEWEST, MOST = 20, 200_000
+COUNT_TOLERANCE = 0.04  # share by which the vertex count may miss what was asked for
+MAX_TRIES = 6
+
+
+def triangulate(parts: Sequence[Outline], vertices: int = 2000) -> TriMesh:
+    """A conforming Delaunay mesh of polygons with holes, no angle below 28° that the outline does not force.
+
+    parts: polygons that do not touch one another; vertices: the wanted number, reached within a few percent
+    unless the outline alone needs more. Raises InputError on unusable outlines, or where Triangle fails.
+    """
+    if not FEWEST <= vertices <= MOST:
+        raise InputError(f"vertices: expected a number from {FEWEST} to {MOST}, got {vertices}")
+    if not parts:
+        raise InputError("outlines: expected at least one part, got none")
+    shape = shapely.union_all([part.polygon for part in parts])
+    if not shape.is_valid or shape.is_empty:
+        raise InputError(f"outlines: expected simple polygons, got {shapely.is_valid_reason(shape)}")
+    area = shape.area / (2.0 * vertices)
+    best: tuple[Floats, Ints] | None = None
+    # The count falls nearly as 1/area; where the outline alone needs more vertices, no area will do.
+    for _ in range(MAX_TRIES):
+        result = _triangle(_pslg(parts, shape, np.sqrt(area * 4 / np.sqrt(3))), f"pq{MIN_ANGLE:g}a{area:.9f}")
+        count = len(result[0])
+        if best is None or abs(count - vertices) < abs(len(best[0]) - vertices):
+            best = result
+        if abs(count - vertices) <= COUNT_TOLERANCE * vertices:
+            break
+        area *= (count / vertices) ** 1.2
+        if area > shape.area:
+            break
+    assert best is not None
+    return _mesh(*best)
+
+
+def _mesh(points: Floats, faces: Ints) -> TriMesh:
+    """Faces turned to positive area, vertices that no face uses left out."""
+    used, faces = np.unique(faces, return_inverse=True)
+    points, faces = points[used], faces.reshape(-1, 3).astype(np.int32)
+    flipped = signed_areas(points, faces) < 0
+    faces[flipped] = faces[flipped][:, ::-1]
+    return TriMesh(points, faces)
+
+
+def _pslg(parts: Sequence[Outline], shape: shapely.Geometry, edge: float) -> dict[str, np.ndarray]:
+    """Triangle's input: points, segments no longer than ``edge``, one point in each hole."""
+    rings = [ring for part in parts for ring in (part.outer, *part.holes)]
+    points, segments, at = [], [], 0
+    for ring in rings:
+        line = shapely.segmentize(shapely.LinearRing(ring), edge)
+        dense = np.array(line.coords)[:-1]
+        index = np.arange(len(dense))
+        points.append(dense)
+        segments.append(np.stack([index, np.roll(index, -1)], axis=1) + at)
+        at += len(dense)
+    vertices = np.concatenate(points)
+    if len(np.unique(vertices, axis=0)) < len(vertices):
+        raise InputError("outlines: expected no point twice, got rings that touch or repeat a point")
+    holes = []
+    for part in parts:
+        for hole in part.holes:
+            for gap in shapely.get_parts(shapely.Polygon(hole).difference(shape)):
+                if gap.area > 0:
+                    inside = gap.representative_point()
+                    holes.append((inside.x, inside.y))
+    return {
+        "vertices": vertices,
+        "segments": np.concatenate(segments).astype(np.int32),
+        "holes": np.array(holes, dtype=np.float64).reshape(-1, 2),
+    }
+
+
+class _Worker:
+    """One warm child process; a job that crashes or hangs ends the child, not the program."""
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[bytes] | None = None
+        self._lock = threading.Lock()
+
+    def run(self, job: dict[str, np.ndarray], limit: float) -> dict[str, np.ndarray]:
+        with self._lock:
+            process = self._start()
+            assert process.stdin is not None
+            assert process.stdout is not None
+            late = threading.Event()
+
+            def stop() -> None:
+                late.set()
+                process.kill()
+
+            timer = threading.Timer(limit, stop)
+            timer.start()
+            try:
+                write_message(process.stdin, **job)
+                answer = read_message(process.stdout)
+            except OSError:
+                answer = None
+            finally:
+                timer.cancel()
+            if answer is None:
+                self.close()
+                reason = f"took longer than {limit:g} s" if late.is_set() else "stopped without an answer"
+                raise InputError(f"the outline cannot be triangulated: Triangle {reason}")
+            return answer
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        if self._process is None or self._process.poll() is not None:
+            script = Path(__file__).with_name("triangle_worker.py")
+            self._process = subprocess.Popen(
+                [sys.executable, str(script)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+            )
+        return self._process
+
+    def close(self) -> None:
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    pipe.close()
+
+
+_worker = _Worker()
+atexit.register(_worker.close)
+
+
+def _triangle(job: dict[str, np.ndarray], switches: str, limit: float = TIME_LIMIT) -> tuple[Floats, Ints]:
+    if not np.isfinite(job["vertices"]).all():
+        raise InputError("outlines: expected finite coordinates")
+    answer = _worker.run({**job, "switches": np.array(switches)}, limit)
+    if not len(answer["triangles"]) or not np.isfinite(answer["vertices"]).all():
+        raise InputError("the outline cannot be triangulated: Triangle returned no faces")
+    return answer["vertices"], answer["triangles"]
