@@ -19,6 +19,7 @@ from .rest_memory import SymmetricDirichlet, descend
 Trajectory = Literal["spiral", "linear"]
 
 _SHORTEST = 2.0**-10  # share of a substep below which a move that would flip a face is given up
+_ARRIVED = 1e-4  # share of √area: pins nearer than this to their targets are left to the rest memory alone
 _THINNEST = 1e-3  # a face may not shrink below this share of its rest area in one move
 
 
@@ -32,7 +33,6 @@ class AkapDeformer:
     pin_weight: λ on the row as in eq. 5; with area-weighted energies 10 to 1000 behave alike.
     max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer way
     is cut, because following one field too far distorts (Fig. 2).
-    max_substeps: where given, a step ends after so many and leaves the rest of the way to the next.
     Raises InputError on settings out of range.
     """
 
@@ -44,7 +44,6 @@ class AkapDeformer:
         trajectory: Trajectory = "spiral",
         pin_weight: float = 100.0,
         max_step: float = 0.01,
-        max_substeps: int | None = None,
     ) -> None:
         if not 0 <= memory <= 1:
             raise InputError(f"memory: expected a number from 0 to 1, got {memory!r}")
@@ -54,13 +53,14 @@ class AkapDeformer:
             raise InputError(f"pin_weight: expected a positive number, got {pin_weight!r}")
         if not max_step > 0:
             raise InputError(f"max_step: expected a positive number, got {max_step!r}")
-        if max_substeps is not None and max_substeps < 1:
-            raise InputError(f"max_substeps: expected 1 or more, got {max_substeps!r}")
         self._mesh = mesh
         self._memory = float(memory)
         self._dirichlet = bool(dirichlet)
-        self._max_length = max_step * math.sqrt(mesh.rest_areas.sum())
-        self._max_substeps = max_substeps
+        length = math.sqrt(mesh.rest_areas.sum())
+        self._max_length = max_step * length
+        # The soft pins give way a little to the rest memory; a field that took them back each time would
+        # keep the pose from ever coming to rest.
+        self._arrived = _ARRIVED * length if memory else 0.0
         self._system = KillingSystem(mesh, pin_weight)
         self._flow = LogSpirals(mesh).flow if trajectory == "spiral" else linear_flow
         self._rest = SymmetricDirichlet(mesh)
@@ -91,10 +91,9 @@ class AkapDeformer:
         field, blocked, count = np.zeros_like(pose), False, 0
         if len(goals):
             starts = self._pin_positions(pose)
-            needed = max(1, math.ceil(np.abs(goals - starts).max() / self._max_length))
-            count = min(needed, self._max_substeps or needed)
+            count = max(1, math.ceil(np.abs(goals - starts).max() / self._max_length))
             for index in range(1, count + 1):
-                aims = goals if index == needed else starts + (index / needed) * (goals - starts)
+                aims = goals if index == count else starts + (index / count) * (goals - starts)
                 pose, field, cut = self._substep(pose, aims)
                 blocked = blocked or cut
         result = to_points(pose)
@@ -118,8 +117,11 @@ class AkapDeformer:
     def _substep(self, pose: Complexes, aims: Complexes) -> tuple[Complexes, Complexes, bool]:
         """One field and one move: section 2.4, with velocities towards ``aims`` from where the pins are."""
         self._system.factorize(to_points(pose))
-        field, _ = self._system.field(aims - self._pin_positions(pose), self._dirichlet)
-        moved, cut = self._move(pose, field)
+        velocities = aims - self._pin_positions(pose)
+        moved, field, cut = pose, np.zeros_like(pose), False
+        if np.abs(velocities).max() > self._arrived:
+            field, _ = self._system.field(velocities, self._dirichlet)
+            moved, cut = self._move(pose, field)
         if self._memory:
             moved = self._remember(moved, aims)
         if not np.isfinite(moved).all():

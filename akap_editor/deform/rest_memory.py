@@ -14,6 +14,7 @@ from ..geometry.operators import gradient_matrices, to_complex, to_points
 
 _SUFFICIENT = 1e-4  # Armijo's share of the decrease that the slope promises
 _TRIES = 12
+_NEAR = 0.8  # a try within this share of the parabola's minimum is near enough
 
 
 class SymmetricDirichlet:
@@ -61,9 +62,11 @@ def descend(
     direction: Complexes,
     length: float,
 ) -> Complexes:
-    """One step from ``positions`` along a descent direction, shortened until the energy falls enough.
+    """One step from ``positions`` along a descent direction, at most ``length`` times its size.
 
-    Returns ``positions`` where no try is good enough, so that the energy never rises.
+    A try that goes past the minimum is followed by one at the minimum of the parabola through what is known,
+    since a pose near its minimum would otherwise swing about it. Returns ``positions`` where no try lowers the
+    energy enough, so that it never rises.
     """
     slope = float((gradient.conj() * direction).real.sum())
     if slope >= 0:
@@ -71,7 +74,10 @@ def descend(
     before = value(positions)
     for _ in range(_TRIES):
         candidate = positions + length * direction
-        if value(candidate) <= before + _SUFFICIENT * length * slope:
+        after = value(candidate)
+        curvature = after - before - length * slope
+        shorter = -0.5 * slope * length**2 / curvature if np.isfinite(after) and curvature > 0 else 0.5 * length
+        if after <= before + _SUFFICIENT * length * slope and shorter > _NEAR * length:
             return candidate
-        length /= 2
+        length = max(min(shorter, 0.5 * length if not np.isfinite(after) else length), 0.1 * length)
     return positions

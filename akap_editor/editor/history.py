@@ -52,6 +52,10 @@ class History:
         """Whether a gesture is under way."""
         return self._open is not None
 
+    def unchanged(self, now: EditState) -> bool:
+        """Whether the open gesture has changed nothing yet."""
+        return self._open is not None and self._open.state is now
+
     def undo(self, now: EditState) -> EditState:
         """The state before the last entry; ``now`` can be redone. Raises IndexError on an empty stack."""
         entry = self._undo.pop()

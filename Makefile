@@ -1,0 +1,38 @@
+# Everything a person or CI types. Any POSIX system with GNU make 3.81 (macOS) or later.
+
+.PHONY: help run test lint format clean
+
+help:
+	@echo 'make run                   open the editor on a bundled cartoon'
+	@echo 'make run FILE=picture.png  open that picture, or a saved project'
+	@echo 'make test                  run all tests, those of the window too; no display is needed'
+	@echo 'make test ARGS="-k mesh"   pass options on to pytest'
+	@echo 'make lint                  ruff, ruff format --check, mypy'
+	@echo 'make format                let ruff repair and format the code'
+	@echo 'make clean                 remove .venv, caches and output'
+	@echo
+	@echo 'PYTHON=python3.12 chooses the Python that .venv is made with (3.11 or later).'
+
+run:
+	@sh tools/setup.sh run
+	@.venv/bin/akap-editor $${FILE:+"$$FILE"}
+
+# Without DISPLAY the tests open their windows on an Xvfb of their own, never on the user's screen.
+test:
+	@sh tools/setup.sh test
+	env -u DISPLAY -u WAYLAND_DISPLAY .venv/bin/python -m pytest $(ARGS)
+
+lint:
+	@sh tools/setup.sh lint
+	.venv/bin/python -m ruff check .
+	.venv/bin/python -m ruff format --check .
+	.venv/bin/python -m mypy
+
+format:
+	@sh tools/setup.sh lint
+	.venv/bin/python -m ruff check --fix .
+	.venv/bin/python -m ruff format .
+
+clean:
+	rm -rf .venv out dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,135 @@
+"""What was done in a session, as a list that can be done again."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from ..geometry.mesh import TriMesh
+from .document import Drawing, Pin
+
+VERSION = 1
+Event = dict[str, Any]
+
+# What each event must carry besides its time.
+_FIELDS: dict[str, tuple[str, ...]] = {
+    "begin": ("label",),
+    "commit": (),
+    "abort": (),
+    "undo": (),
+    "redo": (),
+    "pins": ("pins",),
+    "targets": ("targets",),
+    "step": (),
+    "pose": ("positions",),
+    "settings": ("method", "parameters"),
+    "reset": (),
+}
+
+
+@dataclass(eq=False)
+class Recording:
+    """A session's pin edits, targets and settings with times.
+
+    header: the drawing that it was made on (see `drawing_header`); events: dictionaries with "t" (seconds since
+    the start), "do" (what was done) and that event's values. docs/file-format.md describes them.
+    """
+
+    header: dict[str, Any]
+    events: list[Event] = field(default_factory=list)
+
+    @property
+    def duration(self) -> float:
+        """Seconds from the start to the last event."""
+        return float(self.events[-1]["t"]) if self.events else 0.0
+
+    def to_text(self) -> str:
+        """One JSON object a line, the header first."""
+        head = {"format": "akap-recording", "version": VERSION, "drawing": self.header}
+        return "".join(json.dumps(line, separators=(",", ":")) + "\n" for line in [head, *self.events])
+
+
+def mesh_digest(mesh: TriMesh) -> str:
+    """A short name for exactly this mesh, to tell whether face numbers of a recording fit."""
+    digest = hashlib.sha256(mesh.vertices.astype("<f8").tobytes())
+    digest.update(mesh.faces.astype("<i4").tobytes())
+    return digest.hexdigest()[:32]
+
+
+def drawing_header(drawing: Drawing) -> dict[str, Any]:
+    """What a recording says about its drawing."""
+    return {
+        "name": drawing.name,
+        "size": list(drawing.size),
+        "vertices": len(drawing.mesh.vertices),
+        "mesh": mesh_digest(drawing.mesh),
+    }
+
+
+def pins_to_json(mesh: TriMesh, pins: Sequence[Pin]) -> list[dict[str, Any]]:
+    """Pins with face and weights, for exactly this mesh, and their place at rest, for any other."""
+    result = []
+    for pin in pins:
+        rest = pin.weights @ mesh.vertices[mesh.faces[pin.face]]
+        result.append(
+            {
+                "id": pin.id,
+                "face": pin.face,
+                "weights": pin.weights.tolist(),
+                "rest": rest.tolist(),
+                "target": pin.target.tolist(),
+            }
+        )
+    return result
+
+
+def parse_recording(text: str) -> Recording:
+    """Read what `to_text` wrote. A last line that was cut off is left out.
+
+    Raises InputError with the line's number.
+    """
+    lines = text.split("\n")
+    complete, tail = lines[:-1], lines[-1]
+    parsed: list[dict[str, Any]] = []
+    for number, line in enumerate([*complete, tail], start=1):
+        if not line.strip():
+            continue
+        try:
+            value = json.loads(line)
+        except (ValueError, RecursionError) as error:
+            if number == len(lines):
+                break  # the writer was stopped in the middle of a line
+            raise InputError(f"recording line {number}: expected a JSON object, got {line[:40]!r}") from error
+        if not isinstance(value, dict):
+            raise InputError(f"recording line {number}: expected a JSON object, got {line[:40]!r}")
+        if parsed:
+            _check_event(value, number, float(parsed[-1].get("t", 0.0)))
+        else:
+            _check_head(value)
+        parsed.append(value)
+    if not parsed:
+        raise InputError("recording line 1: expected the header of a recording, got nothing")
+    return Recording(parsed[0]["drawing"], parsed[1:])
+
+
+def _check_head(head: dict[str, Any]) -> None:
+    if head.get("format") != "akap-recording" or not isinstance(head.get("drawing"), dict):
+        raise InputError("recording line 1: expected the header of a recording, got something else")
+    version = head.get("version")
+    if version != VERSION:
+        raise InputError(f"recording line 1: expected version {VERSION}, got {version!r}")
+
+
+def _check_event(event: dict[str, Any], number: int, previous: float) -> None:
+    do, when = event.get("do"), event.get("t")
+    if do not in _FIELDS:
+        raise InputError(f"recording line {number}: expected one of {', '.join(_FIELDS)}, got {do!r}")
+    if not isinstance(when, (int, float)) or not np.isfinite(when) or when < previous:
+        raise InputError(f"recording line {number}: expected a time of {previous:g} s or later, got {when!r}")
+    for name in _FIELDS[do]:
+        if name not in event:
+            raise InputError(f"recording line {number}: expected a value {name!r} in {do!r}, got none")

@@ -1,0 +1,69 @@
+"""Whole files: read at once, written at once or not at all."""
+
+import errno
+import os
+import secrets
+import shutil
+import stat
+from pathlib import Path
+
+from ..errors import InputError
+
+MAX_FILE_BYTES = 2**30
+
+
+def read_file(path: str | Path, expected: str) -> bytes:
+    """All bytes of a regular file; ``expected`` says in messages what it should be, e.g. "a picture".
+
+    Raises InputError where there is no such file, it cannot be read, or has over `MAX_FILE_BYTES`.
+    """
+    path = Path(path)
+    try:
+        status = path.stat()
+        if stat.S_ISREG(status.st_mode) and status.st_size <= MAX_FILE_BYTES:
+            return path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(f"{path}: expected {expected}, but there is no such file") from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot read {path}: {_reason(error)}") from error
+    if stat.S_ISREG(status.st_mode):
+        came = f"a file of {status.st_size} bytes, more than {MAX_FILE_BYTES}"
+    else:
+        came = "a folder" if stat.S_ISDIR(status.st_mode) else "something that is not a regular file"
+    raise InputError(f"{path}: expected {expected}, got {came}")
+
+
+def write_atomic(path: str | Path, data: bytes) -> None:
+    """Write a file under a temporary name in its folder and move it into place.
+
+    Whatever fails, the old file stays as it was and no temporary file is left. A link is followed, permission
+    bits of the old file are kept, those of a new file follow the umask. Raises InputError.
+    """
+    try:
+        target = Path(path).resolve()
+        old = target.exists()
+        if old and not target.is_file():  # moving over a device would destroy it
+            raise OSError(errno.EINVAL, "it is not a regular file")
+        if old and not os.access(target, os.W_OK):  # moving over a protected file would succeed
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+        temporary = target.with_name(f".akap-{secrets.token_hex(8)}.tmp")
+        file = temporary.open("xb")
+        try:
+            with file:
+                file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+            if old:
+                shutil.copymode(target, temporary)
+            os.replace(temporary, target)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot write {path}: {_reason(error)}") from error
+
+
+def _reason(error: OSError | ValueError) -> str:
+    """The cause alone, e.g. "permission denied", without number and file name."""
+    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return text[:1].lower() + text[1:]

@@ -1,0 +1,1 @@
+"""Arrays to pixels, given an OpenGL context."""

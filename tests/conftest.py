@@ -1,0 +1,26 @@
+"""What every test may use: the real cartoons, reproducible random cases, and windows last."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# The same cases on every run, and no limit by the clock: a slow machine is not a failure.
+settings.register_profile("reproducible", derandomize=True, deadline=None)
+settings.load_profile("reproducible")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests that open a real window are slow, so everything else reports first."""
+    items.sort(key=lambda item: item.get_closest_marker("window") is not None)
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """The folder of real cartoons beside the checkout; the test is skipped where it is absent."""
+    folder = ROOT.parent / "shared" / "data"
+    if not folder.is_dir():
+        pytest.skip(f"the folder of real cartoons {folder} is absent")
+    return folder

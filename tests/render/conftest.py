@@ -1,0 +1,104 @@
+"""One OpenGL context for all tests of this folder, and small drawings."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+from akap_editor.editor.document import Drawing
+from akap_editor.geometry.mesh import TriMesh
+from akap_editor.render.offscreen import OffscreenRenderer, standalone_context
+from akap_editor.render.renderer import Renderer
+
+ROOT = Path(__file__).resolve().parents[2]
+CARTOONS = ("noto/cat.png", "noto/gecko.png", "noto/dancer.png")
+
+
+@pytest.fixture(scope="session")
+def session_context() -> Iterator[moderngl.Context]:
+    """Without OpenGL this fails, and so do the tests: they are not skipped."""
+    context = standalone_context()
+    yield context
+    context.release()
+
+
+@pytest.fixture
+def ctx(session_context: moderngl.Context) -> Iterator[moderngl.Context]:
+    """The context, current, with a clean error flag before and after."""
+    with session_context:
+        assert session_context.error == "GL_NO_ERROR"
+        yield session_context
+        assert session_context.error == "GL_NO_ERROR"
+
+
+@pytest.fixture
+def renderer(ctx: moderngl.Context) -> Iterator[Renderer]:
+    made = Renderer(ctx)
+    yield made
+    made.release()
+
+
+@pytest.fixture
+def offscreen(ctx: moderngl.Context) -> Iterator[OffscreenRenderer]:
+    with OffscreenRenderer(ctx) as made:
+        yield made
+
+
+@pytest.fixture
+def sheet() -> Callable[..., Drawing]:
+    """Makes a drawing whose mesh is a grid of ``cells`` by ``cells`` squares over the whole picture."""
+
+    def make(image: NDArray[np.uint8], cells: int = 4) -> Drawing:
+        height, width = image.shape[:2]
+        ticks = np.linspace(0, 1, cells + 1)
+        uv = np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)
+        corner = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()
+        a, b, c, d = corner, corner + 1, corner + cells + 2, corner + cells + 1
+        faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+        return Drawing(image, TriMesh(uv * [width, height], faces.astype(np.int32)), uv.astype(np.float32))
+
+    return make
+
+
+@pytest.fixture
+def plain() -> Callable[..., NDArray[np.uint8]]:
+    """Makes a picture of one color."""
+
+    def make(width: int, height: int, *rgba: int) -> NDArray[np.uint8]:
+        return np.full((height, width, 4), rgba, dtype=np.uint8)
+
+    return make
+
+
+@pytest.fixture
+def noise() -> NDArray[np.uint8]:
+    """(48, 64, 4): every pixel another color and alpha, a fifth of them opaque, a fifth transparent."""
+    rng = np.random.default_rng(7)
+    image = rng.integers(0, 256, (48, 64, 4), dtype=np.uint8)
+    kind = rng.integers(0, 5, image.shape[:2])
+    image[kind == 0, 3] = 255
+    image[kind == 1] = 0
+    return image
+
+
+@pytest.fixture
+def disc() -> NDArray[np.uint8]:
+    """(64, 64, 4): an orange disc with a soft rim, transparent black around it."""
+    y, x = np.mgrid[:64, :64] + 0.5
+    alpha = np.clip(24.5 - np.hypot(x - 32, y - 32), 0, 1)
+    image = np.zeros((64, 64, 4), dtype=np.uint8)
+    image[..., 3] = np.rint(alpha * 255)
+    image[image[..., 3] > 0, :3] = (250, 130, 20)
+    return image
+
+
+@pytest.fixture(params=CARTOONS)
+def cartoon(request: pytest.FixtureRequest) -> NDArray[np.uint8]:
+    path = ROOT.parent / "shared" / "data" / request.param
+    if not path.exists():
+        pytest.skip(f"the cartoon {request.param} is not on this machine")
+    return np.asarray(Image.open(path).convert("RGBA"))

@@ -1,0 +1,236 @@
+from dataclasses import replace
+
+import moderngl
+import numpy as np
+import pytest
+from PIL import Image
+
+from akap_editor.editor.document import Drawing, make_drawing
+from akap_editor.errors import DisplayError, InputError
+from akap_editor.geometry.mesh import TriMesh
+from akap_editor.render.offscreen import MAX_SIZE, OffscreenRenderer, frame_box, standalone_context
+from akap_editor.resources import bundled_drawings
+
+
+def premultiplied(image):
+    """(h, w, 4) float64 from 0 to 255."""
+    values = image.astype(np.float64)
+    values[..., :3] *= values[..., 3:] / 255
+    return values
+
+
+def without_hidden_color(image):
+    return np.where(image[..., 3:] > 0, image, 0)
+
+
+# --- at rest -------------------------------------------------------------------------------------------------
+
+
+def test_at_rest_noise_comes_back_bit_for_bit(offscreen, sheet, noise):
+    drawing = sheet(noise)
+    assert np.array_equal(offscreen.render(drawing, drawing.mesh.vertices), without_hidden_color(noise))
+
+
+def test_color_survives_every_alpha(offscreen, sheet):
+    """Row a has alpha a; the columns run through all reds."""
+    alpha, red = np.mgrid[:256, :256].astype(np.uint8)
+    image = np.stack([red, 255 - red, np.full_like(red, 77), alpha], axis=-1)
+    drawing = sheet(image, cells=1)
+    assert np.array_equal(offscreen.render(drawing, drawing.mesh.vertices), without_hidden_color(image))
+
+
+@pytest.mark.parametrize("path", bundled_drawings(), ids=lambda path: path.stem)
+def test_at_rest_a_bundled_drawing_comes_back(offscreen, path):
+    assert_comes_back(offscreen, np.asarray(Image.open(path).convert("RGBA")))
+
+
+def test_at_rest_a_cartoon_comes_back(offscreen, cartoon):
+    assert_comes_back(offscreen, cartoon)
+
+
+def assert_comes_back(offscreen, image):
+    """Inside the mesh alpha differs by 1 at most, and colors are exact where opaque."""
+    drawing = make_drawing(image, 800)
+    result = offscreen.render(drawing, drawing.mesh.vertices)
+    assert result.shape == image.shape
+    visible = result[..., 3] > 0
+    assert np.abs(result[..., 3].astype(int) - image[..., 3])[visible].max() <= 1
+    assert np.array_equal(result[image[..., 3] == 255], image[image[..., 3] == 255])
+    assert np.abs(result[..., :3].astype(int) - image[..., :3])[visible].max() <= 1
+    assert not result[~visible].any()
+
+
+# --- box and scale -------------------------------------------------------------------------------------------
+
+
+def test_translated_pose_is_the_picture_shifted_exactly(offscreen, sheet, noise):
+    drawing = sheet(noise)
+    result = offscreen.render(drawing, drawing.mesh.vertices + [10, 5])
+    assert result.shape == (48 + 5, 64 + 10, 4)
+    assert np.array_equal(result[5:, 10:], without_hidden_color(noise))
+    assert not result[:5].any()
+    assert not result[:, :10].any()
+
+
+def test_box_with_negative_origin(offscreen, sheet, noise):
+    drawing = sheet(noise)
+    result = offscreen.render(drawing, drawing.mesh.vertices, box=(-3, -4, 20, 30))
+    assert result.shape == (34, 23, 4)
+    assert np.array_equal(result[4:, 3:], without_hidden_color(noise)[:30, :20])
+    assert not result[:4].any()
+    assert not result[:, :3].any()
+
+
+def test_quarter_turn_turns_the_pixels(offscreen, sheet, noise):
+    drawing = sheet(noise)
+    x, y = drawing.mesh.vertices.T
+    result = offscreen.render(drawing, np.stack([48 - y, x], axis=1), box=(0, 0, 48, 64))
+    assert np.array_equal(result, np.rot90(without_hidden_color(noise), -1))
+
+
+def test_half_scale_is_the_mean_of_four_premultiplied_pixels(offscreen, sheet, noise):
+    drawing = sheet(noise)
+    result = offscreen.render(drawing, drawing.mesh.vertices, scale=0.5)
+    expected = premultiplied(noise).reshape(24, 2, 32, 2, 4).mean(axis=(1, 3))
+    assert result.shape == (24, 32, 4)
+    assert np.abs(premultiplied(result) - expected).max() <= 1
+
+
+def test_double_scale_is_bilinear_in_premultiplied_pixels(offscreen, sheet, noise):
+    drawing = sheet(noise)
+    result = offscreen.render(drawing, drawing.mesh.vertices, scale=2)
+    expected = premultiplied(noise)
+    for axis in (0, 1):
+        padded = np.pad(expected, [(1, 1) if i == axis else (0, 0) for i in range(3)], mode="edge")
+        middle, before, after = (np.roll(padded, shift, axis) for shift in (0, 1, -1))
+        both = np.stack([0.75 * middle + 0.25 * before, 0.75 * middle + 0.25 * after], axis=axis + 1)
+        both = np.delete(both, [0, both.shape[axis] - 1], axis=axis)
+        expected = both.reshape([-1 if i == axis else n for i, n in enumerate(expected.shape)])
+    assert np.abs(premultiplied(result) - expected).max() <= 1.5
+
+
+@pytest.mark.parametrize("scale", [0.1, 0.37, 0.5, 1.0, 1.7, 4.0])
+def test_a_soft_rim_keeps_its_color_at_any_scale(offscreen, sheet, disc, scale):
+    drawing = sheet(disc)
+    angle = 0.3
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    result = offscreen.render(drawing, (drawing.mesh.vertices - 32) @ turn + 32, scale=scale)
+    visible = result[..., 3] > 0
+    assert visible.any()
+    assert (np.abs(result[visible][:, :3].astype(int) - [250, 130, 20]) <= 1).all()
+
+
+@pytest.mark.parametrize(
+    ("scale", "size"), [(0.5, (32, 24)), (1.1, (71, 53)), (0.01, (1, 1)), (1e-9, (1, 1)), (3, (192, 144))]
+)
+def test_size_is_rounded_up(offscreen, sheet, noise, scale, size):
+    drawing = sheet(noise)
+    result = offscreen.render(drawing, drawing.mesh.vertices, scale=scale)
+    assert (result.shape[1], result.shape[0]) == size
+
+
+def test_frame_box_holds_the_frame_and_all_poses(sheet, plain):
+    drawing = sheet(plain(40, 30, 1, 2, 3, 255))
+    rest = drawing.mesh.vertices
+    assert frame_box(drawing, []) == (0, 0, 40, 30)
+    assert frame_box(drawing, [rest / 2]) == (0, 0, 40, 30)
+    assert frame_box(drawing, [rest - 0.5, rest + [7.2, 0]]) == (-1, -1, 48, 30)
+    assert frame_box(drawing, [rest + 1e-9, rest - 1e-9]) == (0, 0, 40, 30)
+
+
+# --- background and order --------------------------------------------------------------------------------------
+
+
+def test_background_is_composited_and_opaque(offscreen, sheet, noise):
+    drawing = sheet(noise)
+    background = np.array([0.2, 0.9, 0.4])
+    result = offscreen.render(drawing, drawing.mesh.vertices, background=tuple(background))
+    expected = premultiplied(noise)
+    over = expected[..., :3] + background * (255 - expected[..., 3:])
+    assert (result[..., 3] == 255).all()
+    assert np.abs(result[..., :3] - over).max() <= 0.75
+
+
+def test_later_faces_lie_on_top(offscreen):
+    """Left half red, right half green and half transparent, each on its own square; posed one upon the other."""
+    image = np.zeros((8, 16, 4), dtype=np.uint8)
+    image[:, :8] = (255, 0, 0, 255)
+    image[:, 8:] = (0, 255, 0, 128)
+    vertices = np.array([[x, y] for x in (0, 7, 9, 16) for y in (0, 8)], dtype=np.float64)
+    red = [[0, 2, 3], [0, 3, 1]]
+    green = [[4, 6, 7], [4, 7, 5]]
+    posed = vertices.copy()
+    posed[4:, 0] -= 9
+    for faces, expected in ((red + green, [127, 128, 0, 255]), (green + red, [255, 0, 0, 255])):
+        mesh = TriMesh(vertices, np.array(faces, dtype=np.int32))
+        drawing = Drawing(image, mesh, vertices / [16, 8])
+        result = offscreen.render(drawing, posed)
+        assert (np.abs(result[:, 1:6].astype(int) - expected) <= 1).all()
+
+
+def test_a_new_pose_a_new_drawing_and_back(offscreen, sheet, noise, disc):
+    first, second = sheet(noise), sheet(disc)
+    before = offscreen.render(first, first.mesh.vertices)
+    moved = offscreen.render(first, first.mesh.vertices + [3, 0], box=(0, 0, 64, 48))
+    assert np.array_equal(moved[:, 3:], before[:, :-3])
+    other = offscreen.render(second, second.mesh.vertices)
+    assert np.array_equal(other, without_hidden_color(disc))
+    assert np.array_equal(offscreen.render(first, first.mesh.vertices), before)
+
+
+# --- errors and contexts ---------------------------------------------------------------------------------------
+
+
+def test_errors_say_what_was_expected_and_what_came(offscreen, sheet, noise):
+    drawing = sheet(noise)
+    rest = drawing.mesh.vertices
+    with pytest.raises(InputError, match=r"at most 8192×8192 pixels, got 8193×1; choose a smaller scale"):
+        offscreen.render(drawing, rest, box=(0, 0, MAX_SIZE + 1, 1))
+    with pytest.raises(InputError, match=r"at most 8192×8192 pixels, got 64000×48000;"):
+        offscreen.render(drawing, rest, scale=1000)
+    with pytest.raises(InputError, match=r"at most 8192×8192 pixels, got inf×inf;"):
+        offscreen.render(drawing, rest, scale=1.7e308)
+    for scale in (0, -1, float("nan"), float("inf")):
+        with pytest.raises(InputError, match=rf"scale: expected a positive number, got {scale:g}"):
+            offscreen.render(drawing, rest, scale=scale)
+    with pytest.raises(InputError, match=r"box: expected x0 < x1 and y0 < y1, got \(5, 0, 5, 9\)"):
+        offscreen.render(drawing, rest, box=(5, 0, 5, 9))
+    with pytest.raises(InputError, match=r"positions: expected shape \(25, 2\), got \(24, 2\)"):
+        offscreen.render(drawing, rest[1:])
+    with pytest.raises(InputError, match=r"positions: expected finite numbers, got \[nan, 0.0\] in row 0"):
+        offscreen.render(drawing, np.where(np.arange(25)[:, None] == 0, [np.nan, 0.0], rest))
+    with pytest.raises(InputError, match=r"poses: expected shape \(25, 2\), got \(3, 2\)"):
+        frame_box(drawing, [rest, rest[:3]])
+
+
+def test_the_largest_size_is_allowed(offscreen, sheet, noise):
+    drawing = sheet(noise)
+    assert offscreen.render(drawing, drawing.mesh.vertices, box=(0, 0, MAX_SIZE, 1)).shape == (1, MAX_SIZE, 4)
+
+
+def test_own_context_is_made_on_first_use_and_again_after_leaving(sheet, noise, monkeypatch):
+    drawing = sheet(noise)
+    made = []
+    create = moderngl.create_context
+    monkeypatch.setattr(moderngl, "create_context", lambda **kw: made.append(create(**kw)) or made[-1])
+    renderer = OffscreenRenderer()
+    with renderer:
+        assert not made
+        for _ in range(2):
+            result = renderer.render(drawing, drawing.mesh.vertices)
+            assert np.array_equal(result, without_hidden_color(noise))
+        with made[0]:
+            assert made[0].error == "GL_NO_ERROR"
+    with renderer:
+        result = renderer.render(replace(drawing), drawing.mesh.vertices)
+        assert np.array_equal(result, without_hidden_color(noise))
+    assert len(made) == 2
+
+
+def test_without_opengl_one_sentence_names_the_packages(monkeypatch):
+    def fail(**_kw):
+        raise Exception("libEGL.so not loaded")
+
+    monkeypatch.setattr(moderngl, "create_context", fail)
+    with pytest.raises(DisplayError, match=r"install the packages libegl1 and libgl1 \(libEGL.so not loaded\)$"):
+        standalone_context()

@@ -1,0 +1,103 @@
+#!/bin/sh
+# Usage: tools/setup.sh run|test|lint
+# Makes a checkout ready for that purpose: system packages, then .venv with the project installed in it.
+# Silent and quick where all is there already. PYTHON names the Python that .venv is made with.
+set -eu
+cd "$(dirname "$0")/.."
+purpose=$1
+
+fail() {
+    echo "$1" >&2
+    exit 1
+}
+
+has_library() { # the loader's cache lists "libGL.so.1 (libc6,x86-64) => ..."
+    PATH="$PATH:/sbin:/usr/sbin" ldconfig -p | grep -qF "$1 ("
+}
+
+# Prints the Debian packages that this purpose needs and the system lacks, whoever installed what is there.
+missing_packages() {
+    [ "$(uname -s)" = Linux ] && [ "$purpose" != lint ] || return 0
+    has_library libGL.so.1 || echo libgl1 # a window; brings libX11 and Mesa
+    has_library libEGL.so.1 || echo libegl1 # OpenGL without a display
+    [ "$purpose" = test ] || return 0
+    command -v Xvfb >/dev/null || echo xvfb # a display for the window tests
+    command -v xdotool >/dev/null || echo xdotool # their mouse and keyboard
+}
+
+# Installs Debian packages, as root or by a sudo that asks nothing; elsewhere says what to type, and fails.
+install_packages() {
+    if ! command -v apt-get >/dev/null; then
+        echo "Please install what Debian calls: $*" >&2
+        return 1
+    fi
+    if [ "$(id -u)" -eq 0 ]; then
+        as_root=
+    elif sudo -n true 2>/dev/null; then
+        as_root="sudo -n"
+    else
+        echo "System packages are missing; please run:" \
+            "sudo apt-get update && sudo apt-get install --no-install-recommends $*" >&2
+        return 1
+    fi
+    echo "Installing system packages: $*"
+    # The lock may be held by the updates that a new machine starts with.
+    set -- -qq -y --no-install-recommends -o DPkg::Lock::Timeout=120 -o Acquire::Retries=3 "$@"
+    $as_root apt-get -qq -o Acquire::Retries=3 update
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install "$@" >/dev/null
+}
+
+# Prints the Python to use: the one in PYTHON, else the first that is new enough. One later than 3.13 is the last
+# choice, because Triangle has no binary wheel for it and would need a C compiler.
+find_python() {
+    if [ -n "${PYTHON:-}" ]; then set -- "$PYTHON"; else set -- python3 python3.13 python3.12 python3.11; fi
+    found=''
+    later=''
+    for python; do
+        version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null) || continue
+        case $version in
+            3.11 | 3.12 | 3.13) echo "$python" && return ;;
+            3.1[4-9] | 3.[2-9]?) later=${later:-$python} ;;
+            *) found="${found:+$found, }$python $version" ;;
+        esac
+    done
+    [ -n "$later" ] || fail "akap-editor needs Python 3.11 or later, but found ${found:-no Python as $*}."
+    echo "$later"
+}
+
+make_venv() {
+    python=$(find_python)
+    if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then # Debian packs venv apart
+        package=$("$python" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])')
+        install_packages "$package" || exit 1
+    fi
+    "$python" -m venv --clear .venv
+}
+
+pip_install() {
+    .venv/bin/python -m pip --quiet --disable-pip-version-check --timeout 60 install --editable "$1"
+}
+
+# The marker holds what was installed from where, so that a changed pyproject.toml or a moved folder counts as new.
+install_project() {
+    marker=.venv/installed-$1
+    wanted="$PWD $(cksum <pyproject.toml)"
+    if ! .venv/bin/python -c 'import pip' 2>/dev/null; then
+        make_venv
+    elif [ "$(cat "$marker" 2>/dev/null)" = "$wanted" ]; then
+        return
+    fi
+    echo "Installing akap-editor in .venv; this takes a minute or two the first time."
+    pip_install "$2" || { echo "pip failed, trying once more." && pip_install "$2"; }
+    echo "$wanted" >"$marker"
+}
+
+packages=$(missing_packages)
+if [ -n "$packages" ]; then
+    # shellcheck disable=SC2086  # one word per package
+    if ! install_packages $packages; then
+        [ "$purpose" = run ] || exit 1
+        echo "Going on without them." >&2
+    fi
+fi
+if [ "$purpose" = run ]; then install_project run .; else install_project dev ".[dev]"; fi
