@@ -1,1 +1,59 @@
-"""akap_editor."""
+"""akap_editor: bend cartoons with as-Killing-as-possible vector fields.
+
+The engine as a library, without a window::
+
+    import akap_editor as akap
+
+    drawing = akap.make_drawing(akap.read_image("cat.png"), vertices=2000)
+    points = drawing.mesh.locate([[120.0, 80.0], [300.0, 410.0]])
+    deformer = akap.make_deformer("akap", drawing.mesh, memory=1.0)
+    deformer.set_pins(points)
+    pose = deformer.step(drawing.mesh.vertices, targets=[[130.0, 70.0], [300.0, 410.0]]).positions
+    akap.distortion(drawing.mesh, pose)
+"""
+
+from .deform.deformer import Deformer, StepReport, StepResult, make_deformer, method_names
+from .editor.document import Document, Drawing, EditState, Pin, Settings, make_drawing, new_document
+from .errors import AkapError, DisplayError, GraphicsError, InputError, SolverError
+from .geometry.distortion import Distortion, distortion
+from .geometry.mesh import MeshPoints, TriMesh
+from .geometry.outline import Outline, outlines
+from .geometry.triangulate import triangulate
+from .io.documents import open_document
+from .io.images import read_image, write_png
+from .io.project_file import load, save
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "AkapError",
+    "Deformer",
+    "DisplayError",
+    "Distortion",
+    "Document",
+    "Drawing",
+    "EditState",
+    "GraphicsError",
+    "InputError",
+    "MeshPoints",
+    "Outline",
+    "Pin",
+    "Settings",
+    "SolverError",
+    "StepReport",
+    "StepResult",
+    "TriMesh",
+    "__version__",
+    "distortion",
+    "load",
+    "make_deformer",
+    "make_drawing",
+    "method_names",
+    "new_document",
+    "open_document",
+    "outlines",
+    "read_image",
+    "save",
+    "triangulate",
+    "write_png",
+]

@@ -14,4 +14,8 @@ class SolverError(AkapError, ArithmeticError):
 
 
 class DisplayError(AkapError):
-    """There is no usable display, window system or OpenGL 3.3 context."""
+    """There is no display to open a window on."""
+
+
+class GraphicsError(AkapError):
+    """There is no OpenGL 3.3."""

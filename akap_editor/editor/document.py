@@ -35,7 +35,7 @@ class Drawing:
         if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8 or not image.size:
             raise InputError(f"image: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
         uv = as_points(self.uv, "uv", len(self.mesh.vertices)).astype(np.float32)
-        object.__setattr__(self, "image", frozen(image))
+        object.__setattr__(self, "image", frozen(image.copy()))
         object.__setattr__(self, "uv", frozen(uv))
 
     @property

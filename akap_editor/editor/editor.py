@@ -27,6 +27,7 @@ class Editor:
         self.canvas = (0.0, 0.0, 1280.0, 800.0)
         self.selection: frozenset[int] = frozenset()
         self.pointer: Point | None = None
+        self.ui_scale = 1.0  # points of the window per point of the design
         self.hand_tool = False
         self._space = False
         self.tool: Tool = Idle(self)
@@ -67,7 +68,11 @@ class Editor:
 
     def _pointer(self, event: PointerEvent) -> None:
         act = {"press": self.tool.press, "move": self.tool.move, "release": self.tool.release}
-        act[event.kind](event)
+        try:
+            act[event.kind](event)
+        except Exception:
+            self.cancel()
+            raise
 
     def _key(self, event: KeyEvent) -> None:
         if event.key == "space":
@@ -87,6 +92,8 @@ class Editor:
         """The one way out of a gesture: Escape, focus loss and errors all come here."""
         if not isinstance(self.tool, Idle):
             self.tool.cancel()
+        if self.session is not None and self.session.history.is_open:
+            self.session.abort()
 
     @property
     def hint(self) -> str:
@@ -126,7 +133,11 @@ class Editor:
         if self.session is None or self.busy:
             return None
         self.session.begin("Add pin")
-        added = self.session.add_pin(at)
+        try:
+            added = self.session.add_pin(at)
+        except Exception:
+            self.session.abort()
+            raise
         self.session.commit()
         if added is not None:
             self.select({added})
@@ -134,8 +145,10 @@ class Editor:
 
     def remove_pins(self, ids: Iterable[int]) -> None:
         """Take pins off the drawing; it keeps its pose."""
-        gone = frozenset(ids)
-        if self.session is not None and not self.busy and gone:
+        if self.session is None:
+            return
+        gone = frozenset(ids) & {pin.id for pin in self.session.state.pins}
+        if gone:
             label = "Remove pin" if len(gone) == 1 else f"Remove {len(gone)} pins"
             self._edit(label, lambda session: session.remove_pins(gone))
 
@@ -181,7 +194,8 @@ class Editor:
     @property
     def busy(self) -> bool:
         """Whether a gesture is under way."""
-        return self.session is not None and self.session.history.is_open
+        is_open = self.session is not None and self.session.history.is_open
+        return is_open or not isinstance(self.tool, Idle)
 
     # -- selection and view --------------------------------------------------------------------------------
 
@@ -210,7 +224,7 @@ class Editor:
         """The nearest pin within reach of a point of the screen, or None."""
         near = [(distance(place, position), pin) for pin, place in self.pins_on_screen().items()]
         best = min(near, default=None)
-        return best[1] if best is not None and best[0] <= PICK_RADIUS else None
+        return best[1] if best is not None and best[0] <= PICK_RADIUS * self.ui_scale else None
 
     @property
     def hovered_pin(self) -> int | None:

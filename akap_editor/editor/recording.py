@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from ..errors import InputError
 from ..geometry.mesh import TriMesh
 from .document import Drawing, Pin
 
 VERSION = 1
+LATEST = 1e9  # seconds
 Event = dict[str, Any]
 
 # What each event must carry besides its time.
@@ -107,7 +106,7 @@ def parse_recording(text: str) -> Recording:
         if not isinstance(value, dict):
             raise InputError(f"recording line {number}: expected a JSON object, got {line[:40]!r}")
         if parsed:
-            _check_event(value, number, float(parsed[-1].get("t", 0.0)))
+            _check_event(value, number, parsed[-1]["t"] if len(parsed) > 1 else 0.0)
         else:
             _check_head(value)
         parsed.append(value)
@@ -126,9 +125,9 @@ def _check_head(head: dict[str, Any]) -> None:
 
 def _check_event(event: dict[str, Any], number: int, previous: float) -> None:
     do, when = event.get("do"), event.get("t")
-    if do not in _FIELDS:
+    if not isinstance(do, str) or do not in _FIELDS:
         raise InputError(f"recording line {number}: expected one of {', '.join(_FIELDS)}, got {do!r}")
-    if not isinstance(when, (int, float)) or not np.isfinite(when) or when < previous:
+    if not isinstance(when, (int, float)) or not previous <= when <= LATEST:
         raise InputError(f"recording line {number}: expected a time of {previous:g} s or later, got {when!r}")
     for name in _FIELDS[do]:
         if name not in event:

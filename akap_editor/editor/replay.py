@@ -9,6 +9,9 @@ from .document import Document, Drawing, EditState, Pin, Settings, new_document
 from .recording import Event, Recording, mesh_digest
 from .session import Session
 
+# What a malformed value of an event raises where it is used.
+_BAD_EVENT = (AssertionError, AttributeError, KeyError, OverflowError, TypeError, ValueError)
+
 
 def replay(recording: Recording, drawing: Drawing) -> Iterator[tuple[float, EditState]]:
     """Do a recording again on a drawing: the time and the state after each event.
@@ -23,7 +26,7 @@ def replay(recording: Recording, drawing: Drawing) -> Iterator[tuple[float, Edit
             if session is None:
                 session = Session(_start(event, drawing))
             _apply(session, event, same_mesh)
-        except (InputError, KeyError, TypeError, ValueError, AssertionError) as error:
+        except _BAD_EVENT as error:
             raise InputError(f"recording line {number}: cannot be replayed, {error}") from error
         yield float(event["t"]), session.state
 

@@ -65,6 +65,11 @@ class Session:
         return self.document.state is not self._saved
 
     @property
+    def posed(self) -> bool:
+        """Whether the drawing is anywhere but in its rest pose."""
+        return not np.array_equal(self.state.positions, self.drawing.mesh.vertices)
+
+    @property
     def moving(self) -> bool:
         """Whether pins are still on their way, or the drawing around them is."""
         return self._settling > 0
@@ -94,7 +99,9 @@ class Session:
 
     def abort(self) -> None:
         """End the gesture and restore the state from before it, bit for bit."""
+        settling = self._settling if self.history.unchanged(self.state) else 0
         self._restore(self.history.abort())
+        self._settling = settling
         self._record("abort")
 
     def undo(self) -> None:
@@ -143,14 +150,13 @@ class Session:
         for pin_id in targets:
             if pin_id not in known:
                 raise InputError(f"targets: expected ids of pins {sorted(known)}, got {pin_id}")
-        as_points(list(targets.values()), "targets", len(targets))
+        places = dict(zip(targets, as_points(list(targets.values()), "targets", len(targets)), strict=True))
         pins = tuple(
-            replace(pin, target=np.array(targets[pin.id])) if pin.id in targets else pin
-            for pin in self.state.pins
+            replace(pin, target=places[pin.id]) if pin.id in places else pin for pin in self.state.pins
         )
         self._set_state(replace(self.state, pins=pins))
         self._settling = MOST_SETTLING
-        self._record("targets", targets={str(pin_id): list(at) for pin_id, at in targets.items()})
+        self._record("targets", targets={str(pin_id): at.tolist() for pin_id, at in places.items()})
 
     def set_settings(self, settings: Settings) -> None:
         """Bend differently from now on; moves nothing. Raises InputError, and then nothing has changed."""

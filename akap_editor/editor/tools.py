@@ -97,7 +97,7 @@ class PointingPin(Tool):
         self._toggle = event.shift and self._was_selected
 
     def move(self, event: PointerEvent) -> None:
-        if distance(event.position, self.start) >= DRAG_DISTANCE:
+        if distance(event.position, self.start) >= DRAG_DISTANCE * self.editor.ui_scale:
             drag = DraggingPin(self.editor, self.start, self._selection_before, self.is_new)
             self.editor.enter(drag)
             drag.move(event)
@@ -172,7 +172,7 @@ class PointingCanvas(Tool):
         self.start, self._adds = event.position, event.shift
 
     def move(self, event: PointerEvent) -> None:
-        if distance(event.position, self.start) >= DRAG_DISTANCE:
+        if distance(event.position, self.start) >= DRAG_DISTANCE * self.editor.ui_scale:
             band = RubberBand(self.editor, self.start, self._adds)
             self.editor.enter(band)
             band.move(event)
@@ -221,11 +221,12 @@ class Panning(Tool):
 
     def __init__(self, editor: "Editor", event: PointerEvent) -> None:
         super().__init__(editor)
-        self._button, self._before, self._start = event.button, editor.camera, event.position
+        self._button, self._before, self._last = event.button, editor.camera, event.position
 
     def move(self, event: PointerEvent) -> None:
-        dx, dy = event.position[0] - self._start[0], event.position[1] - self._start[1]
-        self.editor.camera = self._before.panned(dx, dy)
+        dx, dy = event.position[0] - self._last[0], event.position[1] - self._last[1]
+        self.editor.camera = self.editor.camera.panned(dx, dy)
+        self._last = event.position
 
     def release(self, event: PointerEvent) -> None:
         if event.button == self._button:

@@ -19,14 +19,17 @@ def _array(value: Any, name: str) -> NDArray[Any]:
         raise InputError(f"{name}: expected an array of numbers, got {type(value).__name__}") from error
 
 
-def as_points(value: ArrayLike, name: str, count: int | None = None) -> Floats:
-    """``value`` as a finite (n, 2) float64 array; n must equal ``count`` where given. Raises InputError."""
+def as_points(value: ArrayLike, name: str, count: int | None = None, columns: int = 2) -> Floats:
+    """A copy of ``value`` as a finite (n, columns) float64 array; n must equal ``count`` where given.
+
+    Raises InputError on a wrong shape, a dtype that is not a real one, or NaN and infinity.
+    """
     array = _array(value, name)
     rows = "n" if count is None else str(count)
     if array.size == 0 and count in (None, 0):
-        array = array.reshape(0, 2)
-    if array.ndim != 2 or array.shape[1] != 2 or (count is not None and len(array) != count):
-        raise InputError(f"{name}: expected shape ({rows}, 2), got {array.shape}")
+        array = array.reshape(0, columns)
+    if array.ndim != 2 or array.shape[1] != columns or (count is not None and len(array) != count):
+        raise InputError(f"{name}: expected shape ({rows}, {columns}), got {array.shape}")
     if array.dtype.kind not in "fiu":
         raise InputError(f"{name}: expected real numbers, got dtype {array.dtype}")
     array = array.astype(np.float64)
@@ -53,6 +56,13 @@ def as_indices(value: ArrayLike, name: str, columns: int | None, limit: int) -> 
         bad = int(array.min() if array.min() < 0 else array.max())
         raise InputError(f"{name}: expected indices from 0 to {limit - 1}, got {bad}")
     return array.astype(np.int32)
+
+
+def as_number(value: Any, name: str, low: float, high: float) -> float:
+    """``value`` as a float from ``low`` to ``high``. Raises InputError."""
+    if not isinstance(value, (int, float, np.integer, np.floating)) or not low <= value <= high:
+        raise InputError(f"{name}: expected a number from {low:g} to {high:g}, got {value!r}")
+    return float(value)
 
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:

@@ -14,8 +14,8 @@ from .operators import jacobians
 class Distortion:
     """Area-weighted means over the faces of σ1 σ2 + 1/(σ1 σ2) and of σ1/σ2 + σ2/σ1; 2 is none.
 
-    area, angle: E_area and E_angle (inf where a face has collapsed); flipped: number of faces with a
-    negative determinant, whose singular values count by their size; face_area, face_angle: (m,) per face.
+    area, angle: E_area and E_angle (inf where a face has collapsed); flipped: number of faces without a positive
+    determinant, whose singular values count by their size; face_area, face_angle: (m,) per face.
     """
 
     area: float
@@ -26,15 +26,15 @@ class Distortion:
 
 
 def distortion(mesh: TriMesh, positions: ArrayLike) -> Distortion:
-    """Distortion of the map from the rest pose to ``positions`` (n, 2). Raises InputError on a wrong shape."""
+    """Distortion of the map from the rest pose to ``positions`` (n, 2). Raises InputError."""
     pose = as_points(positions, "positions", len(mesh.vertices))
     jacobian = jacobians(mesh, pose)
     determinant = np.linalg.det(jacobian)
-    with np.errstate(divide="ignore", over="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         size = np.abs(determinant)
         face_area = size + 1.0 / size
         # σ1/σ2 + σ2/σ1 = (σ1² + σ2²) / (σ1 σ2) = ‖J‖² / |det J|
-        face_angle = (jacobian**2).sum(axis=(1, 2)) / size
+        face_angle = np.where(size > 0, (jacobian**2).sum(axis=(1, 2)) / size, np.inf)
     weights = mesh.rest_areas / mesh.rest_areas.sum()
     return Distortion(
         area=float(weights @ face_area),

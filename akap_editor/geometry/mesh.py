@@ -4,12 +4,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
 from .checks import Floats, Ints, as_indices, as_points, frozen
+
+_ROUNDING = 1e-12  # share by which a point may lie beyond a face and still be on it
 
 
 def signed_areas(positions: Floats, faces: Ints) -> Floats:
@@ -32,11 +34,9 @@ class MeshPoints:
 
     def __post_init__(self) -> None:
         faces = as_indices(self.faces, "faces", None, np.iinfo(np.int32).max)
-        weights = np.array(self.weights, dtype=np.float64).reshape(-1, 3)
-        if len(weights) != len(faces):
-            raise InputError(f"weights: expected shape ({len(faces)}, 3), got {np.shape(self.weights)}")
-        if not np.isfinite(weights).all() or not np.allclose(weights.sum(axis=1), 1.0, atol=1e-9):
-            raise InputError("weights: expected finite barycentric weights that sum to 1 in each row")
+        weights = as_points(self.weights, "weights", len(faces), columns=3)
+        if not np.allclose(weights.sum(axis=1), 1.0, atol=1e-9):
+            raise InputError("weights: expected barycentric weights that sum to 1 in each row")
         object.__setattr__(self, "faces", frozen(faces))
         object.__setattr__(self, "weights", frozen(weights))
 
@@ -48,8 +48,9 @@ class MeshPoints:
 class TriMesh:
     """A triangle mesh in drawing units (image pixels, x right, y down, origin at the top left corner).
 
-    vertices: (n, 2) float64; faces: (m, 3) int32, every signed area positive, every vertex used, no edge in
-    more than two faces, no vertex twice. Arrays are read-only. Raises InputError where that does not hold.
+    vertices: (n, 2) float64, every one used, none twice; faces: (m, 3) int32, every signed area positive, at
+    most one on each side of an edge. Parts that touch share an edge: in a single point they could turn about
+    it freely. Arrays are read-only. Raises InputError where that does not hold.
     """
 
     vertices: Floats
@@ -63,8 +64,8 @@ class TriMesh:
         areas = signed_areas(vertices, faces)
         if areas.min() <= 0:
             worst = int(np.argmin(areas))
-            kind = "has no area" if areas[worst] == 0 else "is flipped"
-            raise InputError(f"faces: expected positive signed areas, but face {worst} {kind} ({areas[worst]:g})")
+            kind = "has no area" if areas[worst] == 0 else f"is flipped ({areas[worst]:g})"
+            raise InputError(f"faces: expected positive signed areas, but face {worst} {kind}")
         unused = np.setdiff1d(np.arange(len(vertices)), faces)
         if len(unused):
             raise InputError(f"vertices: expected each to belong to a face, but vertex {unused[0]} does not")
@@ -75,9 +76,20 @@ class TriMesh:
             raise InputError(f"vertices: {order[first]} and {order[first + 1]} are at the same place")
         object.__setattr__(self, "vertices", frozen(vertices))
         object.__setattr__(self, "faces", frozen(faces))
-        if self._edge_counts[1].max() > 2:
-            edge = self.edges[int(np.argmax(self._edge_counts[1]))]
-            raise InputError(f"faces: edge {edge.tolist()} belongs to more than two faces")
+        self._check_edges()
+
+    def _check_edges(self) -> None:
+        n = len(self.vertices)
+        directed, counts = np.unique(self._half_edges.astype(np.int64) @ [n, 1], return_counts=True)
+        if counts.max() > 1:
+            edge = sorted(divmod(int(directed[np.argmax(counts)]), n))
+            raise InputError(f"faces: edge {edge} has two faces on one side, expected one face on each side")
+        leaving = np.bincount(self._boundary_half_edges[:, 0])
+        if leaving.max(initial=0) > 1:
+            raise InputError(
+                f"faces: expected parts to meet along edges, but at vertex {int(np.argmax(leaving))} "
+                "they meet in one point only"
+            )
 
     @cached_property
     def _half_edges(self) -> Ints:
@@ -85,35 +97,32 @@ class TriMesh:
         return self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
 
     @cached_property
-    def _edge_counts(self) -> tuple[Ints, Ints]:
-        edges, counts = np.unique(np.sort(self._half_edges, axis=1), axis=0, return_counts=True)
-        return frozen(edges.astype(np.int32)), counts
+    def _boundary_half_edges(self) -> Ints:
+        """(b, 2) directed edges without a face on their other side."""
+        _, inverse, counts = np.unique(self._edge_keys, return_inverse=True, return_counts=True)
+        return self._half_edges[counts[inverse] == 1]
 
-    @property
+    @cached_property
+    def _edge_keys(self) -> NDArray[np.int64]:
+        """(3m,) one number for each edge, the same for both its directions."""
+        return np.sort(self._half_edges, axis=1).astype(np.int64) @ [len(self.vertices), 1]
+
+    @cached_property
     def edges(self) -> Ints:
         """(e, 2) int32, each edge once, smaller index first."""
-        return self._edge_counts[0]
+        keys = np.unique(self._edge_keys)
+        return frozen(np.stack(np.divmod(keys, len(self.vertices)), axis=1).astype(np.int32))
 
     @cached_property
     def boundary_loops(self) -> tuple[Ints, ...]:
         """Closed loops of boundary vertices, outer contours and holes alike, each (q,) int32."""
-        half = self._half_edges
-        key = np.sort(half, axis=1).astype(np.int64) @ [len(self.vertices), 1]
-        _, inverse, counts = np.unique(key, return_inverse=True, return_counts=True)
-        following: dict[int, list[int]] = {}
-        for a, b in half[counts[inverse] == 1].tolist():
-            following.setdefault(a, []).append(b)
+        following: dict[int, int] = dict(self._boundary_half_edges.tolist())
         loops = []
         while following:
-            start = next(iter(following))
-            loop, at = [], start
+            loop, at = [], next(iter(following))
             while at in following:
                 loop.append(at)
-                successors = following[at]
-                at_next = successors.pop()
-                if not successors:
-                    del following[at]
-                at = at_next
+                at = following.pop(at)
             loops.append(frozen(np.array(loop, dtype=np.int32)))
         return tuple(loops)
 
@@ -135,36 +144,38 @@ class TriMesh:
         """(m,) areas of the rest faces, square pixels."""
         return frozen(signed_areas(self.vertices, self.faces))
 
-    def find(self, point: ArrayLike, positions: Floats | None = None) -> MeshPoints | None:
+    def find(self, point: ArrayLike, positions: ArrayLike | None = None) -> MeshPoints | None:
         """The point of the drawing seen at ``point`` in the pose ``positions`` (default: at rest), or None.
 
         Where faces overlap, the one drawn last (highest index) is seen.
         """
-        q = as_points(np.reshape(np.asarray(point, dtype=np.float64), (1, 2)), "point")[0]
-        pose = self.vertices if positions is None else positions
+        q = as_points([point], "point", 1)[0]  # type: ignore[list-item]
+        return self._find(q, self._pose(positions))
+
+    def _pose(self, positions: ArrayLike | None) -> Floats:
+        return self.vertices if positions is None else as_points(positions, "positions", len(self.vertices))
+
+    def _find(self, point: Floats, pose: Floats) -> MeshPoints | None:
         corners = pose[self.faces]
-        inside = np.flatnonzero(
-            ((corners.min(axis=1) <= q) & (corners.max(axis=1) >= q)).all(axis=1)
-        )
-        if not len(inside):
-            return None
-        weights = barycentric(corners[inside], q)
-        hits = np.flatnonzero(weights.min(axis=1) >= -1e-12)
+        margin = _ROUNDING * np.abs(point).max()
+        near = (corners.min(axis=1) <= point + margin) & (corners.max(axis=1) >= point - margin)
+        inside = np.flatnonzero(near.all(axis=1))
+        weights = barycentric(corners[inside], point)
+        hits = np.flatnonzero(weights.min(axis=1) >= -_ROUNDING)
         if not len(hits):
             return None
-        return MeshPoints(np.array([inside[hits[-1]]], dtype=np.int32), weights[hits[-1:]])
+        return MeshPoints(inside[hits[-1:]], weights[hits[-1:]])
 
-    def locate(self, points: ArrayLike, positions: Floats | None = None) -> MeshPoints:
+    def locate(self, points: ArrayLike, positions: ArrayLike | None = None) -> MeshPoints:
         """`MeshPoints` of ``points`` (k, 2) in the pose ``positions`` (n, 2) (default: at rest).
 
         Raises InputError for a point outside the mesh.
         """
-        wanted = as_points(points, "points")
-        found = [self.find(q, positions) for q in wanted]
+        wanted, pose = as_points(points, "points"), self._pose(positions)
         faces, weights = [], []
-        for index, (q, hit) in enumerate(zip(wanted, found, strict=True)):
+        for index, q in enumerate(wanted):
+            hit = self._find(q, pose)
             if hit is None:
-                pose = self.vertices if positions is None else positions
                 near = pose[int(np.argmin(((pose - q) ** 2).sum(axis=1)))]
                 raise InputError(
                     f"points: point {index} at ({q[0]:g}, {q[1]:g}) lies outside the drawing; "
@@ -175,7 +186,11 @@ class TriMesh:
         return MeshPoints(np.array(faces, dtype=np.int32), np.array(weights).reshape(-1, 3))
 
     def evaluate(self, points: MeshPoints, values: Floats) -> Floats:
-        """Values at ``points`` of a function given at the vertices, (n, 2) to (k, 2): e.g. where pins are."""
+        """Values at ``points`` of a function given at the vertices, (n, 2) to (k, 2): e.g. where pins are.
+
+        Raises InputError for points of another mesh.
+        """
+        as_indices(points.faces, "points.faces", None, len(self.faces))
         return np.einsum("kc,kcd->kd", points.weights, values[self.faces[points.faces]])
 
 
@@ -183,9 +198,9 @@ def barycentric(corners: Floats, point: Floats) -> Floats:
     """Barycentric weights (m, 3) of ``point`` (2,) in each of the triangles ``corners`` (m, 3, 2)."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     u, v, w = b - a, c - a, point - a
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         scale = 1.0 / (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
         second = (w[:, 0] * v[:, 1] - w[:, 1] * v[:, 0]) * scale
         third = (u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]) * scale
-    weights = np.stack([1.0 - second - third, second, third], axis=1)
+        weights = np.stack([1.0 - second - third, second, third], axis=1)
     return np.where(np.isfinite(weights), weights, -1.0)

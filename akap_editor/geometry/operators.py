@@ -24,7 +24,7 @@ def hat_gradients(positions: Floats, faces: Ints) -> tuple[Floats, Floats, Float
     """Gradients of the three hat functions on each face: ∂x (m, 3), ∂y (m, 3), and the face areas (m,).
 
     The gradient of a hat function is the opposite edge turned by 90° over twice the area (Botsch et al. 2010,
-    chapter 3).
+    chapter 3). Areas of flipped faces are negative.
     """
     areas = signed_areas(positions, faces)
     x, y = positions[:, 0][faces], positions[:, 1][faces]
@@ -54,12 +54,12 @@ def jacobians(mesh: TriMesh, positions: Floats) -> Floats:
 
 
 def killing_energy(positions: Floats, faces: Ints, field: Floats) -> float:
-    """∫‖J + Jᵀ‖² of a vector field (n, 2) on the mesh at ``positions`` (paper, eq. 2): 0 for rigid motions."""
+    """∫‖J + Jᵀ‖² of a vector field (n, 2) on a mesh at ``positions`` (paper, eq. 2): 0 for rigid motions."""
     dx, dy, areas = hat_gradients(positions, faces)
     u, v = field[:, 0][faces], field[:, 1][faces]
     stretch_x, stretch_y = (dx * u).sum(axis=1), (dy * v).sum(axis=1)
     shear = (dy * u).sum(axis=1) + (dx * v).sum(axis=1)
-    return float(areas @ (4 * stretch_x**2 + 4 * stretch_y**2 + 2 * shear**2))
+    return float(np.abs(areas) @ (4 * stretch_x**2 + 4 * stretch_y**2 + 2 * shear**2))
 
 
 # The lower triangle of a face's 6×6 matrix, degrees of freedom in the order x0 y0 x1 y1 x2 y2.
@@ -83,7 +83,7 @@ def killing_elements(positions: Floats, faces: Ints) -> Floats:
     split into ∂x and ∂y: the whole stacked G would penalize rotations.
     """
     dx, dy, areas = hat_gradients(positions, faces)
-    root = np.sqrt(2 * areas)[:, None]
+    root = np.sqrt(2 * np.abs(areas))[:, None]
     gx, gy = dx * root, dy * root
     m = len(faces)
     xx = gx[:, :, None] * gx[:, None, :]

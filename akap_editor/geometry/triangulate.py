@@ -1,6 +1,7 @@
 """From polygons to a quality mesh, by Triangle (Shewchuk 1996)."""
 
 import atexit
+import contextlib
 import subprocess
 import sys
 import threading
@@ -9,9 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import shapely
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 
 from ..errors import InputError
-from .checks import Floats, Ints
+from .checks import Floats, Ints, as_number
 from .mesh import TriMesh, signed_areas
 from .outline import Outline
 from .triangle_worker import read_message, write_message
@@ -29,13 +32,8 @@ def triangulate(parts: Sequence[Outline], vertices: int = 2000) -> TriMesh:
     parts: polygons that do not touch one another; vertices: the wanted number, reached within a few percent
     unless the outline alone needs more. Raises InputError on unusable outlines, or where Triangle fails.
     """
-    if not FEWEST <= vertices <= MOST:
-        raise InputError(f"vertices: expected a number from {FEWEST} to {MOST}, got {vertices}")
-    if not parts:
-        raise InputError("outlines: expected at least one part, got none")
-    shape = shapely.union_all([part.polygon for part in parts])
-    if not shape.is_valid or shape.is_empty:
-        raise InputError(f"outlines: expected simple polygons, got {shapely.is_valid_reason(shape)}")
+    as_number(vertices, "vertices", FEWEST, MOST)
+    shape = _union(parts)
     area = shape.area / (2.0 * vertices)
     best: tuple[Floats, Ints] | None = None
     # The count falls nearly as 1/area; where the outline alone needs more vertices, no area will do.
@@ -53,13 +51,47 @@ def triangulate(parts: Sequence[Outline], vertices: int = 2000) -> TriMesh:
     return _mesh(*best)
 
 
+def _union(parts: Sequence[Outline]) -> shapely.Geometry:
+    """The parts as one shape. Raises InputError where they are not simple or not apart."""
+    if not parts:
+        raise InputError("outlines: expected at least one part, got none")
+    polygons = [part.polygon for part in parts]
+    for polygon in polygons:
+        if not polygon.is_valid:
+            raise InputError(f"outlines: expected simple polygons, got {shapely.is_valid_reason(polygon)}")
+    shape = shapely.union_all(polygons)
+    rings = shapely.get_rings(polygons)
+    meetings = shapely.STRtree(rings).query(rings, predicate="intersects")
+    if meetings.shape[1] > len(rings) or len(shapely.get_parts(shape)) < len(parts):
+        raise InputError("outlines: expected parts and holes apart from one another, got some that touch or overlap")
+    return shape
+
+
 def _mesh(points: Floats, faces: Ints) -> TriMesh:
     """Faces turned to positive area, vertices that no face uses left out."""
     used, faces = np.unique(faces, return_inverse=True)
     points, faces = points[used], faces.reshape(-1, 3).astype(np.int32)
     flipped = signed_areas(points, faces) < 0
     faces[flipped] = faces[flipped][:, ::-1]
-    return TriMesh(points, faces)
+    return TriMesh(points, faces[_limbs_last(TriMesh(points, faces))])
+
+
+def _limbs_last(mesh: TriMesh) -> Ints:
+    """Order of the faces by their way through the drawing from the middle of their part.
+
+    Faces are drawn in their order: where a limb is bent over the body, it passes in front as a whole, which an
+    order without meaning would not give.
+    """
+    i, j = mesh.edges.T
+    lengths = np.linalg.norm(mesh.vertices[i] - mesh.vertices[j], axis=1)
+    n = len(mesh.vertices)
+    middles = []
+    for label in range(int(mesh.component.max()) + 1):
+        part = np.flatnonzero(mesh.component == label)
+        away = mesh.vertices[part] - mesh.vertices[part].mean(axis=0)
+        middles.append(part[np.argmin((away**2).sum(axis=1))])
+    way = dijkstra(csr_array((lengths, (i, j)), shape=(n, n)), directed=False, indices=middles, min_only=True)
+    return np.argsort(way[mesh.faces].mean(axis=1), kind="stable")
 
 
 def _pslg(parts: Sequence[Outline], shape: shapely.Geometry, edge: float) -> dict[str, np.ndarray]:
@@ -73,9 +105,6 @@ def _pslg(parts: Sequence[Outline], shape: shapely.Geometry, edge: float) -> dic
         points.append(dense)
         segments.append(np.stack([index, np.roll(index, -1)], axis=1) + at)
         at += len(dense)
-    vertices = np.concatenate(points)
-    if len(np.unique(vertices, axis=0)) < len(vertices):
-        raise InputError("outlines: expected no point twice, got rings that touch or repeat a point")
     holes = []
     for part in parts:
         for hole in part.holes:
@@ -84,7 +113,7 @@ def _pslg(parts: Sequence[Outline], shape: shapely.Geometry, edge: float) -> dic
                     inside = gap.representative_point()
                     holes.append((inside.x, inside.y))
     return {
-        "vertices": vertices,
+        "vertices": np.concatenate(points),
         "segments": np.concatenate(segments).astype(np.int32),
         "holes": np.array(holes, dtype=np.float64).reshape(-1, 2),
     }
@@ -141,7 +170,8 @@ class _Worker:
             process.wait()
             for pipe in (process.stdin, process.stdout):
                 if pipe is not None:
-                    pipe.close()
+                    with contextlib.suppress(OSError):  # what a dead child has not read
+                        pipe.close()
 
 
 _worker = _Worker()

@@ -48,11 +48,7 @@ def decode_image(data: bytes, formats: tuple[str, ...] = FORMATS) -> Picture:
         try:
             picture = Image.open(BytesIO(data), formats=formats)
         except UnidentifiedImageError:
-            came = (
-                f"a damaged file or one of another kind, which begins with {data[:8]!r}"
-                if data
-                else "an empty file"
-            )
+            came = f"a damaged file or one of another kind (it begins with {data[:8]!r})"
             raise InputError(f"expected a {_either(formats)} picture, got {came}") from None
         except Image.DecompressionBombError as error:
             raise InputError(f"{too_large} a much larger one") from error
@@ -63,9 +59,8 @@ def decode_image(data: bytes, formats: tuple[str, ...] = FORMATS) -> Picture:
         try:
             return _rgba(picture, bit_depth=data[24] if picture.format == "PNG" else 8)
         except Exception as error:
-            raise InputError(
-                f"expected a whole {picture.format} picture, got a damaged or truncated one"
-            ) from error
+            kind = picture.format
+            raise InputError(f"expected a whole {kind} picture, got a damaged or truncated one") from error
 
 
 def _either(names: Sequence[str]) -> str:
@@ -149,7 +144,7 @@ def write_animation(path: str | Path, frames: Iterable[Picture], fps: float) -> 
     images = _collect(frames, max_side, suffix)
     try:
         data = encode(images, fps)
-    except (OSError, RuntimeError, ValueError, struct.error) as error:
+    except (OSError, OverflowError, RuntimeError, ValueError) as error:
         raise InputError(f"cannot write {path}: the encoder says {str(error)!r}") from error
     write_atomic(path, data)
 

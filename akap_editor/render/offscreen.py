@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..editor.document import Drawing
-from ..errors import DisplayError, InputError
+from ..errors import GraphicsError, InputError
 from ..geometry.checks import as_points
 from .renderer import Background, Color, Renderer, View, load_program
 
@@ -40,12 +40,12 @@ def frame_box(drawing: Drawing, poses: Sequence[ArrayLike]) -> Box:
 
 
 def standalone_context() -> moderngl.Context:
-    """An OpenGL 3.3 context that needs no window and no display server. Raises DisplayError."""
+    """An OpenGL 3.3 context that needs no window and no display server. Raises GraphicsError."""
     backend: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
     try:
         return moderngl.create_context(standalone=True, require=330, **backend)
     except Exception as error:  # moderngl raises nothing more specific
-        raise DisplayError(
+        raise GraphicsError(
             "OpenGL 3.3 without a window is not available: on Debian and Ubuntu, install the packages "
             f"libegl1 and libgl1 ({error})"
         ) from error
@@ -89,7 +89,7 @@ class OffscreenRenderer:
         positions: (n, 2) drawing units; box: the part of the drawing plane to show, by default `frame_box` of
         the pose; scale: pixels per drawing unit, the size is rounded up; background: (r, g, b) from 0 to 1,
         or None for transparent. A drawing at rest comes out as its picture was, within what its mesh covers.
-        Raises InputError for a bad argument or too large a picture, DisplayError without OpenGL 3.3.
+        Raises InputError for a bad argument or too large a picture, GraphicsError without OpenGL 3.3.
         """
         pose = as_points(positions, "positions", len(drawing.mesh.vertices))
         x0, y0, x1, y1 = frame_box(drawing, [pose]) if box is None else box

@@ -14,7 +14,6 @@ from akap_editor.geometry.mesh import TriMesh
 from akap_editor.render.offscreen import OffscreenRenderer, standalone_context
 from akap_editor.render.renderer import Renderer
 
-ROOT = Path(__file__).resolve().parents[2]
 CARTOONS = ("noto/cat.png", "noto/gecko.png", "noto/dancer.png")
 
 
@@ -97,8 +96,5 @@ def disc() -> NDArray[np.uint8]:
 
 
 @pytest.fixture(params=CARTOONS)
-def cartoon(request: pytest.FixtureRequest) -> NDArray[np.uint8]:
-    path = ROOT.parent / "shared" / "data" / request.param
-    if not path.exists():
-        pytest.skip(f"the cartoon {request.param} is not on this machine")
-    return np.asarray(Image.open(path).convert("RGBA"))
+def cartoon(request: pytest.FixtureRequest, shared_data: Path) -> NDArray[np.uint8]:
+    return np.asarray(Image.open(shared_data / request.param).convert("RGBA"))

@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 
 from akap_editor.editor.document import Drawing, make_drawing
-from akap_editor.errors import DisplayError, InputError
+from akap_editor.errors import GraphicsError, InputError
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.render.offscreen import MAX_SIZE, OffscreenRenderer, frame_box, standalone_context
 from akap_editor.resources import bundled_drawings
@@ -23,7 +23,7 @@ def without_hidden_color(image):
     return np.where(image[..., 3:] > 0, image, 0)
 
 
-# --- at rest -------------------------------------------------------------------------------------------------
+# --- at rest ---
 
 
 def test_at_rest_noise_comes_back_bit_for_bit(offscreen, sheet, noise):
@@ -60,12 +60,12 @@ def assert_comes_back(offscreen, image):
     assert not result[~visible].any()
 
 
-# --- box and scale -------------------------------------------------------------------------------------------
+# --- box and scale ---
 
 
 def test_translated_pose_is_the_picture_shifted_exactly(offscreen, sheet, noise):
     drawing = sheet(noise)
-    result = offscreen.render(drawing, drawing.mesh.vertices + [10, 5])
+    result = offscreen.render(drawing, drawing.mesh.vertices + np.array([10, 5]))
     assert result.shape == (48 + 5, 64 + 10, 4)
     assert np.array_equal(result[5:, 10:], without_hidden_color(noise))
     assert not result[:5].any()
@@ -88,11 +88,12 @@ def test_quarter_turn_turns_the_pixels(offscreen, sheet, noise):
     assert np.array_equal(result, np.rot90(without_hidden_color(noise), -1))
 
 
-def test_half_scale_is_the_mean_of_four_premultiplied_pixels(offscreen, sheet, noise):
+@pytest.mark.parametrize("step", [2, 4, 16])
+def test_smaller_scale_is_the_mean_of_premultiplied_pixels(offscreen, sheet, noise, step):
     drawing = sheet(noise)
-    result = offscreen.render(drawing, drawing.mesh.vertices, scale=0.5)
-    expected = premultiplied(noise).reshape(24, 2, 32, 2, 4).mean(axis=(1, 3))
-    assert result.shape == (24, 32, 4)
+    result = offscreen.render(drawing, drawing.mesh.vertices, scale=1 / step)
+    expected = premultiplied(noise).reshape(48 // step, step, 64 // step, step, 4).mean(axis=(1, 3))
+    assert result.shape == expected.shape
     assert np.abs(premultiplied(result) - expected).max() <= 1
 
 
@@ -121,7 +122,15 @@ def test_a_soft_rim_keeps_its_color_at_any_scale(offscreen, sheet, disc, scale):
 
 
 @pytest.mark.parametrize(
-    ("scale", "size"), [(0.5, (32, 24)), (1.1, (71, 53)), (0.01, (1, 1)), (1e-9, (1, 1)), (3, (192, 144))]
+    ("scale", "size"),
+    [
+        (0.5, (32, 24)),
+        (1.1, (71, 53)),
+        (0.01, (1, 1)),
+        (1e-9, (1, 1)),
+        (3, (192, 144)),
+        (1.1 / 1.28, (55, 42)),
+    ],
 )
 def test_size_is_rounded_up(offscreen, sheet, noise, scale, size):
     drawing = sheet(noise)
@@ -134,11 +143,11 @@ def test_frame_box_holds_the_frame_and_all_poses(sheet, plain):
     rest = drawing.mesh.vertices
     assert frame_box(drawing, []) == (0, 0, 40, 30)
     assert frame_box(drawing, [rest / 2]) == (0, 0, 40, 30)
-    assert frame_box(drawing, [rest - 0.5, rest + [7.2, 0]]) == (-1, -1, 48, 30)
+    assert frame_box(drawing, [rest - 0.5, rest + np.array([7.2, 0])]) == (-1, -1, 48, 30)
     assert frame_box(drawing, [rest + 1e-9, rest - 1e-9]) == (0, 0, 40, 30)
 
 
-# --- background and order --------------------------------------------------------------------------------------
+# --- background and order ---
 
 
 def test_background_is_composited_and_opaque(offscreen, sheet, noise):
@@ -152,7 +161,7 @@ def test_background_is_composited_and_opaque(offscreen, sheet, noise):
 
 
 def test_later_faces_lie_on_top(offscreen):
-    """Left half red, right half green and half transparent, each on its own square; posed one upon the other."""
+    """Left half red, right half green and half transparent; posed one upon the other."""
     image = np.zeros((8, 16, 4), dtype=np.uint8)
     image[:, :8] = (255, 0, 0, 255)
     image[:, 8:] = (0, 255, 0, 128)
@@ -171,14 +180,14 @@ def test_later_faces_lie_on_top(offscreen):
 def test_a_new_pose_a_new_drawing_and_back(offscreen, sheet, noise, disc):
     first, second = sheet(noise), sheet(disc)
     before = offscreen.render(first, first.mesh.vertices)
-    moved = offscreen.render(first, first.mesh.vertices + [3, 0], box=(0, 0, 64, 48))
+    moved = offscreen.render(first, first.mesh.vertices + np.array([3, 0]), box=(0, 0, 64, 48))
     assert np.array_equal(moved[:, 3:], before[:, :-3])
     other = offscreen.render(second, second.mesh.vertices)
     assert np.array_equal(other, without_hidden_color(disc))
     assert np.array_equal(offscreen.render(first, first.mesh.vertices), before)
 
 
-# --- errors and contexts ---------------------------------------------------------------------------------------
+# --- errors and contexts ---
 
 
 def test_errors_say_what_was_expected_and_what_came(offscreen, sheet, noise):
@@ -232,5 +241,7 @@ def test_without_opengl_one_sentence_names_the_packages(monkeypatch):
         raise Exception("libEGL.so not loaded")
 
     monkeypatch.setattr(moderngl, "create_context", fail)
-    with pytest.raises(DisplayError, match=r"install the packages libegl1 and libgl1 \(libEGL.so not loaded\)$"):
+    with pytest.raises(
+        GraphicsError, match=r"install the packages libegl1 and libgl1 \(libEGL.so not loaded\)$"
+    ):
         standalone_context()

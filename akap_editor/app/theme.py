@@ -1,0 +1,107 @@
+"""The look: one dark theme, one accent color, sizes that follow the monitor's scale."""
+
+from pathlib import Path
+
+import imgui_bundle
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+Rgba = tuple[float, float, float, float]
+
+FONT_SIZE = 15.0
+
+
+def _hex(color: str, alpha: float = 1.0) -> Rgba:
+    red, green, blue = (int(color[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    return red, green, blue, alpha
+
+
+ACCENT = _hex("#FFB43A")
+TEXT = _hex("#E8E9EC")
+QUIET = _hex("#A3A7B0")
+PANEL = _hex("#212328")
+DARK = _hex("#18191C")
+POPUP = _hex("#26282E")
+FRAME = _hex("#2E3138")
+HOVER = _hex("#3A3E47")
+ACTIVE = _hex("#464B56")
+LINE = _hex("#34373E")
+
+_COLORS: dict[imgui.Col_, Rgba] = {
+    imgui.Col_.text: TEXT,
+    imgui.Col_.text_disabled: _hex("#7B7F88"),
+    imgui.Col_.window_bg: PANEL,
+    imgui.Col_.child_bg: (0, 0, 0, 0),
+    imgui.Col_.popup_bg: POPUP,
+    imgui.Col_.border: LINE,
+    imgui.Col_.frame_bg: FRAME,
+    imgui.Col_.frame_bg_hovered: HOVER,
+    imgui.Col_.frame_bg_active: ACTIVE,
+    imgui.Col_.title_bg: POPUP,
+    imgui.Col_.title_bg_active: POPUP,
+    imgui.Col_.title_bg_collapsed: POPUP,
+    imgui.Col_.menu_bar_bg: PANEL,
+    imgui.Col_.scrollbar_bg: (0, 0, 0, 0),
+    imgui.Col_.scrollbar_grab: FRAME,
+    imgui.Col_.scrollbar_grab_hovered: HOVER,
+    imgui.Col_.scrollbar_grab_active: ACTIVE,
+    imgui.Col_.check_mark: DARK,
+    imgui.Col_.checkbox_selected_bg: ACCENT,
+    imgui.Col_.slider_grab: ACCENT,
+    imgui.Col_.slider_grab_active: ACCENT,
+    imgui.Col_.button: FRAME,
+    imgui.Col_.button_hovered: HOVER,
+    imgui.Col_.button_active: ACTIVE,
+    imgui.Col_.header: _hex("#FFB43A", 0.20),
+    imgui.Col_.header_hovered: HOVER,
+    imgui.Col_.header_active: ACTIVE,
+    imgui.Col_.separator: LINE,
+    imgui.Col_.separator_hovered: LINE,
+    imgui.Col_.separator_active: LINE,
+    imgui.Col_.text_selected_bg: _hex("#FFB43A", 0.35),
+    imgui.Col_.nav_cursor: ACCENT,
+    imgui.Col_.modal_window_dim_bg: (0, 0, 0, 0.5),
+    imgui.Col_.input_text_cursor: ACCENT,
+}
+
+
+def load_fonts() -> None:
+    """Roboto for text, Font Awesome for icons; both come with imgui-bundle."""
+    folder = Path(imgui_bundle.__path__[0]) / "assets" / "fonts"
+    fonts = imgui.get_io().fonts
+    fonts.add_font_from_file_ttf(str(folder / "Roboto" / "Roboto-Regular.ttf"), FONT_SIZE)
+    icons = imgui.ImFontConfig()
+    icons.merge_mode = True
+    icons.glyph_offset = ImVec2(0, 1)
+    fonts.add_font_from_file_ttf(str(folder / "Font_Awesome_6_Free-Solid-900.otf"), FONT_SIZE - 1, icons)
+
+
+def apply(scale: float) -> None:
+    """Set the style for a monitor where one point of the design is ``scale`` points of the window."""
+    style = imgui.Style()
+    imgui.style_colors_dark(style)
+    for name, color in _COLORS.items():
+        style.set_color_(name, ImVec4(*color))
+    style.window_padding = ImVec2(14, 12)
+    style.frame_padding = ImVec2(9, 5)
+    style.item_spacing = ImVec2(8, 8)
+    style.item_inner_spacing = ImVec2(8, 6)
+    style.window_rounding = 8
+    style.child_rounding = 6
+    style.frame_rounding = 5
+    style.popup_rounding = 6
+    style.grab_rounding = 5
+    style.scrollbar_rounding = 6
+    style.scrollbar_size = 11
+    style.window_border_size = 1
+    style.popup_border_size = 1
+    style.frame_border_size = 0
+    style.window_title_align = ImVec2(0.0, 0.5)
+    style.scale_all_sizes(scale)
+    style.font_size_base = FONT_SIZE
+    style.font_scale_dpi = scale
+    imgui.get_current_context().style = style
+
+
+def packed(color: Rgba, alpha: float = 1.0) -> int:
+    """A color for draw lists, its opacity times ``alpha``."""
+    return int(imgui.get_color_u32(ImVec4(*color[:3], color[3] * alpha)))

@@ -1,0 +1,287 @@
+"""The window and its loop: GLFW, OpenGL and Dear ImGui around the editor."""
+
+# imgui_bundle first: its import makes pyGLFW load the very libglfw that its own backend is linked to.
+from imgui_bundle import imgui  # isort: skip
+import ctypes
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import glfw
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from ..editor.document import Document
+from ..errors import AkapError, DisplayError, GraphicsError
+from ..render.offscreen import OffscreenRenderer
+from ..render.renderer import CANVAS, Background, Renderer
+from . import commands, panels, theme
+from .canvas import Canvas
+from .dialogs import Dialogs, has_native_dialogs
+from .workspace import Workspace
+
+SIZE = (1280, 800)
+SETTLE_FRAMES = 3  # ImGui needs so many frames after an event until everything stands where it belongs
+IDLE_SECONDS = 1.0
+
+
+def render_imgui() -> None:
+    """Close ImGui's frame; a function of its own, so that its Test Engine can put another in its place."""
+    imgui.render()
+
+
+class Window:
+    """The editor on the screen. Use as a context manager, or call `close` in the end.
+
+    null: GLFW's null platform with EGL, which needs no display server; hidden: no visible window;
+    scale: points per design point, by default what the monitor says; size: of the window, in points.
+    Raises DisplayError where there is no display, GraphicsError where there is no OpenGL 3.3.
+    """
+
+    def __init__(
+        self,
+        null: bool = False,
+        hidden: bool = False,
+        scale: float | None = None,
+        size: tuple[int, int] = SIZE,
+    ) -> None:
+        self.space = Workspace()
+        self.frames = 0
+        self.after_draw: list[Callable[[], None]] = []
+        self._scale_wanted, self._in_frame, self._focused = scale, False, False
+        self._awake = SETTLE_FRAMES
+        self._dropped: list[Path] = []
+        self._title = ""
+        self._handle = _create_window(null, hidden, size)
+        self.ctx = moderngl.create_context(require=330)
+        self.renderer = Renderer(self.ctx)
+        self.space.exporter = OffscreenRenderer(self.ctx)
+        # Callbacks only queue: an exception in one would come out of poll_events. ImGui uses none of these.
+        glfw.set_drop_callback(self._handle, self._on_drop)
+        glfw.set_window_refresh_callback(self._handle, lambda _: self._refresh())
+        glfw.set_window_content_scale_callback(self._handle, lambda *_: self._apply_scale())
+        glfw.set_window_close_callback(self._handle, self._on_close)
+        imgui.create_context()
+        io = imgui.get_io()
+        io.set_ini_filename("")
+        io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard
+        theme.load_fonts()
+        self._apply_scale()
+        imgui.backends.glfw_init_for_opengl(ctypes.cast(self._handle, ctypes.c_void_p).value, True)
+        imgui.backends.opengl3_init("#version 330")
+        self._canvas = Canvas()
+        self._dialogs = Dialogs(has_native_dialogs() and not null)
+
+    def __enter__(self) -> "Window":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free everything."""
+        self.space.exporter.__exit__()
+        self.renderer.release()
+        imgui.backends.opengl3_shutdown()
+        imgui.backends.glfw_shutdown()
+        imgui.destroy_context()
+        glfw.destroy_window(self._handle)
+        glfw.terminate()
+
+    # -- the loop --------------------------------------------------------------------------------------------
+
+    def run(self, document: Document | None = None) -> None:
+        """Show a document and stay until the window is closed."""
+        if document is not None:
+            self.frame()  # so that the canvas has its size before the drawing is fitted into it
+            self.space.show(document)
+        while not self.space.closing:
+            if self._busy:
+                glfw.poll_events()
+            else:
+                self._sleep()
+            if self._busy:
+                self._awake -= 1
+                if not self.frame():
+                    glfw.wait_events_timeout(0.25)  # minimised
+
+    @property
+    def _busy(self) -> bool:
+        space = self.space
+        return (
+            self._awake > 0
+            or space.editor.moving
+            or space.waiting
+            or self._dialogs.waiting
+            or bool(self._dropped)
+        )
+
+    def wake(self) -> None:
+        """Draw the next few frames, whatever happens."""
+        self._awake = SETTLE_FRAMES
+
+    def _sleep(self) -> None:
+        """Wait in the operating system until something happens."""
+        typing = imgui.get_io().want_text_input
+        limit = 0.4 if typing else IDLE_SECONDS  # a caret blinks
+        started = time.perf_counter()
+        glfw.wait_events_timeout(limit)
+        if time.perf_counter() - started < 0.98 * limit:
+            self.wake()
+        elif typing:
+            self._awake = 1
+
+    def frame(self) -> bool:
+        """Draw one frame; False where there is nothing to draw on."""
+        framebuffer = glfw.get_framebuffer_size(self._handle)
+        hidden = 0 in framebuffer or glfw.get_window_attrib(self._handle, glfw.ICONIFIED)
+        if self._in_frame or hidden:
+            return False
+        self._in_frame = True
+        try:
+            self._frame(framebuffer)
+        finally:
+            self._in_frame = False
+        return True
+
+    def _frame(self, framebuffer: tuple[int, int]) -> None:
+        imgui.backends.opengl3_new_frame()
+        imgui.backends.glfw_new_frame()
+        imgui.new_frame()
+        recovery = imgui.internal.ErrorRecoveryState()
+        imgui.internal.error_recovery_store_state(recovery)
+        try:
+            self._interface()
+        except AkapError as error:
+            self._recover(recovery, str(error))
+        except Exception:
+            self._recover(recovery, "")
+            self.space.editor.cancel()
+            imgui.end_frame()
+            raise
+        render_imgui()
+        self._draw(framebuffer)
+        imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
+        self.frames += 1
+        for action in self.after_draw:
+            action()
+        glfw.swap_buffers(self._handle)
+        self._update_title()
+        self.space.work()
+
+    def _interface(self) -> None:
+        space = self.space
+        self._watch_focus()
+        while self._dropped:
+            space.open_path(self._dropped.pop(0))
+        space.editor.canvas = panels.draw(space, self.scale)
+        self._dialogs.draw(space, self.scale)
+        modal = imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
+        if not imgui.get_io().want_text_input and not modal:
+            commands.run_pressed(space)
+        if not modal:
+            self._canvas.read_input(space)
+            self._canvas.choose_cursor(space)
+        space.editor.advance()
+        self._canvas.draw_overlay(space, self.scale)
+
+    def _recover(self, state: Any, message: str) -> None:
+        """Repair ImGui's stacks after an exception; the next frame would fail otherwise."""
+        io = imgui.get_io()
+        io.config_error_recovery_enable_assert = False
+        imgui.internal.error_recovery_try_to_recover_state(state)
+        io.config_error_recovery_enable_assert = True
+        self.space.error = message or self.space.error
+        self.wake()
+
+    def _draw(self, framebuffer: tuple[int, int]) -> None:
+        space = self.space
+        background = CANVAS if space.checker else Background(color=CANVAS.color)
+        document = space.document
+        if document is not None:
+            self.renderer.show(document.drawing, document.state.positions)
+        width, height = glfw.get_window_size(self._handle)
+        self.renderer.draw(
+            self.ctx.screen,
+            framebuffer,
+            space.editor.camera.view(width, height),
+            background=background,
+            mesh_lines=space.show_mesh,
+        )
+
+    # -- the window ------------------------------------------------------------------------------------------
+
+    @property
+    def scale(self) -> float:
+        """Points of the window per point of the design: 2 on a 200 % monitor, 1 on a Retina display."""
+        if self._scale_wanted is not None:
+            return self._scale_wanted
+        points, pixels = glfw.get_window_size(self._handle)[0], glfw.get_framebuffer_size(self._handle)[0]
+        content = glfw.get_window_content_scale(self._handle)[0]
+        return float(content * max(points, 1) / max(pixels, 1)) or 1.0
+
+    def screenshot(self) -> NDArray[np.uint8]:
+        """(h, w, 3) of the frame being drawn; to be called from `after_draw`."""
+        width, height = glfw.get_framebuffer_size(self._handle)
+        data = self.ctx.screen.read(viewport=(0, 0, width, height), components=3, alignment=1)
+        return np.frombuffer(data, dtype=np.uint8).reshape(height, width, 3)[::-1].copy()
+
+    def _apply_scale(self) -> None:
+        if imgui.get_current_context() is not None:
+            theme.apply(self.scale)
+            self.space.editor.ui_scale = self.scale
+            self.wake()
+
+    def _update_title(self) -> None:
+        if self._title != self.space.title:
+            self._title = self.space.title
+            glfw.set_window_title(self._handle, self._title)
+
+    def _watch_focus(self) -> None:
+        focused = bool(glfw.get_window_attrib(self._handle, glfw.FOCUSED))
+        if self._focused and not focused:
+            self.space.editor.cancel()
+        self._focused = focused
+
+    def _on_drop(self, _: Any, paths: list[str]) -> None:
+        self._dropped += [Path(path) for path in paths[:1]]
+        self.wake()
+
+    def _on_close(self, _: Any) -> None:
+        glfw.set_window_should_close(self._handle, False)
+        self.space.later(self.space.quit)
+
+    def _refresh(self) -> None:
+        """While a window is being resized, some systems call only this."""
+        self.wake()
+        self.frame()
+
+
+def _create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
+    """A GLFW window whose OpenGL 3.3 context is current."""
+    if null:
+        glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
+    if not glfw.init():
+        raise DisplayError("there is no display: expected an X11 or Wayland session to open a window in")
+    if null:
+        glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
+    for hint, value in (
+        (glfw.CONTEXT_VERSION_MAJOR, 3),
+        (glfw.CONTEXT_VERSION_MINOR, 3),
+        (glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE),
+        (glfw.OPENGL_FORWARD_COMPAT, True),
+        (glfw.DEPTH_BITS, 0),
+        (glfw.STENCIL_BITS, 0),
+        (glfw.SCALE_TO_MONITOR, True),
+        (glfw.VISIBLE, not hidden),
+    ):
+        glfw.window_hint(hint, value)
+    handle = glfw.create_window(*size, "akap-editor", None, None)
+    if not handle:
+        glfw.terminate()
+        raise GraphicsError("this computer offers no OpenGL 3.3 core profile, which the window needs")
+    glfw.make_context_current(handle)
+    glfw.swap_interval(1)
+    return handle

@@ -1,0 +1,52 @@
+"""A small picture, its drawing, and an editor to drive."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from akap_editor.editor.document import Drawing, make_drawing, new_document
+
+from .driver import Driver
+
+
+@pytest.fixture(scope="session")
+def image() -> NDArray[np.uint8]:
+    """A head with a long neck, (80, 120, 4); the corners are empty."""
+    y, x = np.mgrid[0:80, 0:120] + 0.5
+    head = ((x - 35) / 25) ** 2 + ((y - 40) / 30) ** 2 < 1
+    neck = (abs(y - 40) < 14) & (x > 30) & (x < 112)
+    rgba = np.zeros((80, 120, 4), dtype=np.uint8)
+    rgba[head | neck] = (90, 140, 200, 255)
+    return rgba
+
+
+@pytest.fixture(scope="session")
+def drawing(image: NDArray[np.uint8]) -> Drawing:
+    return make_drawing(image, vertices=150, name="figure")
+
+
+@pytest.fixture(scope="session")
+def finer_drawing(image: NDArray[np.uint8]) -> Drawing:
+    return make_drawing(image, vertices=300, name="figure")
+
+
+@pytest.fixture
+def new_driver(drawing: Drawing) -> Callable[[], Driver]:
+    """Makes drivers with the drawing at rest, without pins."""
+    return lambda: Driver(new_document(drawing))
+
+
+@pytest.fixture
+def driver(new_driver: Callable[[], Driver]) -> Driver:
+    return new_driver()
+
+
+@pytest.fixture
+def pinned(driver: Driver) -> Driver:
+    """Three pins, numbered 1 to 3: in the head, in the neck and at its end; none selected."""
+    for at in ((20.0, 40.0), (62.0, 40.0), (105.0, 40.0)):
+        driver.click(at)
+    driver.editor.select(())
+    return driver

@@ -1,0 +1,98 @@
+"""The shapes on which laws are tested, in pixels; built by hand, without the code that makes meshes."""
+
+import numpy as np
+from scipy.spatial import Delaunay
+
+from akap_editor.geometry.mesh import TriMesh, signed_areas
+
+
+def blocks(picture: str, size: float, divisions: int = 1, jitter: float = 0.0) -> TriMesh:
+    """Squares of side ``size`` where the rows of ``picture`` have a #, each of divisions² pairs of faces.
+
+    jitter: share of a face's side by which vertices are moved at random.
+    """
+    full = np.array([[mark == "#" for mark in row] for row in picture.split()])
+    full = full.repeat(divisions, axis=0).repeat(divisions, axis=1)
+    rows, columns = np.nonzero(full)
+    width = full.shape[1] + 1
+    corner = rows * width + columns
+    a, b, c, d = corner, corner + 1, corner + width + 1, corner + width
+    slash = ((rows + columns) % 2 == 0)[:, None]
+    first = np.where(slash, np.stack([a, b, c], axis=1), np.stack([a, b, d], axis=1))
+    second = np.where(slash, np.stack([a, c, d], axis=1), np.stack([b, c, d], axis=1))
+    used, faces = np.unique(np.concatenate([first, second]), return_inverse=True)
+    side = size / divisions
+    points = np.stack([used % width, used // width], axis=1) * side
+    noise = np.random.default_rng(1).uniform(-1, 1, points.shape)
+    return TriMesh(points + jitter * side * noise, faces.reshape(-1, 3))
+
+
+def random_disc(seed: int, count: int = 60) -> TriMesh:
+    """Delaunay mesh of a circle of radius 100 with random vertices inside."""
+    rng = np.random.default_rng(seed)
+    angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    rim = 100 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    turn = rng.uniform(0, 2 * np.pi, count)
+    inside = 90 * np.sqrt(rng.uniform(0, 1, count))[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    points = np.concatenate([rim, inside]) + 120
+    return TriMesh(points, positive(points, Delaunay(points).simplices))
+
+
+def star() -> TriMesh:
+    """Five points, each face cut in four twice."""
+    angle = np.arange(10) * np.pi / 5
+    radius = np.where(np.arange(10) % 2, 45.0, 110.0)
+    rim = 120 + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    points = np.concatenate([rim, [[120.0, 120.0]]])
+    faces = np.array([[i, (i + 1) % 10, 10] for i in range(10)])
+    for _ in range(2):
+        points, faces = cut_in_four(points, faces)
+    return TriMesh(points, faces)
+
+
+def cut_in_four(points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Each face cut at the middles of its edges."""
+    sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, where = np.unique(sides, axis=0, return_inverse=True)
+    middle = where.reshape(-1, 3) + len(points)
+    (a, b, c), (ab, bc, ca) = faces.T, middle.T
+    cut = np.concatenate(
+        [np.stack(corner, axis=1) for corner in [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]]
+    )
+    return np.concatenate([points, points[edges].mean(axis=1)]), cut
+
+
+def positive(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """The faces, turned where their signed area is negative."""
+    flipped = signed_areas(points, faces) < 0
+    return np.where(flipped[:, None], faces[:, ::-1], faces)
+
+
+def renumbered(mesh: TriMesh, seed: int) -> tuple[TriMesh, np.ndarray, np.ndarray]:
+    """The mesh with vertices, faces and corners in another order; vertex i of it was vertex order[i] before.
+
+    Also the new number of each old face; the first corner of a face may become another one.
+    """
+    rng = np.random.default_rng(seed)
+    order, face_order = rng.permutation(len(mesh.vertices)), rng.permutation(len(mesh.faces))
+    faces = np.argsort(order)[mesh.faces][face_order]
+    turns = rng.integers(0, 3, len(faces))
+    faces = np.take_along_axis(faces, (np.arange(3) + turns[:, None]) % 3, axis=1)
+    return TriMesh(mesh.vertices[order], faces), order, np.argsort(face_order)
+
+
+SHAPES = {
+    "triangle": TriMesh(np.array([[10.0, 20.0], [90.0, 30.0], [40.0, 95.0]]), np.array([[0, 1, 2]])),
+    "square": blocks("#", 100, 5, 0.2),
+    "bar": blocks("#####", 60, 6),
+    "L": blocks("#. #. ##", 60, 4, 0.2),
+    "star": star(),
+    "ring": blocks("### #.# ###", 50, 3, 0.2),
+    "islands": blocks("##.# ##.#", 50, 3, 0.2),
+    "strip": blocks("########", 25, 1, 0.2),
+    "disc 1": random_disc(1),
+    "disc 2": random_disc(2, 150),
+}
+
+# Components and holes of each shape that is not one part without holes.
+PARTS, HOLES = {"islands": 2}, {"ring": 1}

@@ -1,0 +1,243 @@
+"""Laws of `TriMesh` and of points on it."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from akap_editor.errors import InputError
+from akap_editor.geometry.mesh import MeshPoints, TriMesh, barycentric, signed_areas
+
+TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+FACE = np.array([[0, 1, 2]])
+SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+FAN = np.array([[0.0, 0.0], [1.0, 0.0], [0.4, 1.0], [0.5, 0.8], [0.6, 0.9]])
+TWO_AT_A_POINT = np.array([[0.0, 0.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]])
+
+BAD_MESHES = {
+    "three coordinates": (np.zeros((3, 3)), FACE, r"vertices: expected shape \(n, 2\), got \(3, 3\)"),
+    "flat vertices": (np.arange(6.0), FACE, r"vertices: expected shape \(n, 2\), got \(6,\)"),
+    "ragged": ([[0.0, 1.0], [2.0]], FACE, "vertices: expected an array of numbers, got list"),
+    "text": ([["0", "1"]] * 3, FACE, "vertices: expected real numbers, got dtype <U1"),
+    "complex": (TRIANGLE + 0j, FACE, "vertices: expected real numbers, got dtype complex128"),
+    "not a number": ([[0, 0], [1, 0], [0, np.nan]], FACE, r"vertices: expected finite .*\[0.0, nan\] in row 2"),
+    "infinite": ([[0, 0], [np.inf, 0], [0, 1]], FACE, r"vertices: expected finite .*\[inf, 0.0\] in row 1"),
+    "quads": (SQUARE, [[0, 1, 2, 3]], r"faces: expected shape \(m, 3\), got \(1, 4\)"),
+    "flat faces": (TRIANGLE, [0, 1, 2], r"faces: expected shape \(m, 3\), got \(3,\)"),
+    "float faces": (TRIANGLE, [[0.0, 1.0, 2.0]], "faces: expected integer indices, got dtype float64"),
+    "too large": (TRIANGLE, [[0, 1, 3]], "faces: expected indices from 0 to 2, got 3"),
+    "negative": (TRIANGLE, [[0, 1, -1]], "faces: expected indices from 0 to 2, got -1"),
+    "no faces": (TRIANGLE, np.zeros((0, 3), int), "mesh: expected vertices and faces, got 3 and 0"),
+    "nothing": (np.zeros((0, 2)), np.zeros((0, 3), int), "mesh: expected vertices and faces, got 0 and 0"),
+    "flipped": (TRIANGLE, [[0, 2, 1]], r"faces: .*face 0 is flipped \(-0.5\)"),
+    "no area": ([[0, 0], [1, 1], [2, 2]], FACE, r"faces: .*face 0 has no area"),
+    "corner twice": (TRIANGLE, [[0, 1, 2], [0, 1, 1]], "faces: .*face 1 has no area"),
+    "unused": (SQUARE, FACE, "vertices: expected each to belong to a face, but vertex 3 does not"),
+    "same place": (
+        np.array([[0, 0], [1, 0], [1, 1], [1, 0], [2, 0], [1.5, 1]]),
+        [[0, 1, 2], [3, 4, 5]],
+        "vertices: 1 and 3 are at the same place",
+    ),
+    "three at an edge": (FAN, [[0, 1, 2], [0, 1, 3], [0, 1, 4]], r"faces: edge \[0, 1\] .*one face on each side"),
+    "two on one side": (FAN[:4], [[0, 1, 2], [0, 1, 3]], r"faces: edge \[0, 1\] .*one face on each side"),
+    "face twice": (TRIANGLE, [[0, 1, 2], [1, 2, 0]], r"faces: edge \[0, 1\] .*one face on each side"),
+    "joined at one vertex": (
+        TWO_AT_A_POINT,
+        [[0, 1, 2], [0, 3, 4]],
+        "faces: expected parts to meet along edges, but at vertex 0 they meet in one point only",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BAD_MESHES)
+def test_bad_mesh_is_refused_in_one_sentence(case):
+    vertices, faces, sentence = BAD_MESHES[case]
+    with pytest.raises(InputError, match=sentence):
+        TriMesh(vertices, faces)
+
+
+def test_arrays_are_copied_and_read_only():
+    vertices, faces = TRIANGLE.copy(), FACE.copy()
+    mesh = TriMesh(vertices, faces)
+    vertices[0], faces[0] = 7.0, [2, 1, 0]
+    assert mesh.vertices.tolist() == TRIANGLE.tolist()
+    assert mesh.faces.tolist() == FACE.tolist()
+    assert mesh.vertices.dtype == np.float64
+    assert mesh.faces.dtype == np.int32
+    for array in (mesh.vertices, mesh.faces, mesh.edges, mesh.component, mesh.rest_areas, *mesh.boundary_loops):
+        assert not array.flags.writeable
+
+
+def test_faces_are_positive_with_y_down():
+    assert signed_areas(TRIANGLE, FACE).tolist() == [0.5]
+    assert signed_areas(TRIANGLE, FACE[:, ::-1]).tolist() == [-0.5]
+
+
+def sides(mesh: TriMesh) -> Counter:
+    """How many faces each undirected edge belongs to, counted one by one."""
+    return Counter(
+        (min(a, b), max(a, b)) for f in mesh.faces.tolist() for a, b in zip(f, f[1:] + f[:1], strict=True)
+    )
+
+
+def test_edges_are_those_of_the_faces(mesh):
+    assert [tuple(edge) for edge in mesh.edges.tolist()] == sorted(sides(mesh))
+
+
+def test_loops_cover_each_boundary_edge_once(mesh):
+    boundary = sorted(edge for edge, count in sides(mesh).items() if count == 1)
+    walked = [
+        (min(a, b), max(a, b))
+        for loop in mesh.boundary_loops
+        for a, b in zip(loop.tolist(), np.roll(loop, -1).tolist(), strict=True)
+    ]
+    assert sorted(walked) == boundary
+    assert mesh.boundary_vertices.tolist() == sorted({vertex for edge in boundary for vertex in edge})
+
+
+def test_no_loop_visits_a_vertex_twice(mesh):
+    visited = np.concatenate(mesh.boundary_loops)
+    assert len(np.unique(visited)) == len(visited)
+
+
+def test_outer_loops_turn_with_the_faces_and_holes_against(mesh):
+    loops = [mesh.vertices[loop] for loop in mesh.boundary_loops]
+    areas = [0.5 * np.linalg.det(np.stack([p, np.roll(p, -1, axis=0)], axis=1)).sum() for p in loops]
+    assert sum(areas) == pytest.approx(mesh.rest_areas.sum(), rel=1e-12)
+
+
+def test_components_and_holes(mesh, shape_name, shapes):
+    parts, holes = shapes.PARTS.get(shape_name, 1), shapes.HOLES.get(shape_name, 0)
+    assert len(mesh.boundary_loops) == parts + holes
+    assert sorted(set(mesh.component.tolist())) == list(range(parts))
+    euler = len(mesh.vertices) - len(mesh.edges) + len(mesh.faces)
+    assert euler == parts - holes
+
+
+def test_component_joins_what_edges_join(mesh):
+    label = list(range(len(mesh.vertices)))
+    for _ in label:
+        before = label.copy()
+        for a, b in mesh.edges.tolist():
+            label[a] = label[b] = min(label[a], label[b])
+        if label == before:
+            break
+    same = np.equal.outer(label, label)
+    assert (np.equal.outer(mesh.component, mesh.component) == same).all()
+
+
+def random_points(mesh: TriMesh, seed: int, count: int = 40) -> MeshPoints:
+    rng = np.random.default_rng(seed)
+    return MeshPoints(rng.integers(0, len(mesh.faces), count), rng.dirichlet([1, 1, 1], count))
+
+
+def test_locate_inverts_evaluate(mesh):
+    points = random_points(mesh, 3)
+    where = mesh.evaluate(points, mesh.vertices)
+    found = mesh.locate(where)
+    assert found.faces.tolist() == points.faces.tolist()
+    assert np.abs(found.weights - points.weights).max() < 1e-12
+    assert np.abs(mesh.evaluate(found, mesh.vertices) - where).max() < 1e-12 * 500
+
+
+def test_locate_in_a_pose(mesh):
+    pose = mesh.vertices @ [[0.6, 0.9], [-1.1, 0.4]] + [30, -5]
+    points = random_points(mesh, 4)
+    found = mesh.locate(mesh.evaluate(points, pose), pose)
+    assert found.faces.tolist() == points.faces.tolist()
+    assert np.abs(found.weights - points.weights).max() < 1e-12
+
+
+def test_vertices_and_edges_belong_to_the_drawing(mesh):
+    """Also on the boundary, where rounding may put a point outside."""
+    rng = np.random.default_rng(5)
+    share = rng.uniform(0, 1, (len(mesh.edges), 1))
+    start, end = mesh.vertices[mesh.edges[:, 0]], mesh.vertices[mesh.edges[:, 1]]
+    for where in (mesh.vertices, share * start + (1 - share) * end):
+        found = mesh.locate(where)
+        assert np.abs(mesh.evaluate(found, mesh.vertices) - where).max() < 1e-9
+
+
+def test_weights_at_a_vertex_are_one_and_zeros():
+    assert TriMesh(TRIANGLE, FACE).locate(TRIANGLE).weights.tolist() == np.eye(3).tolist()
+
+
+def test_outside_is_refused_with_the_nearest_vertex():
+    mesh = TriMesh(100 * TRIANGLE, FACE)
+    assert mesh.find([60.0, 60.0]) is None
+    sentence = r"point 1 at \(104, 3\) lies outside the drawing; the nearest vertex is at \(100.0, 0.0\)"
+    with pytest.raises(InputError, match=sentence):
+        mesh.locate([[10.0, 10.0], [104.0, 3.0]])
+
+
+def test_hole_is_outside(shapes):
+    ring = shapes.SHAPES["ring"]
+    assert ring.find([75.0, 75.0]) is None
+    assert ring.find([25.0, 75.0]) is not None
+
+
+def test_where_faces_overlap_the_one_drawn_last_is_seen():
+    below, above = TRIANGLE, TRIANGLE + [0.1, 0.1]
+    mesh = TriMesh(np.concatenate([below, above]), [[0, 1, 2], [3, 4, 5]])
+    assert mesh.locate([[0.3, 0.3], [0.05, 0.05]]).faces.tolist() == [1, 0]
+    assert TriMesh(mesh.vertices, mesh.faces[::-1]).locate([[0.3, 0.3]]).faces.tolist() == [1]
+
+
+@pytest.mark.parametrize("shift", [0.1, 1 / 3, 1000.7])
+def test_rounding_puts_no_boundary_point_outside(shift):
+    mesh = TriMesh(SQUARE + shift, [[0, 1, 2], [0, 2, 3]])
+    share = np.random.default_rng(10).uniform(0, 1, (200, 1))
+    for start, end in zip(mesh.vertices, np.roll(mesh.vertices, -1, axis=0), strict=True):
+        assert len(mesh.locate(share * start + (1 - share) * end)) == 200
+
+
+@pytest.mark.parametrize("point", [[1.0, 2.0, 3.0], [1.0], [[0.0, 0.0], [1.0, 1.0]], "ab", [np.nan, 0.0], None])
+def test_find_refuses_what_is_not_a_point(point):
+    with pytest.raises(InputError, match="point: expected"):
+        TriMesh(TRIANGLE, FACE).find(point)
+
+
+@pytest.mark.parametrize("pose", [TRIANGLE[:2], TRIANGLE * np.nan])
+def test_locate_refuses_a_bad_pose(pose):
+    with pytest.raises(InputError, match="positions: expected"):
+        TriMesh(TRIANGLE, FACE).locate([[0.1, 0.1]], pose)
+
+
+def test_no_points():
+    mesh = TriMesh(TRIANGLE, FACE)
+    points = mesh.locate(np.zeros((0, 2)))
+    assert len(points) == 0
+    assert mesh.evaluate(points, mesh.vertices).shape == (0, 2)
+
+
+@pytest.mark.parametrize(
+    ("faces", "weights", "sentence"),
+    [
+        ([0], [[0.5, 0.5]], r"weights: expected shape \(1, 3\), got \(1, 2\)"),
+        ([0, 1], [[1.0, 0.0, 0.0]], r"weights: expected shape \(2, 3\), got \(1, 3\)"),
+        ([0, 1], [1.0, 0.0, 0.0, 0.0, 0.0, 1.0], r"weights: expected shape \(2, 3\), got \(6,\)"),
+        ([0], [["a", "b", "c"]], "weights: expected real numbers"),
+        ([0, 1], [[1.0], [1.0, 2.0]], "weights: expected an array of numbers"),
+        ([0], [[0.5, 0.5, 0.5]], "weights: expected barycentric weights that sum to 1"),
+        ([0], [[np.nan, 0.5, 0.5]], "weights: expected finite numbers"),
+        ([-1], [[1.0, 0.0, 0.0]], "faces: expected indices from 0"),
+        ([0.0], [[1.0, 0.0, 0.0]], "faces: expected integer indices"),
+    ],
+)
+def test_bad_mesh_points_are_refused(faces, weights, sentence):
+    with pytest.raises(InputError, match=sentence):
+        MeshPoints(faces, weights)
+
+
+def test_points_of_another_mesh_are_refused():
+    points = MeshPoints([1], [[1.0, 0.0, 0.0]])
+    with pytest.raises(InputError, match="faces: expected indices from 0 to 0, got 1"):
+        TriMesh(TRIANGLE, FACE).evaluate(points, TRIANGLE)
+
+
+def test_barycentric_weights_reproduce_the_point_and_reject_flat_triangles():
+    corners = np.array([[[0.0, 0.0], [3.0, 1.0], [1.0, 4.0]], [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]])
+    weights = barycentric(corners, np.array([1.0, 1.5]))
+    assert weights[0] @ corners[0] == pytest.approx([1.0, 1.5], abs=1e-15)
+    assert weights[0].sum() == pytest.approx(1.0, abs=1e-15)
+    assert weights[1].max() < 0

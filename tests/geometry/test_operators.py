@@ -1,0 +1,117 @@
+"""Differential operators on functions whose derivatives are known."""
+
+import numpy as np
+import pytest
+
+from akap_editor.geometry.operators import (
+    element_pattern,
+    gradient_matrices,
+    hat_gradients,
+    jacobians,
+    killing_elements,
+    killing_energy,
+    to_complex,
+    to_points,
+)
+
+
+def dense_rows(positions, faces):
+    """P of eq. 6 with the gradient split into ∂x and ∂y and rows weighted by √area, x0 y0 x1 y1 ..."""
+    rows = np.zeros((3 * len(faces), 2 * len(positions)))
+    for f, (a, b, c) in enumerate(faces):
+        edges = np.linalg.inv(np.array([positions[b] - positions[a], positions[c] - positions[a]]))
+        hats = edges @ np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])  # ∂x and ∂y of the three hat functions
+        area = 0.5 / abs(np.linalg.det(edges))
+        for corner, vertex in enumerate((a, b, c)):
+            dx, dy = hats[:, corner] * np.sqrt(area)
+            rows[3 * f : 3 * f + 3, 2 * vertex : 2 * vertex + 2] += [
+                [2 * dx, 0.0],
+                [np.sqrt(2) * dy, np.sqrt(2) * dx],
+                [0.0, 2 * dy],
+            ]
+    return rows
+
+
+def assembled(positions, faces):
+    """The matrix whose entries `killing_elements` gives, from the lower triangle."""
+    rows, columns = element_pattern(faces)
+    matrix = np.zeros((2 * len(positions),) * 2)
+    np.add.at(matrix, (np.maximum(rows, columns), np.minimum(rows, columns)), killing_elements(positions, faces))
+    return matrix + np.tril(matrix, -1).T
+
+
+def test_complex_and_points_are_the_same_numbers():
+    points = np.array([[1.0, 2.0], [3.0, -4.0]])
+    assert to_complex(points).tolist() == [1 + 2j, 3 - 4j]
+    assert to_points(to_complex(points)).tolist() == points.tolist()
+    assert to_points(to_complex(points[:, ::-1])).tolist() == points[:, ::-1].tolist()
+
+
+def test_gradients_of_linear_functions(mesh):
+    gx, gy = gradient_matrices(mesh)
+    values = mesh.vertices @ [3.0, -2.0] + 7.0
+    assert np.abs(gx @ values - 3.0).max() < 1e-11
+    assert np.abs(gy @ values + 2.0).max() < 1e-11
+
+
+def test_hat_gradients_sum_to_zero_and_areas_are_those_of_the_faces(mesh):
+    dx, dy, areas = hat_gradients(mesh.vertices, mesh.faces)
+    assert np.abs(dx.sum(axis=1)).max() < 1e-14
+    assert np.abs(dy.sum(axis=1)).max() < 1e-14
+    assert areas.tolist() == mesh.rest_areas.tolist()
+
+
+def test_jacobians_of_affine_maps(mesh):
+    matrix = np.array([[0.8, -0.3], [1.2, 0.5]])
+    pose = mesh.vertices @ matrix.T + [100.0, -30.0]
+    assert np.abs(jacobians(mesh, pose) - matrix).max() < 1e-11
+
+
+def test_killing_matrix_is_that_of_the_stacked_rows(mesh):
+    rows = dense_rows(mesh.vertices, mesh.faces)
+    assert np.abs(assembled(mesh.vertices, mesh.faces) - rows.T @ rows).max() < 1e-11
+
+
+def test_killing_energy_is_the_quadratic_form(mesh):
+    field = np.random.default_rng(6).normal(size=mesh.vertices.shape)
+    matrix = assembled(mesh.vertices, mesh.faces)
+    energy = killing_energy(mesh.vertices, mesh.faces, field)
+    assert energy == pytest.approx(field.ravel() @ matrix @ field.ravel(), rel=1e-12)
+
+
+def test_null_space_is_the_rigid_motions_of_each_part(mesh):
+    parts = mesh.component.max() + 1
+    spectrum = np.linalg.eigvalsh(assembled(mesh.vertices, mesh.faces))
+    assert (spectrum < 1e-10 * spectrum[-1]).sum() == 3 * parts
+    assert spectrum[3 * parts] > 1e-6 * spectrum[-1]
+
+
+@pytest.mark.parametrize("turn", [0.0, 1.0, -3.0])
+def test_rigid_fields_have_no_energy(mesh, turn):
+    field = mesh.vertices @ [[0.0, turn], [-turn, 0.0]] + [4.0, 9.0]
+    assert killing_energy(mesh.vertices, mesh.faces, field) < 1e-20 * mesh.rest_areas.sum()
+
+
+@pytest.mark.parametrize(
+    ("jacobian", "density"),
+    [
+        ([[1, 0], [0, 0]], 4),  # ‖J + Jᵀ‖² of stretch in x, of stretch in both, of shear, of a mixture
+        ([[1, 0], [0, 1]], 8),
+        ([[0, 1], [0, 0]], 2),
+        ([[2, 3], [-1, 0.5]], 16 + 2 * 4 + 1),
+    ],
+)
+def test_energy_of_linear_fields(mesh, jacobian, density):
+    field = mesh.vertices @ np.transpose(jacobian)
+    energy = killing_energy(mesh.vertices, mesh.faces, field)
+    assert energy == pytest.approx(density * mesh.rest_areas.sum(), rel=1e-12)
+
+
+def test_flipped_faces_count_by_their_size(mesh):
+    """A pose from elsewhere may have flipped faces: a mirrored one has the mirrored energy."""
+    mirrored = mesh.vertices * [-1.0, 1.0]
+    field = np.random.default_rng(7).normal(size=mirrored.shape)
+    energy = killing_energy(mesh.vertices, mesh.faces, field)
+    assert killing_energy(mirrored, mesh.faces, field * [-1.0, 1.0]) == pytest.approx(energy, rel=1e-12)
+    rows = dense_rows(mirrored, mesh.faces)
+    assert np.abs(assembled(mirrored, mesh.faces) - rows.T @ rows).max() < 1e-11

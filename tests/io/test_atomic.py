@@ -1,0 +1,164 @@
+import errno
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+from akap_editor.errors import InputError
+from akap_editor.io import atomic
+from akap_editor.io.atomic import read_file, write_atomic
+
+posix = pytest.mark.skipif(os.name != "posix", reason="permission bits, links and pipes are those of POSIX")
+
+
+def fail(*_args, **_kwargs):
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def interrupt(*_args, **_kwargs):
+    raise KeyboardInterrupt
+
+
+class FullDisk:
+    """A file that takes half of what is written and fails."""
+
+    def __init__(self, file):
+        self.file = file
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_exception):
+        self.file.close()
+
+    def write(self, data):
+        self.file.write(data[: len(data) // 2])
+        fail()
+
+
+def fail_to_write(monkeypatch):
+    real = Path.open
+    monkeypatch.setattr(Path, "open", lambda path, mode="r": FullDisk(real(path, mode)))
+
+
+def test_written_is_what_is_read(tmp_path):
+    path = tmp_path / "new.bin"
+    for data in (b"first", b"", bytes(range(256)) * 1000):
+        write_atomic(path, data)
+        assert read_file(path, "a file") == data
+    assert os.listdir(tmp_path) == ["new.bin"]
+
+
+FAILURES = {
+    "open": lambda patch: patch.setattr(Path, "open", fail),
+    "write": fail_to_write,
+    "flush to disk": lambda patch: patch.setattr(atomic.os, "fsync", fail),
+    "permission bits": lambda patch: patch.setattr(atomic.shutil, "copymode", fail),
+    "move": lambda patch: patch.setattr(atomic.os, "replace", fail),
+}
+
+
+@pytest.mark.parametrize("step", FAILURES)
+def test_failure_leaves_old_file_and_no_other(tmp_path, monkeypatch, step):
+    path = tmp_path / "kept.bin"
+    path.write_bytes(b"old")
+    with monkeypatch.context() as patch:
+        FAILURES[step](patch)
+        with pytest.raises(InputError, match=r"^cannot write .*kept\.bin: no space left on device$"):
+            write_atomic(path, b"new content")
+    assert path.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["kept.bin"]
+
+
+def test_interrupt_leaves_old_file_and_no_other(tmp_path, monkeypatch):
+    path = tmp_path / "kept.bin"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(atomic.os, "fsync", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        write_atomic(path, b"new")
+    assert path.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["kept.bin"]
+
+
+def test_failure_of_a_new_file_leaves_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(atomic.os, "replace", fail)
+    with pytest.raises(InputError):
+        write_atomic(tmp_path / "new.bin", b"new")
+    assert os.listdir(tmp_path) == []
+
+
+@posix
+def test_new_file_follows_umask_and_old_bits_are_kept(tmp_path):
+    old_umask = os.umask(0o027)
+    try:
+        write_atomic(tmp_path / "new.bin", b"new")
+        (tmp_path / "old.bin").write_bytes(b"old")
+        (tmp_path / "old.bin").chmod(0o604)
+        write_atomic(tmp_path / "old.bin", b"new")
+    finally:
+        os.umask(old_umask)
+    assert stat.S_IMODE((tmp_path / "new.bin").stat().st_mode) == 0o640
+    assert stat.S_IMODE((tmp_path / "old.bin").stat().st_mode) == 0o604
+
+
+@posix
+def test_link_stays_a_link(tmp_path):
+    (tmp_path / "folder").mkdir()
+    target, link = tmp_path / "folder" / "target.bin", tmp_path / "link.bin"
+    target.write_bytes(b"old")
+    link.symlink_to(target)
+    write_atomic(link, b"new")
+    assert link.is_symlink()
+    assert target.read_bytes() == b"new"
+
+
+def test_protected_file_is_not_replaced(tmp_path, monkeypatch):
+    path = tmp_path / "protected.bin"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(atomic.os, "access", lambda *_: False)  # root may write whatever the bits say
+    with pytest.raises(InputError, match=r"^cannot write .*protected\.bin: permission denied$"):
+        write_atomic(path, b"new")
+    assert path.read_bytes() == b"old"
+
+
+@posix
+def test_what_is_no_regular_file_is_refused(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for path in (tmp_path, pipe):
+        with pytest.raises(InputError, match=r"cannot write .*: it is not a regular file"):
+            write_atomic(path, b"new")
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+    with pytest.raises(InputError, match="expected a picture, got something that is not a regular file"):
+        read_file(pipe, "a picture")
+    with pytest.raises(InputError, match="expected a picture, got a folder"):
+        read_file(tmp_path, "a picture")
+
+
+def test_missing_names_are_said(tmp_path):
+    with pytest.raises(InputError, match=r"^.*none\.png: expected a picture, but there is no such file$"):
+        read_file(tmp_path / "none.png", "a picture")
+    with pytest.raises(InputError, match=r"^cannot write .*: no such file or directory$"):
+        write_atomic(tmp_path / "no folder" / "new.bin", b"")
+    for path in (tmp_path / "nul\0", tmp_path / ("long" * 1000)):
+        with pytest.raises(InputError, match=r"^cannot read "):
+            read_file(path, "a picture")
+        with pytest.raises(InputError, match=r"^cannot write "):
+            write_atomic(path, b"")
+
+
+def test_unreadable_and_oversized_files_are_refused(tmp_path, monkeypatch):
+    path = tmp_path / "large.bin"
+    path.write_bytes(bytes(11))
+    with monkeypatch.context() as patch:
+        patch.setattr(atomic, "MAX_FILE_BYTES", 10)
+        with pytest.raises(InputError, match="expected a picture, got a file of 11 bytes, more than 10"):
+            read_file(path, "a picture")
+
+    def deny(*_):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", deny)
+    with pytest.raises(InputError, match=r"^cannot read .*large\.bin: permission denied$"):
+        read_file(path, "a picture")
