@@ -78,10 +78,10 @@ class Canvas:
                 if pin in editor.selection and isinstance(editor.tool, DraggingPin):
                     draw.add_line(ImVec2(*place), ImVec2(*targets[pin]), packed(ACCENT, 0.8), 1.5 * scale)
                 _draw_pin(draw, place, scale, pin in editor.selection, pin == hovered)
-            ghost = editor.pointer is not None and hovered is None and not editor.hand
-            if ghost and isinstance(editor.tool, Idle) and editor.hovers_drawing:
-                draw.add_circle(ImVec2(*editor.pointer), 6.5 * scale, packed(DARK, 0.5), 0, 3.0 * scale)
-                draw.add_circle(ImVec2(*editor.pointer), 6.5 * scale, packed(_WHITE, 0.8), 0, 1.5 * scale)
+            if editor.pointer is not None and editor.would_add_pin:
+                center = ImVec2(*editor.pointer)
+                draw.add_circle(center, 6.5 * scale, packed(DARK, 0.5), 0, 3.0 * scale)
+                draw.add_circle(center, 6.5 * scale, packed(_WHITE, 0.8), 0, 1.5 * scale)
         if isinstance(editor.tool, RubberBand):
             corners = ImVec2(*editor.tool.start), ImVec2(*editor.tool.end)
             low = ImVec2(min(c.x for c in corners), min(c.y for c in corners))

@@ -47,7 +47,7 @@ def chord_name(chord: int) -> str:
         if chord & int(mod):
             parts.append(name)
             chord &= ~int(mod)
-    name = Key(chord).name
+    name = str(Key(chord).name)
     return "+".join([*parts, _KEY_NAMES.get(name, name.upper() if len(name) == 1 else name.capitalize())])
 
 

@@ -12,10 +12,8 @@ _BAR = (
     imgui.WindowFlags_.no_title_bar
     | imgui.WindowFlags_.no_resize
     | imgui.WindowFlags_.no_move
-    | imgui.WindowFlags_.no_scrollbar
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_docking
-    | imgui.WindowFlags_.no_scroll_with_mouse
 )
 _TOOLS: tuple[Command | None, ...] = (
     commands.PIN_TOOL,
@@ -70,11 +68,14 @@ def _menu_bar(space: Workspace) -> None:
     imgui.end_main_menu_bar()
 
 
-def _side_bar(name: str, side: imgui.Dir, size: float, padding: ImVec2) -> bool:
+def _side_bar(name: str, side: imgui.Dir, size: float, padding: ImVec2, scrolls: bool = False) -> bool:
+    fixed = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
     imgui.push_style_var(imgui.StyleVar_.window_padding, padding)
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
-    shown = imgui.internal.begin_viewport_side_bar(name, imgui.get_main_viewport(), side, size, _BAR)
+    shown = imgui.internal.begin_viewport_side_bar(
+        name, imgui.get_main_viewport(), side, size, _BAR | (0 if scrolls else fixed)
+    )
     imgui.pop_style_var(3)
     return bool(shown)
 
@@ -111,7 +112,8 @@ def _tool_button(space: Workspace, command: Command, size: float) -> None:
 
 
 def _side_panel(space: Workspace, scale: float) -> None:
-    if _side_bar("Panel", imgui.Dir.right, 268 * scale, ImVec2(16 * scale, 6 * scale)) and space.document:
+    padding = ImVec2(16 * scale, 6 * scale)
+    if _side_bar("Panel", imgui.Dir.right, 268 * scale, padding, scrolls=True) and space.document:
         _about_drawing(space)
         _pins(space, scale)
         _bending(space)

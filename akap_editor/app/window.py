@@ -5,6 +5,7 @@ from imgui_bundle import imgui  # isort: skip
 import ctypes
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from .dialogs import Dialogs, has_native_dialogs
 from .workspace import Workspace
 
 SIZE = (1280, 800)
+PLAIN = Background(color=CANVAS.color)
 SETTLE_FRAMES = 3  # ImGui needs so many frames after an event until everything stands where it belongs
 IDLE_SECONDS = 1.0
 
@@ -69,7 +71,9 @@ class Window:
         io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard
         theme.load_fonts()
         self._apply_scale()
-        imgui.backends.glfw_init_for_opengl(ctypes.cast(self._handle, ctypes.c_void_p).value, True)
+        address = ctypes.cast(self._handle, ctypes.c_void_p).value
+        assert address is not None
+        imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
         self._canvas = Canvas()
         self._dialogs = Dialogs(has_native_dialogs() and not null)
@@ -95,7 +99,6 @@ class Window:
     def run(self, document: Document | None = None) -> None:
         """Show a document and stay until the window is closed."""
         if document is not None:
-            self.frame()  # so that the canvas has its size before the drawing is fitted into it
             self.space.show(document)
         while not self.space.closing:
             if self._busy:
@@ -198,7 +201,7 @@ class Window:
 
     def _draw(self, framebuffer: tuple[int, int]) -> None:
         space = self.space
-        background = CANVAS if space.checker else Background(color=CANVAS.color)
+        background = replace(CANVAS, cell=CANVAS.cell * self.scale) if space.checker else PLAIN
         document = space.document
         if document is not None:
             self.renderer.show(document.drawing, document.state.positions)
@@ -245,7 +248,7 @@ class Window:
             self.space.editor.cancel()
         self._focused = focused
 
-    def _on_drop(self, _: Any, paths: list[str]) -> None:
+    def _on_drop(self, _: Any, paths: Any) -> None:
         self._dropped += [Path(path) for path in paths[:1]]
         self.wake()
 

@@ -129,9 +129,13 @@ class AkapDeformer:
         return moved, field, cut
 
     def _move(self, pose: Complexes, field: Complexes) -> tuple[Complexes, bool]:
-        """Follow the field as far as no face flips; also whether that was less than the whole way."""
+        """Follow the field as far as no face flips; also whether that was less than the whole way.
+
+        Faces that are flipped already, by another method, move freely.
+        """
         mesh = self._mesh
-        least = np.minimum(_THINNEST * mesh.rest_areas, 0.5 * signed_areas(to_points(pose), mesh.faces))
+        areas = signed_areas(to_points(pose), mesh.faces)
+        least = np.where(areas > 0, np.minimum(_THINNEST * mesh.rest_areas, 0.5 * areas), -np.inf)
         t = 1.0
         while t >= _SHORTEST:
             moved = self._flow(pose, field, t)

@@ -1,11 +1,14 @@
 """As-Killing-as-possible vector fields (paper, sections 2.1 and 2.2)."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..geometry.checks import Complexes, Floats, Ints
 from ..geometry.mesh import MeshPoints, TriMesh
-from ..geometry.operators import element_pattern, killing_elements, to_complex
+from ..geometry.operators import element_pattern, killing_elements
 from .cholesky import SparseCholesky, SymmetricPattern
+
+_SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
 
 
 class KillingSystem:
@@ -15,8 +18,9 @@ class KillingSystem:
     factorizations are made once. ``pin_weight`` is the paper's λ as in eq. 5, on the row; energies are weighted
     by area, so that its meaning depends neither on the size nor on the density of the mesh.
 
-    A component whose pins leave it free to turn, or that has none, would make (7) singular: the vertices of one
-    of its faces are then held to the velocity of its pin, or to zero, which moves it without turning.
+    A component whose pins are all at one place, at rest or where a bent drawing brings them together, or that has
+    none, could turn freely and make (7) singular: the vertices of one of its faces are then held to the mean
+    velocity of its pins, or to zero, which moves it without turning.
     """
 
     def __init__(self, mesh: TriMesh, pin_weight: float) -> None:
@@ -34,14 +38,35 @@ class KillingSystem:
             kept = (2 * self._interior[:, None] + np.arange(2)).ravel()
             inner, self._inner_nonzeros = self._pattern.restricted(kept)
             self._interior_cholesky = SparseCholesky(inner)
-        self._nonzeros = np.zeros(self._pattern.count)
+        self._first_faces = np.unique(mesh.component[mesh.faces[:, 0]], return_index=True)[1]
+        self._same_place = _SAME_PLACE * np.sqrt(mesh.rest_areas.sum())
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
     def set_pins(self, points: MeshPoints) -> None:
-        """Choose the constraints C of eq. 3 and what holds parts that they leave free."""
-        mesh = self._mesh
-        anchors, leaders = _anchors(mesh, points)
-        self._leaders = leaders
+        """Choose the constraints C of eq. 3."""
+        self._points = points
+        self._pin_components = self._mesh.component[self._mesh.faces[points.faces, 0]]
+        self._constrain(self._free_components(self._mesh.vertices))
+
+    def _free_components(self, positions: Floats) -> NDArray[np.bool_]:
+        """Which components (c,) have no two pins at different places in the pose ``positions`` (n, 2)."""
+        places = self._mesh.evaluate(self._points, positions)
+        _, first, group = np.unique(self._pin_components, return_index=True, return_inverse=True)
+        apart = ((places - places[first][group]) ** 2).sum(axis=1) > self._same_place**2
+        free = np.ones(len(self._first_faces), dtype=bool)
+        free[self._pin_components[apart]] = False
+        return free
+
+    def _constrain(self, free: NDArray[np.bool_]) -> None:
+        """Constraints from the pins, and from an anchor face in each of the components ``free``."""
+        mesh, points = self._mesh, self._points
+        self._free = free
+        owners = self._pin_components == np.flatnonzero(free)[:, None]
+        count = owners.sum(axis=1)
+        self._means = owners / np.maximum(count, 1)[:, None]
+        anchors = self._first_faces[free]
+        for part in np.flatnonzero(count):
+            anchors[part] = points.faces[owners[part].argmax()]
         faces = np.concatenate([points.faces, np.repeat(anchors, 3)])
         weights = np.concatenate([points.weights, np.tile(np.eye(3), (len(anchors), 1))])
         self._corners = mesh.faces[faces]
@@ -62,6 +87,9 @@ class KillingSystem:
 
     def factorize(self, positions: Floats) -> None:
         """Prepare both systems at the pose ``positions`` (n, 2). Raises SolverError."""
+        free = self._free_components(positions)
+        if (free != self._free).any():
+            self._constrain(free)
         nonzeros = self._pattern.summed(killing_elements(positions, self._mesh.faces))
         if self._interior_cholesky is not None and self._needs_interior:
             self._interior_cholesky.factorize(nonzeros[self._inner_nonzeros])
@@ -94,9 +122,8 @@ class KillingSystem:
         return optimal, smooth
 
     def _constraints(self, velocities: Complexes) -> Complexes:
-        """Velocities of pins and anchors; an anchor follows its component's pin, or holds still."""
-        following = np.append(velocities, 0.0)[self._leaders]
-        return np.concatenate([velocities, np.repeat(following, 3)])
+        """Velocities of pins and anchors; an anchor follows the pins of its component, or holds still."""
+        return np.concatenate([velocities, np.repeat(self._means @ velocities, 3)])
 
     def _spread(self, values: Complexes) -> Complexes:
         """Wᵀ applied to values (c,) at the constraints."""
@@ -108,27 +135,3 @@ class KillingSystem:
     def _slots(self, rows: Ints, columns: Ints) -> Ints:
         keys = self._pattern.columns * self._pattern.size + self._pattern.rows
         return np.searchsorted(keys, columns.astype(np.int64) * self._pattern.size + rows)
-
-
-def _anchors(mesh: TriMesh, points: MeshPoints) -> tuple[Ints, Ints]:
-    """Faces that hold the components which fewer than two distinct pins control, and the pin each follows.
-
-    The pin's index is -1 for a component without pins.
-    """
-    labels = mesh.component[mesh.faces[:, 0]]
-    where = to_complex(mesh.evaluate(points, mesh.vertices)) if len(points) else np.zeros(0, complex)
-    pin_labels = labels[points.faces]
-    span = np.ptp(mesh.vertices, axis=0).max()
-    anchors, leaders = [], []
-    _, first_faces = np.unique(labels, return_index=True)
-    for label, first in enumerate(first_faces.tolist()):
-        pins = np.flatnonzero(pin_labels == label)
-        if not len(pins):
-            anchors.append(first)
-            leaders.append(-1)
-        elif np.abs(where[pins] - where[pins[0]]).max() <= 1e-9 * span:
-            anchors.append(int(points.faces[pins[0]]))
-            leaders.append(int(pins[0]))
-    return np.array(anchors, dtype=np.int32), np.array(leaders, dtype=np.int64)
-
-

@@ -16,15 +16,13 @@ FRAME_BUDGET = 0.02  # seconds of stepping in one frame
 
 
 class Editor:
-    """A session with a pointer, a selection and a camera.
-
-    canvas: the part of the window where the drawing is seen, (left, top, right, bottom) in points.
-    """
+    """A session with a pointer, a selection and a camera."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.session: Session | None = None
         self.camera = Camera()
-        self.canvas = (0.0, 0.0, 1280.0, 800.0)
+        self._canvas = (0.0, 0.0, 1280.0, 800.0)
+        self._fitted: Camera | None = None
         self.selection: frozenset[int] = frozenset()
         self.pointer: Point | None = None
         self.ui_scale = 1.0  # points of the window per point of the design
@@ -232,9 +230,11 @@ class Editor:
         return self.pin_at(self.pointer) if self.pointer is not None else None
 
     @property
-    def hovers_drawing(self) -> bool:
-        """Whether a click would put a pin."""
-        if self.session is None or self.pointer is None:
+    def would_add_pin(self) -> bool:
+        """Whether a click where the pointer is would add a pin."""
+        if self.session is None or self.pointer is None or self.hand or not isinstance(self.tool, Idle):
+            return False
+        if self.hovered_pin is not None:
             return False
         state, mesh = self.session.state, self.session.drawing.mesh
         return mesh.find(self.camera.to_drawing(self.pointer), state.positions) is not None
@@ -243,6 +243,19 @@ class Editor:
     def hand(self) -> bool:
         """Whether a left drag moves the canvas."""
         return self.hand_tool or self._space
+
+    @property
+    def canvas(self) -> tuple[float, float, float, float]:
+        """The part of the window where the drawing is seen, (left, top, right, bottom) in points."""
+        return self._canvas
+
+    @canvas.setter
+    def canvas(self, canvas: tuple[float, float, float, float]) -> None:
+        """A drawing that was fitted into the old canvas is fitted into the new one."""
+        if canvas != self._canvas:
+            self._canvas = canvas
+            if self.camera == self._fitted:
+                self.fit()
 
     def zoom(self, factor: float) -> None:
         """Magnify about the middle of the canvas."""
@@ -257,7 +270,7 @@ class Editor:
         pose = self.session.state.positions
         low, high = pose.min(axis=0), pose.max(axis=0)
         left, top, right, bottom = self.canvas
-        self.camera = fit(
+        self.camera = self._fitted = fit(
             (min(low[0], 0.0), min(low[1], 0.0)),
             (max(high[0], width), max(high[1], height)),
             (left, top),

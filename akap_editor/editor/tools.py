@@ -54,7 +54,7 @@ class Idle(Tool):
             return "Drag to move the canvas, wheel to zoom"
         if editor.hovered_pin is not None:
             return "Drag to bend the drawing, Shift-click to select several pins"
-        if editor.hovers_drawing:
+        if editor.would_add_pin:
             return "Click to add a pin, or press and drag to bend from here"
         if not editor.session.state.pins:
             return "Click on the drawing to put a pin where it should hold still"

@@ -11,6 +11,14 @@ from akap_editor.geometry.mesh import TriMesh
 
 SHAPES = SimpleNamespace(**run_path(str(Path(__file__).with_name("shapes.py"))))
 
+DENSE = SimpleNamespace(**run_path(str(Path(__file__).parents[1] / "deform" / "dense.py")))
+
+
+@pytest.fixture(scope="session")
+def dense() -> SimpleNamespace:
+    """What deform/dense.py defines: the paper's equations in loops and dense matrices."""
+    return DENSE
+
 
 @pytest.fixture(scope="session")
 def shapes() -> SimpleNamespace:
@@ -32,4 +40,5 @@ def mesh(shape_name: str) -> TriMesh:
 
 @pytest.fixture(scope="session")
 def renumbered() -> Callable:
+    """See shapes.py."""
     return SHAPES.renumbered

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import Delaunay
 
-from akap_editor.geometry.mesh import TriMesh, signed_areas
+from akap_editor.geometry.mesh import MeshPoints, TriMesh, signed_areas
 
 
 def blocks(picture: str, size: float, divisions: int = 1, jitter: float = 0.0) -> TriMesh:
@@ -79,6 +79,21 @@ def renumbered(mesh: TriMesh, seed: int) -> tuple[TriMesh, np.ndarray, np.ndarra
     turns = rng.integers(0, 3, len(faces))
     faces = np.take_along_axis(faces, (np.arange(3) + turns[:, None]) % 3, axis=1)
     return TriMesh(mesh.vertices[order], faces), order, np.argsort(face_order)
+
+
+def random_pins(mesh: TriMesh, seed: int, each: int = 3) -> MeshPoints:
+    """Pins at random places, ``each`` of them in every part, in random order."""
+    rng = np.random.default_rng(seed)
+    labels = mesh.component[mesh.faces[:, 0]]
+    faces = np.concatenate([rng.choice(np.flatnonzero(labels == part), each) for part in np.unique(labels)])
+    return MeshPoints(rng.permutation(faces), rng.dirichlet([1, 1, 1], len(faces)))
+
+
+def vertex_pins(mesh: TriMesh, vertices: np.ndarray) -> MeshPoints:
+    """Pins at vertices, as in the paper."""
+    faces = [int(np.flatnonzero((mesh.faces == vertex).any(axis=1))[0]) for vertex in vertices]
+    weights = (mesh.faces[faces] == np.asarray(vertices)[:, None]).astype(float)
+    return MeshPoints(faces, weights)
 
 
 SHAPES = {

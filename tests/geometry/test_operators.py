@@ -15,23 +15,6 @@ from akap_editor.geometry.operators import (
 )
 
 
-def dense_rows(positions, faces):
-    """P of eq. 6 with the gradient split into ∂x and ∂y and rows weighted by √area, x0 y0 x1 y1 ..."""
-    rows = np.zeros((3 * len(faces), 2 * len(positions)))
-    for f, (a, b, c) in enumerate(faces):
-        edges = np.linalg.inv(np.array([positions[b] - positions[a], positions[c] - positions[a]]))
-        hats = edges @ np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])  # ∂x and ∂y of the three hat functions
-        area = 0.5 / abs(np.linalg.det(edges))
-        for corner, vertex in enumerate((a, b, c)):
-            dx, dy = hats[:, corner] * np.sqrt(area)
-            rows[3 * f : 3 * f + 3, 2 * vertex : 2 * vertex + 2] += [
-                [2 * dx, 0.0],
-                [np.sqrt(2) * dy, np.sqrt(2) * dx],
-                [0.0, 2 * dy],
-            ]
-    return rows
-
-
 def assembled(positions, faces):
     """The matrix whose entries `killing_elements` gives, from the lower triangle."""
     rows, columns = element_pattern(faces)
@@ -67,8 +50,8 @@ def test_jacobians_of_affine_maps(mesh):
     assert np.abs(jacobians(mesh, pose) - matrix).max() < 1e-11
 
 
-def test_killing_matrix_is_that_of_the_stacked_rows(mesh):
-    rows = dense_rows(mesh.vertices, mesh.faces)
+def test_killing_matrix_is_that_of_the_stacked_rows(mesh, dense):
+    rows = dense.killing_rows(mesh.vertices, mesh.faces)
     assert np.abs(assembled(mesh.vertices, mesh.faces) - rows.T @ rows).max() < 1e-11
 
 
@@ -107,11 +90,11 @@ def test_energy_of_linear_fields(mesh, jacobian, density):
     assert energy == pytest.approx(density * mesh.rest_areas.sum(), rel=1e-12)
 
 
-def test_flipped_faces_count_by_their_size(mesh):
+def test_flipped_faces_count_by_their_size(mesh, dense):
     """A pose from elsewhere may have flipped faces: a mirrored one has the mirrored energy."""
     mirrored = mesh.vertices * [-1.0, 1.0]
     field = np.random.default_rng(7).normal(size=mirrored.shape)
     energy = killing_energy(mesh.vertices, mesh.faces, field)
     assert killing_energy(mirrored, mesh.faces, field * [-1.0, 1.0]) == pytest.approx(energy, rel=1e-12)
-    rows = dense_rows(mirrored, mesh.faces)
+    rows = dense.killing_rows(mirrored, mesh.faces)
     assert np.abs(assembled(mirrored, mesh.faces) - rows.T @ rows).max() < 1e-11

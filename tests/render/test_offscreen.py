@@ -129,13 +129,19 @@ def test_a_soft_rim_keeps_its_color_at_any_scale(offscreen, sheet, disc, scale):
         (0.01, (1, 1)),
         (1e-9, (1, 1)),
         (3, (192, 144)),
-        (1.1 / 1.28, (55, 42)),
     ],
 )
 def test_size_is_rounded_up(offscreen, sheet, noise, scale, size):
     drawing = sheet(noise)
     result = offscreen.render(drawing, drawing.mesh.vertices, scale=scale)
     assert (result.shape[1], result.shape[0]) == size
+
+
+def test_rounding_noise_adds_no_column(offscreen, sheet, noise):
+    assert 50 * 1.1 > 55
+    drawing = sheet(noise)
+    result = offscreen.render(drawing, drawing.mesh.vertices, box=(0, 0, 50, 50), scale=1.1)
+    assert result.shape == (55, 55, 4)
 
 
 def test_frame_box_holds_the_frame_and_all_poses(sheet, plain):

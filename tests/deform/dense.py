@@ -1,0 +1,71 @@
+"""The paper's equations once more, in loops and dense matrices: slow, plain, and free of the code under test."""
+
+import cmath
+
+import numpy as np
+
+
+def killing_rows(positions, faces):
+    """P of eq. 6 with the gradient split into ∂x and ∂y and rows weighted by √area, x0 y0 x1 y1 ..."""
+    rows = np.zeros((3 * len(faces), 2 * len(positions)))
+    for f, (a, b, c) in enumerate(faces):
+        edges = np.linalg.inv(np.array([positions[b] - positions[a], positions[c] - positions[a]]))
+        hats = edges @ np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])  # ∂x and ∂y of the three hat functions
+        area = 0.5 / abs(np.linalg.det(edges))
+        for corner, vertex in enumerate((a, b, c)):
+            dx, dy = hats[:, corner] * np.sqrt(area)
+            rows[3 * f : 3 * f + 3, 2 * vertex : 2 * vertex + 2] += [
+                [2 * dx, 0.0],
+                [np.sqrt(2) * dy, np.sqrt(2) * dx],
+                [0.0, 2 * dy],
+            ]
+    return rows
+
+
+def pin_rows(mesh, points):
+    """I_k of eq. 6, with three weights for each pin instead of a single one."""
+    rows = np.zeros((2 * len(points), 2 * len(mesh.vertices)))
+    for pin, (face, weights) in enumerate(zip(points.faces, points.weights, strict=True)):
+        for vertex, weight in zip(mesh.faces[face], weights, strict=True):
+            rows[2 * pin, 2 * vertex] = rows[2 * pin + 1, 2 * vertex + 1] = weight
+    return rows
+
+
+def boundary(mesh):
+    """Vertices of edges that belong to one face."""
+    sides = [tuple(sorted(s)) for a, b, c in mesh.faces.tolist() for s in ((a, b), (b, c), (c, a))]
+    return sorted({vertex for side in sides if sides.count(side) == 1 for vertex in side})
+
+
+def smooth_field(mesh, positions, points, velocities, weight):
+    """U° of eq. 5 by least squares on the stacked rows, (n, 2)."""
+    rows = np.vstack([killing_rows(positions, mesh.faces), weight * pin_rows(mesh, points)])
+    right = np.concatenate([np.zeros(3 * len(mesh.faces)), weight * velocities.ravel()])
+    return np.linalg.lstsq(rows, right, rcond=1e-13)[0].reshape(-1, 2)
+
+
+def dirichlet_field(mesh, positions, smooth):
+    """U_opt of eq. 8: least Killing energy among the fields that agree with ``smooth`` on the boundary."""
+    rows = killing_rows(positions, mesh.faces)
+    free = np.ones(len(smooth), dtype=bool)
+    free[boundary(mesh)] = False
+    free = free.repeat(2)
+    result = smooth.ravel().copy()
+    result[free] = np.linalg.lstsq(rows[:, free], -rows[:, ~free] @ result[~free], rcond=1e-13)[0]
+    return result.reshape(-1, 2)
+
+
+def spiral_flow(mesh, positions, field, t=1.0):
+    """Eqs. 14 to 16 edge by edge, with centers."""
+    p, u = [complex(*q) for q in positions], [complex(*q) for q in field]
+    reached = [[] for _ in p]
+    for edge in mesh.edges.tolist():
+        for i, j in (edge, edge[::-1]):
+            s = (u[i] - u[j]) / (p[i] - p[j])
+            if abs(s) < 1e-12:
+                reached[i].append(p[i] + t * u[i])
+            else:
+                center = p[i] - u[i] / s
+                reached[i].append(center + cmath.exp(s * t) * (p[i] - center))
+    means = [sum(places) / len(places) for places in reached]
+    return np.array([[z.real, z.imag] for z in means])

@@ -1,0 +1,440 @@
+import numpy as np
+import pytest
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
+
+from akap_editor.deform.akap import AkapDeformer
+from akap_editor.editor.camera import Camera
+from akap_editor.editor.document import Settings, new_document
+from akap_editor.editor.editor import Editor
+from akap_editor.editor.events import PointerEvent
+from akap_editor.errors import InputError, SolverError
+
+from .driver import BESIDE, Driver, bits
+
+HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
+
+
+def test_without_a_drawing_nothing_happens():
+    editor = Editor()
+    for kind in ("press", "move", "release"):
+        editor.handle_event(PointerEvent(kind, (50.0, 50.0)))
+    for act in (editor.undo, editor.redo, editor.reset_pose, editor.select_all, editor.fit, editor.cancel):
+        act()
+    editor.remove_pins([1])
+    editor.set_settings(Settings("akap"))
+    assert editor.add_pin((1.0, 1.0)) is None
+    assert not (editor.moving or editor.advance() or editor.modified or editor.would_add_pin)
+    assert editor.hovered_pin is None
+    assert "Open" in editor.hint
+
+
+def test_a_drawing_opens_in_full_view_without_selection(pinned, drawing):
+    pinned.editor.select_all()
+    pinned.editor.open(new_document(drawing))
+    left, top, right, bottom = pinned.editor.canvas
+    (x0, y0), (x1, y1) = (pinned.editor.camera.to_screen(corner) for corner in ((0.0, 0.0), drawing.size))
+    assert left < x0 < x1 < right
+    assert top < y0 < y1 < bottom
+    assert pinned.editor.selection == frozenset()
+    assert pinned.depth == 0
+
+
+def test_opening_ends_the_gesture_of_the_old_drawing(pinned, drawing):
+    old = pinned.session
+    pinned.press(END)
+    pinned.move((90.0, 60.0))
+    pinned.editor.open(new_document(drawing))
+    assert pinned.tool == "Idle"
+    assert not old.history.is_open
+    assert not pinned.editor.busy
+
+
+def test_a_drawing_that_cannot_be_opened_leaves_the_old_one(pinned, drawing):
+    old, before = pinned.session, pinned.everything
+    with pytest.raises(InputError):
+        pinned.editor.open(new_document(drawing, Settings("no such method")))
+    assert pinned.session is old
+    assert pinned.everything == before
+
+
+def test_fit_shows_all_of_the_pose(pinned):
+    pinned.press(END)
+    pinned.move((180.0, -60.0))
+    pinned.settle()
+    pinned.release((180.0, -60.0))
+    pinned.editor.fit()
+    screen = [pinned.editor.camera.to_screen(tuple(p)) for p in pinned.state.positions]
+    left, top, right, bottom = pinned.editor.canvas
+    assert (np.min(screen, axis=0) > (left, top)).all()
+    assert (np.max(screen, axis=0) < (right, bottom)).all()
+
+
+def test_zoom_is_about_the_middle_of_the_canvas(pinned):
+    pinned.editor.canvas = (200.0, 100.0, 600.0, 500.0)
+    middle = pinned.editor.camera.to_drawing((400.0, 300.0))
+    pinned.editor.zoom(2.5)
+    assert pinned.editor.camera.to_drawing((400.0, 300.0)) == pytest.approx(middle)
+
+
+def test_the_wheel_zooms_about_the_pointer_and_back(pinned):
+    camera = pinned.editor.camera
+    screen = camera.to_screen(NECK)
+    pinned.scroll(NECK, 3)
+    assert pinned.editor.camera.zoom > camera.zoom
+    assert pinned.editor.camera.to_screen(NECK) == pytest.approx(screen)
+    pinned.scroll(NECK, -3)
+    assert pinned.editor.camera.zoom == pytest.approx(camera.zoom)
+
+
+def test_hover(pinned):
+    pinned.move(NECK)
+    assert pinned.editor.hovered_pin == 2
+    assert not pinned.editor.would_add_pin
+    pinned.move((45.0, 25.0))
+    assert pinned.editor.hovered_pin is None
+    assert pinned.editor.would_add_pin
+    pinned.move(BESIDE)
+    assert not pinned.editor.would_add_pin
+    pinned.move((45.0, 25.0))
+    pinned.editor.hand_tool = True
+    assert not pinned.editor.would_add_pin
+    pinned.editor.hand_tool = False
+    pinned.press((45.0, 25.0))
+    assert not pinned.editor.would_add_pin
+    pinned.key("escape")
+    assert pinned.editor.would_add_pin
+    pinned.editor.pointer_left()
+    assert pinned.editor.hovered_pin is None
+    assert not pinned.editor.would_add_pin
+
+
+@pytest.mark.parametrize("looked_elsewhere", [False, True])
+def test_a_fitted_drawing_stays_fitted_when_the_canvas_changes(driver, looked_elsewhere):
+    if looked_elsewhere:
+        driver.scroll(NECK, 1)
+    before = driver.editor.camera
+    driver.editor.canvas = (100.0, 50.0, 500.0, 450.0)
+    if looked_elsewhere:
+        assert driver.editor.camera == before
+    else:
+        assert driver.editor.camera.to_screen((60.0, 40.0)) == pytest.approx((300.0, 250.0))
+
+
+def test_the_hint_of_idle_says_what_a_press_would_do(driver):
+    hints = []
+    for at in (BESIDE, NECK):
+        driver.move(at)
+        hints.append(driver.editor.hint)
+    driver.click(NECK)
+    for at in (NECK, BESIDE):
+        driver.move(at)
+        hints.append(driver.editor.hint)
+    driver.editor.hand_tool = True
+    hints.append(driver.editor.hint)
+    assert len(set(hints)) == 5
+
+
+# -- edits -------------------------------------------------------------------------------------------------
+
+
+def edit_add(d):
+    assert d.editor.add_pin((45.0, 45.0)) == 4
+    return "Add pin"
+
+
+def edit_remove_one(d):
+    d.editor.remove_pins([2])
+    return "Remove pin"
+
+
+def edit_remove_selected(d):
+    d.editor.select({1, 3})
+    d.editor.remove_selected()
+    assert d.ids == [2]
+    return "Remove 2 pins"
+
+
+def edit_reset(d):
+    d.editor.reset_pose()
+    return "Reset pose"
+
+
+def edit_settings(d):
+    d.editor.set_settings(d.state.settings.with_parameter("memory", 0.0))
+    return "Change settings"
+
+
+@pytest.mark.parametrize("edit", [edit_add, edit_remove_one, edit_remove_selected, edit_reset, edit_settings])
+def test_an_edit_is_one_entry_and_undo_and_redo_are_exact(pinned, edit):
+    pinned.drag(END, (90.0, 60.0))
+    pinned.settle()
+    before, depth = bits(pinned.state), pinned.depth
+    label = edit(pinned)
+    pinned.check()
+    after = bits(pinned.state)
+    assert after != before
+    assert (pinned.depth, pinned.session.history.undo_label) == (depth + 1, label)
+    pinned.undo()
+    assert bits(pinned.state) == before
+    pinned.redo()
+    assert bits(pinned.state) == after
+
+
+def test_removed_pins_leave_the_selection_and_undo_does_not_select_them(pinned):
+    pinned.editor.select({1, 2})
+    pinned.editor.remove_pins([2])
+    assert pinned.editor.selection == {1}
+    pinned.undo()
+    assert pinned.ids == [1, 2, 3]
+    assert pinned.editor.selection == {1}
+
+
+@pytest.mark.parametrize("ids", [[], [99]])
+def test_removing_nothing_is_no_edit(pinned, ids):
+    before = pinned.everything
+    pinned.editor.remove_pins(ids)
+    assert pinned.everything == before
+
+
+def test_a_pin_beside_the_drawing_is_no_edit(pinned):
+    before = pinned.everything
+    assert pinned.editor.add_pin(BESIDE) is None
+    assert pinned.everything == before
+
+
+def test_the_same_settings_again_are_no_edit(pinned):
+    before = pinned.everything
+    pinned.editor.set_settings(Settings())
+    assert pinned.everything == before
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        lambda editor: editor.add_pin((np.nan, 0.0)),
+        lambda editor: editor.set_settings(Settings("no such method")),
+        lambda editor: editor.set_settings(Settings("akap", (("no such parameter", 1),))),
+    ],
+)
+def test_a_failed_edit_changes_nothing_and_leaves_no_gesture_open(pinned, bad):
+    pinned.drag(END, (90.0, 60.0), steps=2)
+    assert pinned.editor.moving
+    before = pinned.everything
+    with pytest.raises(InputError):
+        bad(pinned.editor)
+    assert pinned.everything == before
+    assert not pinned.editor.busy
+    assert pinned.editor.moving
+
+
+def test_a_new_edit_ends_redo(pinned):
+    pinned.undo()
+    assert pinned.session.history.redo_label == "Add pin"
+    pinned.editor.reset_pose()
+    assert pinned.session.history.redo_label is None
+
+
+def test_select_knows_only_pins_that_are_there(pinned):
+    pinned.editor.select([2, 3, 99])
+    assert pinned.editor.selection == {2, 3}
+    pinned.editor.select_all()
+    assert pinned.editor.selection == {1, 2, 3}
+
+
+def test_modified_and_saved(pinned, tmp_path):
+    pinned.editor.mark_saved(tmp_path / "a.akap")
+    assert not pinned.editor.modified
+    for act in (lambda: pinned.click(NECK), lambda: pinned.click(BESIDE), lambda: pinned.scroll(NECK, 2)):
+        act()
+        assert not pinned.editor.modified
+    pinned.drag(END, (90.0, 60.0))
+    pinned.settle()
+    assert pinned.editor.modified
+    pinned.undo()
+    assert not pinned.editor.modified
+
+
+# -- motion ------------------------------------------------------------------------------------------------
+
+
+def test_advance_without_budget_makes_exactly_one_step(pinned):
+    pinned.press(END)
+    pinned.move((80.0, 70.0))
+    before = sum(event["do"] == "step" for event in pinned.session.recording.events)
+    assert pinned.editor.advance(budget=0.0)
+    assert sum(event["do"] == "step" for event in pinned.session.recording.events) == before + 1
+
+
+def test_advance_with_time_makes_steps_until_the_pins_are_near(pinned):
+    pinned.press(END)
+    pinned.move((90.0, 60.0))
+    assert pinned.editor.advance(budget=1e9)
+    assert pinned.session.pin_error() < 1.0
+
+
+def test_at_rest_advance_does_nothing(pinned):
+    before, revision = pinned.everything, pinned.session.document.revision
+    assert not pinned.editor.moving
+    assert not pinned.editor.advance()
+    assert (pinned.everything, pinned.session.document.revision) == (before, revision)
+
+
+def test_the_drawing_settles_after_release_and_redo_returns_the_settled_pose(pinned):
+    pinned.drag(END, (88.0, 66.0), steps=2)
+    released = bits(pinned.state)
+    pinned.settle()
+    settled = bits(pinned.state)
+    assert settled != released
+    pinned.undo()
+    pinned.redo()
+    assert bits(pinned.state) == settled
+
+
+def test_a_solver_error_cancels_the_gesture_and_is_raised(pinned, monkeypatch):
+    pinned.editor.select({1})
+    before = pinned.everything
+    pinned.press(END)
+    pinned.move((90.0, 60.0))
+    pinned.advance()
+
+    def fail(self, positions, targets):
+        raise SolverError("on purpose")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(AkapDeformer, "step", fail)
+        with pytest.raises(SolverError, match="on purpose"):
+            pinned.editor.advance()
+    assert pinned.tool == "Idle"
+    assert pinned.everything == before
+    assert not pinned.editor.moving
+    pinned.drag(END, (95.0, 50.0))
+    pinned.settle()
+    assert np.hypot(*np.subtract(pinned.where(3), (95.0, 50.0))) < 0.25
+
+
+def test_a_solver_error_after_release_keeps_the_last_good_pose(pinned, monkeypatch):
+    pinned.drag(END, (90.0, 60.0), steps=2)
+    before = pinned.everything
+
+    def fail(self, positions, targets):
+        raise SolverError("on purpose")
+
+    monkeypatch.setattr(AkapDeformer, "step", fail)
+    with pytest.raises(SolverError):
+        pinned.editor.advance()
+    assert pinned.everything == before
+    assert not pinned.editor.moving
+
+
+# -- any sequence of events --------------------------------------------------------------------------------
+
+places = st.one_of(
+    st.sampled_from([HEAD, NECK, END, (45.0, 25.0), (45.0, 55.0), BESIDE, (118.0, 78.0)]),
+    st.tuples(st.floats(-20, 140), st.floats(-20, 100)),
+)
+buttons = st.sampled_from(["left", "left", "left", "middle", "right"])
+
+
+def machine(drawing):
+    class Editing(RuleBasedStateMachine):
+        """A hand that does anything; the driver checks after each event what must always hold."""
+
+        @initialize()
+        def begin(self):
+            self.driver = Driver(new_document(drawing))
+            self.editor = self.driver.editor
+            self.first = bits(self.driver.state)
+            self.driver.click(HEAD)
+            self.driver.click(END)
+
+        @rule(at=places, button=buttons, shift=st.booleans())
+        def press(self, at, button, shift):
+            self.driver.press(at, button, shift)
+
+        @rule(at=places, steps=st.integers(0, 3))
+        def move(self, at, steps):
+            self.driver.move(at)
+            for _ in range(steps):
+                self.driver.advance()
+
+        @rule(at=places, button=buttons)
+        def release(self, at, button):
+            self.driver.release(at, button)
+
+        @rule(at=places, shift=st.booleans())
+        def click(self, at, shift):
+            self.driver.click(at, shift)
+
+        @rule(pin=st.integers(0, 5), to=places, shift=st.booleans())
+        def grab_a_pin(self, pin, to, shift):
+            self.driver.key("escape")
+            if self.driver.ids:
+                self.driver.press(self.driver.where(self.driver.ids[pin % len(self.driver.ids)]), shift=shift)
+                self.driver.move(to)
+                self.driver.advance()
+
+        @rule(end=st.booleans())
+        def end_gesture(self, end):
+            if end:
+                self.driver.release(NECK)
+            else:
+                self.driver.key("escape")
+
+        @rule(count=st.integers(1, 20))
+        def advance(self, count):
+            for _ in range(count):
+                self.driver.advance()
+
+        @rule(at=places, amount=st.integers(-3, 3))
+        def look_elsewhere(self, at, amount):
+            self.driver.scroll(at, amount)
+            self.driver.drag(at, NECK, steps=1, button="middle")
+
+        @rule(back=st.booleans())
+        def undo_or_redo(self, back):
+            if back:
+                self.driver.undo()
+            else:
+                self.driver.redo()
+
+        @rule(everything=st.booleans())
+        def remove_selected(self, everything):
+            if everything:
+                self.editor.select_all()
+            self.editor.remove_selected()
+            self.driver.check()
+
+        @rule(memory=st.sampled_from([0.0, 1.0, None]))
+        def change_memory_or_reset_pose(self, memory):
+            if memory is None:
+                self.editor.reset_pose()
+            else:
+                self.editor.set_settings(self.driver.state.settings.with_parameter("memory", memory))
+            self.driver.check()
+
+        def teardown(self):
+            self.editor.cancel()
+            states = [bits(self.driver.state)]
+            while self.driver.depth:
+                self.driver.undo()
+                states.append(bits(self.driver.state))
+            assert states[-1] == self.first
+            for state in reversed(states[:-1]):
+                self.driver.redo()
+                assert bits(self.driver.state) == state
+
+    return Editing
+
+
+def test_whatever_is_done_can_be_undone_and_redone(drawing):
+    run_state_machine_as_test(
+        machine(drawing), settings=settings(max_examples=20, stateful_step_count=30)
+    )
+
+
+def test_camera_is_not_undoable(pinned):
+    pinned.editor.camera = Camera(3.0, (1.0, 2.0))
+    pinned.undo()
+    assert pinned.editor.camera == Camera(3.0, (1.0, 2.0))

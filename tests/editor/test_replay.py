@@ -1,0 +1,201 @@
+import random
+
+import numpy as np
+import pytest
+
+from akap_editor.editor.document import Settings, new_document
+from akap_editor.editor.recording import Recording, drawing_header, parse_recording
+from akap_editor.editor.replay import replay
+from akap_editor.errors import InputError
+
+from .driver import Driver, bits
+
+HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
+
+
+def last(recording, drawing):
+    """The state that a recording ends with."""
+    *_, (_, state) = replay(recording, drawing)
+    return state
+
+
+def written_and_read(recording):
+    return parse_recording(recording.to_text())
+
+
+def edit_at_random(driver, seed, edits=25):
+    """Every kind of edit, in a random order; the states after each."""
+    dice = random.Random(seed)
+    editor = driver.editor
+
+    def place():
+        return dice.uniform(10, 110), dice.uniform(15, 65)
+
+    def drag(end):
+        if driver.ids:
+            driver.press(driver.where(dice.choice(driver.ids)), shift=dice.random() < 0.3)
+            for _ in range(3):
+                driver.move(place())
+                driver.advance()
+            end()
+
+    def memory():
+        editor.set_settings(driver.state.settings.with_parameter("memory", dice.choice([0.0, 0.5, 1.0])))
+
+    acts = [
+        lambda: driver.click(place(), shift=dice.random() < 0.5),
+        lambda: drag(lambda: driver.release(NECK)),
+        lambda: drag(lambda: driver.release(NECK)),
+        lambda: drag(lambda: driver.key("escape")),
+        driver.settle,
+        driver.undo,
+        driver.redo,
+        editor.remove_selected,
+        editor.select_all,
+        memory,
+        editor.reset_pose,
+    ]
+    for at in (HEAD, NECK, END):
+        driver.click(at)
+    for _ in range(edits):
+        dice.choice(acts)()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_on_its_own_mesh_a_replay_is_equal_to_the_last_bit(new_driver, drawing, seed):
+    driver = new_driver()
+    edit_at_random(driver, seed)
+    recording = driver.session.recording
+    kinds = {event["do"] for event in recording.events}
+    assert {"settings", "begin", "pins", "targets", "step", "commit"} <= kinds
+    assert bits(last(written_and_read(recording), drawing)) == bits(driver.state)
+
+
+def test_the_random_sessions_hold_every_kind_of_event_but_a_pose(new_driver):
+    kinds = set()
+    for seed in range(4):
+        driver = new_driver()
+        edit_at_random(driver, seed)
+        kinds |= {event["do"] for event in driver.session.recording.events}
+    assert kinds == {
+        "settings", "begin", "pins", "targets", "step", "commit", "abort", "undo", "redo", "reset",
+    }  # fmt: skip
+
+
+def test_every_state_on_the_way_is_that_of_the_session(pinned, drawing):
+    """Not only the last one: a replay yields one state an event, with its time."""
+    session = pinned.session
+    pinned.press(END)
+    pinned.move((90.0, 60.0))
+    poses = [session.state.positions.tobytes()]
+    first = len(session.recording.events)
+    while pinned.editor.moving:
+        pinned.advance()
+        poses.append(session.state.positions.tobytes())
+    frames = list(replay(written_and_read(session.recording), drawing))
+    assert [time for time, _ in frames] == [event["t"] for event in session.recording.events]
+    assert [state.positions.tobytes() for _, state in frames[first - 1 :]] == poses
+
+
+def test_a_session_that_began_in_the_middle_replays_too(pinned, drawing):
+    pinned.drag(END, (90.0, 60.0))
+    pinned.settle()
+    resumed = Driver(pinned.session.document)
+    resumed.drag((90.0, 60.0), (95.0, 50.0))
+    resumed.settle()
+    assert bits(last(written_and_read(resumed.session.recording), drawing)) == bits(resumed.state)
+
+
+def test_a_session_with_other_settings_replays_with_them(drawing):
+    settings = Settings("akap", (("memory", 0.0), ("trajectory", "linear")))
+    driver = Driver(new_document(drawing, settings))
+    driver.click(HEAD)
+    driver.drag(END, (90.0, 60.0))
+    state = last(written_and_read(driver.session.recording), drawing)
+    assert state.settings == settings
+    assert bits(state) == bits(driver.state)
+
+
+def test_on_another_mesh_of_the_picture_pins_end_near_their_targets(pinned, finer_drawing):
+    pinned.drag(END, (90.0, 60.0))
+    pinned.settle()
+    state = last(written_and_read(pinned.session.recording), finer_drawing)
+    assert len(state.positions) == len(finer_drawing.mesh.vertices)
+    np.testing.assert_allclose(state.targets, pinned.state.targets, atol=1e-9)
+    places = finer_drawing.mesh.evaluate(state.points, state.positions)
+    assert np.hypot(*(places - pinned.session.pin_positions()).T).max() < 1.0
+
+
+def test_a_recording_cut_off_in_the_middle_of_a_gesture_replays_up_to_there(pinned, drawing):
+    pinned.press(END)
+    pinned.move((90.0, 60.0))
+    pinned.advance()
+    cut = pinned.session.recording.to_text()
+    after = bits(pinned.state)
+    pinned.advance()
+    next_line = pinned.session.recording.to_text()[len(cut) :]
+    assert bits(last(parse_recording(cut + next_line[:7]), drawing)) == after
+
+
+PIN = {"id": 1, "face": 3, "weights": [1, 0, 0], "rest": [20, 40], "target": [20, 40]}
+SETTINGS = {"do": "settings", "method": "akap", "parameters": {}}
+NAN, INFINITE = float("nan"), float("inf")
+
+
+def pins(**changed):
+    return {"do": "pins", "pins": [{**PIN, **changed}]}
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        pins(face=1_000_000),
+        pins(face=-1),
+        pins(face=10**30),
+        pins(face=INFINITE),
+        pins(face="first"),
+        pins(weights=[0.5, 0.2, 0.2]),
+        pins(weights=[NAN, 0.5, 0.5]),
+        pins(weights=[0.5, 0.5]),
+        pins(weights=None),
+        pins(target=[NAN, 40]),
+        pins(target=[1, 2, 3]),
+        pins(id=NAN),
+        {"do": "pins", "pins": [{}]},
+        {"do": "pins", "pins": 5},
+        {"do": "targets", "targets": {"2": [1, 2]}},
+        {"do": "targets", "targets": {"one": [1, 2]}},
+        {"do": "targets", "targets": {"1": [NAN, 2]}},
+        {"do": "targets", "targets": {"1": [1, 2, 3]}},
+        {"do": "targets", "targets": {"1": ["left", "up"]}},
+        {"do": "targets", "targets": [[1, 2]]},
+        {"do": "pose", "positions": [[1, 2]]},
+        {"do": "pose", "positions": None},
+        {"do": "settings", "method": "no such method", "parameters": {}},
+        {"do": "settings", "method": "akap", "parameters": {"no such parameter": 1}},
+        {"do": "settings", "method": "akap", "parameters": {"memory": None}},
+        {"do": "settings", "method": "akap", "parameters": 5},
+        {"do": "begin", "label": "a gesture inside a gesture"},
+    ],
+)
+def test_an_event_that_cannot_be_done_is_named_by_its_line(drawing, bad):
+    events = [SETTINGS, {"do": "begin", "label": "Pins"}, pins(), bad]
+    text = Recording(drawing_header(drawing), [{"t": 0, **event} for event in events]).to_text()
+    frames = replay(parse_recording(text), drawing)
+    for _ in range(3):
+        next(frames)
+    with pytest.raises(InputError, match="line 5: cannot be replayed"):
+        next(frames)
+
+
+@pytest.mark.parametrize("do", ["commit", "abort"])
+def test_a_gesture_that_never_began_cannot_end(drawing, do):
+    recording = Recording(drawing_header(drawing), [{"t": 0, "do": do}])
+    with pytest.raises(InputError, match="line 2: cannot be replayed, no gesture is open"):
+        list(replay(recording, drawing))
+
+
+def test_on_another_mesh_a_pin_beside_the_drawing_is_named(drawing):
+    events = [{"t": 0, "do": "begin", "label": "Pins"}, {"t": 0, **pins(rest=[2.0, 2.0])}]
+    with pytest.raises(InputError, match="line 3: cannot be replayed, .* outside the drawing"):
+        list(replay(Recording({}, events), drawing))
