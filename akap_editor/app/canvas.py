@@ -44,6 +44,12 @@ class Canvas:
             editor.handle_event(ScrollEvent(position, io.mouse_wheel))
 
     @staticmethod
+    def let_go(space: Workspace) -> None:
+        """End what is held half-way, for its end will not be seen: a dialog or another window has the input."""
+        space.editor.cancel()
+        space.editor.handle_event(KeyEvent("space", pressed=False))
+
+    @staticmethod
     def _read_keys(space: Workspace) -> None:
         if imgui.is_key_pressed(imgui.Key.space, False):
             space.editor.handle_event(KeyEvent("space"))

@@ -76,6 +76,12 @@ def _remember(space: Workspace) -> None:
         space.editor.set_settings(settings.with_parameter("memory", 0.0 if remembers(space) else 1.0))
 
 
+def _can_undo(space: Workspace) -> bool:
+    """In the middle of a gesture undo takes that one back."""
+    editor = space.editor
+    return editor.busy or (editor.session is not None and editor.session.history.undo_label is not None)
+
+
 def remembers(space: Workspace) -> bool:
     """Whether the drawing remembers its rest shape."""
     session = space.editor.session
@@ -99,7 +105,7 @@ UNDO = Command(
     lambda space: space.editor.undo(),
     (CTRL | Key.z,),
     icons.ICON_FA_ARROW_ROTATE_LEFT,
-    lambda space: space.editor.session is not None and space.editor.session.history.undo_label is not None,
+    _can_undo,
 )
 REDO = Command(
     "Redo",

@@ -91,6 +91,7 @@ class Window:
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         imgui.destroy_context()
+        self.ctx.release()
         glfw.destroy_window(self._handle)
         glfw.terminate()
 
@@ -184,7 +185,9 @@ class Window:
         modal = imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
         if not imgui.get_io().want_text_input and not modal:
             commands.run_pressed(space)
-        if not modal:
+        if modal:
+            self._canvas.let_go(space)
+        else:
             self._canvas.read_input(space)
             self._canvas.choose_cursor(space)
         space.editor.advance()
@@ -245,7 +248,7 @@ class Window:
     def _watch_focus(self) -> None:
         focused = bool(glfw.get_window_attrib(self._handle, glfw.FOCUSED))
         if self._focused and not focused:
-            self.space.editor.cancel()
+            self._canvas.let_go(self.space)
         self._focused = focused
 
     def _on_drop(self, _: Any, paths: Any) -> None:

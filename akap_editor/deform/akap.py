@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError, SolverError
-from ..geometry.checks import Complexes, Floats, as_indices, as_points
+from ..geometry.checks import Complexes, Floats, as_indices, as_number, as_points
 from ..geometry.mesh import MeshPoints, TriMesh, signed_areas
 from ..geometry.operators import killing_energy, to_complex, to_points
 from .akvf import KillingSystem
@@ -45,16 +45,12 @@ class AkapDeformer:
         pin_weight: float = 100.0,
         max_step: float = 0.01,
     ) -> None:
-        if not 0 <= memory <= 1:
-            raise InputError(f"memory: expected a number from 0 to 1, got {memory!r}")
+        self._memory = as_number(memory, "memory", 0, 1)
         if trajectory not in ("spiral", "linear"):
             raise InputError(f"trajectory: expected 'spiral' or 'linear', got {trajectory!r}")
-        if not (pin_weight > 0 and math.isfinite(pin_weight)):
-            raise InputError(f"pin_weight: expected a positive number, got {pin_weight!r}")
-        if not max_step > 0:
-            raise InputError(f"max_step: expected a positive number, got {max_step!r}")
+        as_number(pin_weight, "pin_weight", 1e-3, 1e6)
+        as_number(max_step, "max_step", 1e-4, math.inf)
         self._mesh = mesh
-        self._memory = float(memory)
         self._dirichlet = bool(dirichlet)
         length = math.sqrt(mesh.rest_areas.sum())
         self._max_length = max_step * length

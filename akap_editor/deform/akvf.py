@@ -15,12 +15,12 @@ class KillingSystem:
     """The two linear systems of the paper on one mesh: (7) with the pins, (8) with the boundary fixed.
 
     Both patterns depend on the mesh alone, since a pin couples only vertices of one face: their symbolic
-    factorizations are made once. ``pin_weight`` is the paper's λ as in eq. 5, on the row; energies are weighted
-    by area, so that its meaning depends neither on the size nor on the density of the mesh.
+    factorizations are made once. ``pin_weight`` is the paper's λ as in eq. 5, on the row; energies are
+    weighted by area, so that its meaning depends neither on the size nor on the density of the mesh.
 
-    A component whose pins are all at one place, at rest or where a bent drawing brings them together, or that has
-    none, could turn freely and make (7) singular: the vertices of one of its faces are then held to the mean
-    velocity of its pins, or to zero, which moves it without turning.
+    A component whose pins are all at one place, at rest or where a bent drawing brings them together, or that
+    has none, could turn freely and make (7) singular: the vertices of one of its faces are then held to the
+    mean velocity of its pins, or to zero, which moves it without turning.
     """
 
     def __init__(self, mesh: TriMesh, pin_weight: float) -> None:
@@ -107,8 +107,8 @@ class KillingSystem:
     def field(self, velocities: Complexes, dirichlet: bool = True) -> tuple[Complexes, Complexes]:
         """U_opt of (8) and U° of (7), (n,) each, for pin velocities (k,), at the pose last factorized.
 
-        (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = λ² Wᵀ(W U° − ũ): the residual that the
-        pins leave in (7), which by (7) is −K U°. Without ``dirichlet`` both are U°.
+        (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = λ² Wᵀ(W U° − ũ): the residual that
+        the pins leave in (7), which by (7) is −K U°. Without ``dirichlet`` both are U°.
         """
         wanted = self._constraints(velocities)
         smooth = self.precondition(self._spread(self._weight * wanted))

@@ -31,7 +31,7 @@ class SymmetricPattern:
 
     def summed(self, entries: Floats) -> Floats:
         """Nonzeros (count,) from entries (q,) in the order in which the pattern was given."""
-        return np.bincount(self.slots, weights=entries, minlength=self.count)
+        return np.bincount(self.slots, weights=entries, minlength=self.count).astype(np.float64, copy=False)
 
     def restricted(self, kept: Ints) -> tuple["SymmetricPattern", Ints]:
         """The pattern of the rows and columns ``kept`` alone, and which of the nonzeros are its own."""
@@ -61,7 +61,9 @@ class SparseCholesky:
         try:
             cholmod.numeric(self._matrix, self._factor)
         except ArithmeticError as error:
-            raise SolverError("the linear system is singular: the pose is degenerate or a part is free") from error
+            raise SolverError(
+                "the linear system is singular: a face has collapsed or a part is free"
+            ) from error
 
     def solve(self, right: Floats) -> Floats:
         """Solution of the last factorized system for one right-hand side (size,). Raises SolverError."""

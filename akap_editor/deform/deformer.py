@@ -50,7 +50,10 @@ class Deformer(Protocol):
         """Choose the pins, k points of the mesh; moves nothing."""
 
     def step(self, positions: ArrayLike, targets: ArrayLike) -> StepResult:
-        """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2). Raises InputError, SolverError."""
+        """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2).
+
+        Raises InputError and SolverError.
+        """
 
 
 def _methods() -> dict[str, Any]:
@@ -65,9 +68,9 @@ def method_names() -> list[str]:
 
 
 def make_deformer(method: str, mesh: TriMesh, **settings: Any) -> Deformer:
-    """A deformation method by name, its settings by keyword. Raises InputError on an unknown name or setting."""
+    """A deformation method by name, its settings by keyword. Raises InputError on unknown ones."""
     methods = _methods()
-    if method not in methods:
+    if method not in list(methods):
         raise InputError(f"method: expected one of {', '.join(methods)}, got {method!r}")
     known = list(inspect.signature(methods[method]).parameters)[1:]
     for name in settings:

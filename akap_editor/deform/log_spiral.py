@@ -19,9 +19,9 @@ def spiral_factor(s: Complexes) -> Complexes:
 class LogSpirals:
     """Moves the vertices of a mesh along the averaged spirals of eq. 16.
 
-    Eqs. 14 and 15 in one formula that needs no center: with s = (u1 − u2) / (p1 − p2) for an edge, the flow is
-    γ(t) = p + t φ(t s) u, for spirals (s ≠ 0) and translations (s = 0) alike. Since p and u do not depend on
-    the neighbor, eq. 16 is p + t u · mean φ(t s).
+    Eqs. 14 and 15 in one formula that needs no center: with s = (u1 − u2) / (p1 − p2) for an edge, the flow
+    is γ(t) = p + t φ(t s) u, for spirals (s ≠ 0) and translations (s = 0) alike. Since p and u do not depend
+    on the neighbor, eq. 16 is p + t u · mean φ(t s).
     """
 
     def __init__(self, mesh: TriMesh) -> None:
@@ -33,7 +33,7 @@ class LogSpirals:
         self._mean = csr_array((1.0 / degree[ends], (ends, edge)), shape=(n, e))
 
     def flow(self, positions: Complexes, field: Complexes, t: float = 1.0) -> Complexes:
-        """Where the vertices (n,) are at time ``t`` (1 is the whole step) when they start with ``field`` (n,)."""
+        """Where the vertices (n,) are at time ``t`` (1: the whole step) if they start with ``field`` (n,)."""
         i, j = self._start, self._end
         s = t * (field[i] - field[j]) / (positions[i] - positions[j])
         factor = self._mean @ spiral_factor(s).view(np.float64).reshape(-1, 2)

@@ -18,7 +18,7 @@ _NEAR = 0.8  # a try within this share of the parabola's minimum is near enough
 
 
 class SymmetricDirichlet:
-    """Σ A_f (‖J‖² + ‖J⁻¹‖²) over the faces, J the Jacobian of the map from rest to a pose; infinite at flips."""
+    """Σ A_f (‖J‖² + ‖J⁻¹‖²) over the faces, J the Jacobian of the map from rest; infinite at flips."""
 
     def __init__(self, mesh: TriMesh) -> None:
         self._gx, self._gy = gradient_matrices(mesh)
@@ -65,8 +65,8 @@ def descend(
     """One step from ``positions`` along a descent direction, at most ``length`` times its size.
 
     A try that goes past the minimum is followed by one at the minimum of the parabola through what is known,
-    since a pose near its minimum would otherwise swing about it. Returns ``positions`` where no try lowers the
-    energy enough, so that it never rises.
+    since a pose near its minimum would otherwise swing about it. Returns ``positions`` where no try lowers
+    the energy enough, so that it never rises.
     """
     slope = float((gradient.conj() * direction).real.sum())
     if slope >= 0:
@@ -76,7 +76,9 @@ def descend(
         candidate = positions + length * direction
         after = value(candidate)
         curvature = after - before - length * slope
-        shorter = -0.5 * slope * length**2 / curvature if np.isfinite(after) and curvature > 0 else 0.5 * length
+        shorter = (
+            -0.5 * slope * length**2 / curvature if np.isfinite(after) and curvature > 0 else 0.5 * length
+        )
         if after <= before + _SUFFICIENT * length * slope and shorter > _NEAR * length:
             return candidate
         length = max(min(shorter, 0.5 * length if not np.isfinite(after) else length), 0.1 * length)

@@ -45,9 +45,7 @@ class Camera:
         )
 
 
-def fit(
-    low: Point, high: Point, canvas_low: Point, canvas_high: Point, margin: float = 0.06
-) -> Camera:
+def fit(low: Point, high: Point, canvas_low: Point, canvas_high: Point, margin: float = 0.06) -> Camera:
     """The camera that shows the box ``low``..``high`` of the drawing centered in a part of the screen."""
     width, height = canvas_high[0] - canvas_low[0], canvas_high[1] - canvas_low[1]
     span = max(high[0] - low[0], 1e-9), max(high[1] - low[1], 1e-9)

@@ -68,7 +68,8 @@ def make_drawing(
 class Pin:
     """A point of the drawing that the artist controls.
 
-    id: unique in its document; face, weights (3,): where on the mesh; target (2,): where it should be, pixels.
+    id: unique in its document; face, weights (3,): where on the mesh; target (2,): where it should be,
+    in pixels.
     """
 
     id: int
@@ -131,7 +132,10 @@ class EditState:
 
 @dataclass(frozen=True, eq=False)
 class Document:
-    """An open drawing. ``revision`` grows with every change of ``state``; ``path``: the .akap file, if any."""
+    """An open drawing.
+
+    revision: grows with every change of ``state``; path: the .akap file, if any.
+    """
 
     drawing: Drawing
     state: EditState

@@ -34,8 +34,8 @@ _FIELDS: dict[str, tuple[str, ...]] = {
 class Recording:
     """A session's pin edits, targets and settings with times.
 
-    header: the drawing that it was made on (see `drawing_header`); events: dictionaries with "t" (seconds since
-    the start), "do" (what was done) and that event's values. docs/file-format.md describes them.
+    header: the drawing that it was made on (see `drawing_header`); events: dictionaries with "t" (seconds
+    since the start), "do" (what was done) and that event's values. docs/file-format.md describes them.
     """
 
     header: dict[str, Any]

@@ -17,7 +17,7 @@ from .recording import Recording, drawing_header, pins_to_json
 PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
 STILL = 0.02  # pixels: a step that moves no vertex farther has come to rest
 MOST_SETTLING = 400  # steps after the last change of a target, should a pose never come to rest
-REACH = 0.02  # longest way of a pin in one step, as a share of √area, so that no step keeps the caller waiting
+REACH = 0.02  # longest way of a pin in one step, as a share of √area: no step keeps the caller waiting
 
 Target = tuple[float, float]
 
@@ -119,7 +119,7 @@ class Session:
     # -- edits, inside a gesture ---------------------------------------------------------------------------
 
     def add_pin(self, at: Target) -> int | None:
-        """A pin on what is seen at ``at`` in the current pose, exactly there; its id, or None beside the drawing."""
+        """A pin exactly on what is seen at ``at`` in the current pose; its id, or None beside the drawing."""
         found = self.drawing.mesh.find(at, self.state.positions)
         if found is None:
             return None
@@ -145,7 +145,7 @@ class Session:
         self._record("pins", pins=pins_to_json(self.drawing.mesh, pins))
 
     def set_targets(self, targets: Mapping[int, Target]) -> None:
-        """Say where pins should be, by id; `step` takes them there. Raises InputError on unknown ids or NaN."""
+        """Say where pins should be, by id; `step` moves them. Raises InputError on unknown ids or NaN."""
         known = {pin.id for pin in self.state.pins}
         for pin_id in targets:
             if pin_id not in known:

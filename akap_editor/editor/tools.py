@@ -20,7 +20,7 @@ def distance(a: Point, b: Point) -> float:
 
 
 class Tool:
-    """A state of the pointer. Events lead to other states; `cancel` leaves as if it had never been entered."""
+    """A state of the pointer. Events lead to others; `cancel` leaves as if it had never been entered."""
 
     hint = ""
 

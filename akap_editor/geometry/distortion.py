@@ -14,8 +14,8 @@ from .operators import jacobians
 class Distortion:
     """Area-weighted means over the faces of σ1 σ2 + 1/(σ1 σ2) and of σ1/σ2 + σ2/σ1; 2 is none.
 
-    area, angle: E_area and E_angle (inf where a face has collapsed); flipped: number of faces without a positive
-    determinant, whose singular values count by their size; face_area, face_angle: (m,) per face.
+    area, angle: E_area and E_angle (inf where a face has collapsed); flipped: number of faces without a
+    positive determinant, whose singular values count by their size; face_area, face_angle: (m,) per face.
     """
 
     area: float

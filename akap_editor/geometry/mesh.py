@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
@@ -80,7 +80,7 @@ class TriMesh:
 
     def _check_edges(self) -> None:
         n = len(self.vertices)
-        directed, counts = np.unique(self._half_edges.astype(np.int64) @ [n, 1], return_counts=True)
+        directed, counts = np.unique(self._half_edges @ np.array([n, 1], dtype=np.int64), return_counts=True)
         if counts.max() > 1:
             edge = sorted(divmod(int(directed[np.argmax(counts)]), n))
             raise InputError(f"faces: edge {edge} has two faces on one side, expected one face on each side")
@@ -103,9 +103,9 @@ class TriMesh:
         return self._half_edges[counts[inverse] == 1]
 
     @cached_property
-    def _edge_keys(self) -> NDArray[np.int64]:
+    def _edge_keys(self) -> Ints:
         """(3m,) one number for each edge, the same for both its directions."""
-        return np.sort(self._half_edges, axis=1).astype(np.int64) @ [len(self.vertices), 1]
+        return np.sort(self._half_edges, axis=1) @ np.array([len(self.vertices), 1], dtype=np.int64)
 
     @cached_property
     def edges(self) -> Ints:
@@ -128,7 +128,7 @@ class TriMesh:
 
     @cached_property
     def boundary_vertices(self) -> Ints:
-        """(b,) int32, ascending: the vertices of all boundary loops, holes included (the paper's B in eq. 8)."""
+        """(b,) int32, ascending: vertices of all boundary loops, holes included (the paper's B in eq. 8)."""
         return frozen(np.unique(np.concatenate(self.boundary_loops)).astype(np.int32))
 
     @cached_property
@@ -149,7 +149,7 @@ class TriMesh:
 
         Where faces overlap, the one drawn last (highest index) is seen.
         """
-        q = as_points([point], "point", 1)[0]  # type: ignore[list-item]
+        q = as_points([point], "point", 1)[0]  # type: ignore[arg-type]
         return self._find(q, self._pose(positions))
 
     def _pose(self, positions: ArrayLike | None) -> Floats:

@@ -81,7 +81,9 @@ def _contours(alpha: NDArray[np.uint8], threshold: float) -> list[tuple[Floats, 
     generator = contourpy.contour_generator(z=padded, fill_type=contourpy.FillType.OuterOffset)
     points, offsets = generator.filled(level, 1000.0)
     # sample (i, j) of the padded array is the center of pixel (i - 1, j - 1)
-    return [(part.astype(np.float64) - 0.5, ends.tolist()) for part, ends in zip(points, offsets, strict=True)]
+    return [
+        (part.astype(np.float64) - 0.5, ends.tolist()) for part, ends in zip(points, offsets, strict=True)
+    ]
 
 
 def _polygon(points: Floats, offsets: list[int]) -> shapely.Geometry:
@@ -94,7 +96,7 @@ def _polygons(shape: shapely.Geometry) -> list[shapely.Polygon]:
 
 
 def _apart(shape: shapely.Geometry) -> shapely.Geometry:
-    """The shape with a bite taken out wherever its rings meet: parts joined in a point could turn about it."""
+    """The shape with a bite out wherever its rings meet: parts joined in a point could turn about it."""
     while True:
         rings = shapely.get_rings(_polygons(shape))
         points = np.concatenate([np.zeros((0, 2)), *(shapely.get_coordinates(ring)[:-1] for ring in rings)])

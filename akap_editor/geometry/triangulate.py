@@ -2,6 +2,7 @@
 
 import atexit
 import contextlib
+import io
 import subprocess
 import sys
 import threading
@@ -63,7 +64,7 @@ def _union(parts: Sequence[Outline]) -> shapely.Geometry:
     rings = shapely.get_rings(polygons)
     meetings = shapely.STRtree(rings).query(rings, predicate="intersects")
     if meetings.shape[1] > len(rings) or len(shapely.get_parts(shape)) < len(parts):
-        raise InputError("outlines: expected parts and holes apart from one another, got some that touch or overlap")
+        raise InputError("outlines: expected parts and holes apart from one another, but some touch")
     return shape
 
 
@@ -79,8 +80,8 @@ def _mesh(points: Floats, faces: Ints) -> TriMesh:
 def _limbs_last(mesh: TriMesh) -> Ints:
     """Order of the faces by their way through the drawing from the middle of their part.
 
-    Faces are drawn in their order: where a limb is bent over the body, it passes in front as a whole, which an
-    order without meaning would not give.
+    Faces are drawn in their order: where a limb is bent over the body, it passes in front as a whole, which
+    an order without meaning would not give.
     """
     i, j = mesh.edges.T
     lengths = np.linalg.norm(mesh.vertices[i] - mesh.vertices[j], axis=1)
@@ -129,8 +130,8 @@ class _Worker:
     def run(self, job: dict[str, np.ndarray], limit: float) -> dict[str, np.ndarray]:
         with self._lock:
             process = self._start()
-            assert process.stdin is not None
-            assert process.stdout is not None
+            assert isinstance(process.stdin, io.BufferedWriter)
+            assert isinstance(process.stdout, io.BufferedReader)
             late = threading.Event()
 
             def stop() -> None:

@@ -1,4 +1,4 @@
-"""As-Killing-as-possible fields: what they minimize, what they reproduce, and a dense implementation beside them."""
+"""As-Killing-as-possible fields: what they minimize and reproduce, and a dense implementation beside."""
 
 import numpy as np
 import pytest
@@ -79,7 +79,9 @@ def test_second_field_minimizes_energy_with_the_boundary_fixed(mesh, case, dense
 def test_second_solve_changes_nothing_where_all_pins_sit_on_the_boundary(mesh, shapes, dense):
     rng = np.random.default_rng(5)
     rim = np.array(dense.boundary(mesh))
-    chosen = np.concatenate([rng.choice(rim[mesh.component[rim] == c], 3, replace=False) for c in set(mesh.component)])
+    chosen = np.concatenate(
+        [rng.choice(rim[mesh.component[rim] == c], 3, replace=False) for c in set(mesh.component)]
+    )
     points = shapes.vertex_pins(mesh, chosen)
     velocities = random_velocities(points, 5)
     optimal, smooth = fields(mesh, bent(mesh), points, velocities)

@@ -9,7 +9,7 @@ from akap_editor.errors import SolverError
 
 @pytest.fixture(params=range(4))
 def entries(request):
-    """Rows, columns and values of a random positive definite matrix, entries repeated and in both triangles."""
+    """Rows, columns and values of a positive definite matrix, entries repeated and in both triangles."""
     rng = np.random.default_rng(request.param)
     size = 12
     i, j = rng.integers(0, size, (2, 60))

@@ -45,7 +45,9 @@ def test_view_agrees_with_to_screen(camera, point, size):
     x, y = camera.to_screen(point)
     ndc = sx * point[0] + tx, sy * point[1] + ty
     # ndc runs from -1 to 1, left to right and bottom to top
-    assert ((ndc[0] + 1) / 2 * size[0], (1 - ndc[1]) / 2 * size[1]) == pytest.approx((x, y), rel=1e-9, abs=1e-5)
+    assert ((ndc[0] + 1) / 2 * size[0], (1 - ndc[1]) / 2 * size[1]) == pytest.approx(
+        (x, y), rel=1e-9, abs=1e-5
+    )
 
 
 @given(points, st.tuples(st.floats(1, 4000), st.floats(1, 4000)), points, st.floats(100, 3000))

@@ -103,7 +103,10 @@ def test_windows_line_ends_are_read():
         ([HEAD, {"t": float("nan"), "do": "step"}], "line 2: expected a time"),
         ([HEAD, {"t": float("inf"), "do": "step"}], "line 2: expected a time"),
         ([HEAD, {"t": 10**400, "do": "step"}], "line 2: expected a time"),
-        ([HEAD, {"t": 3, "do": "step"}, {"t": 2, "do": "step"}], "line 3: expected a time of 3 s or later, got 2"),
+        (
+            [HEAD, {"t": 3, "do": "step"}, {"t": 2, "do": "step"}],
+            "line 3: expected a time of 3 s or later, got 2",
+        ),
         ([{**HEAD, "t": "soon"}, {"t": -1, "do": "step"}], "line 2: expected a time of 0 s"),
         ([HEAD, {"t": 0, "do": "begin"}], "line 2: expected a value 'label' in 'begin', got none"),
         ([HEAD, {"t": 0, "do": "pins"}], "line 2: expected a value 'pins'"),

@@ -169,7 +169,9 @@ def test_a_gesture_is_one_entry_and_undo_and_redo_are_exact(pinned, enter, label
     assert not pinned.editor.moving
 
 
-@pytest.mark.parametrize("enter", [enter_pointing_pin, enter_pointing_canvas, enter_rubber_band, enter_panning])
+@pytest.mark.parametrize(
+    "enter", [enter_pointing_pin, enter_pointing_canvas, enter_rubber_band, enter_panning]
+)
 def test_what_is_no_edit_makes_no_entry(pinned, enter):
     before, depth = bits(pinned.state), pinned.depth
     enter(pinned)
@@ -272,77 +274,6 @@ def test_an_unusable_position_leaves_no_gesture_open(pinned):
     assert pinned.tool == "Idle"
     pinned.editor.select(())
     assert pinned.everything == before
-
-
-# -- dragging ----------------------------------------------------------------------------------------------
-
-
-def test_the_dragged_pin_arrives_and_the_others_hold(pinned):
-    pinned.drag(END, (88.0, 66.0))
-    pinned.settle()
-    assert not pinned.editor.moving
-    for pin, at in ((1, HEAD), (2, NECK), (3, (88.0, 66.0))):
-        assert np.hypot(*np.subtract(pinned.where(pin), at)) < 0.25
-
-
-def test_all_selected_pins_follow_by_the_same_way(pinned):
-    pinned.editor.select({2, 3})
-    pinned.drag(END, (101.0, 52.0))
-    pinned.settle()
-    for pin, at in ((1, HEAD), (2, (58.0, 52.0)), (3, (101.0, 52.0))):
-        assert np.hypot(*np.subtract(pinned.where(pin), at)) < 0.25
-
-
-def test_dragging_a_pin_outside_the_selection_takes_it_alone(pinned):
-    pinned.editor.select({1, 2})
-    pinned.press(END)
-    pinned.move((100.0, 50.0))
-    assert pinned.editor.selection == {3}
-    np.testing.assert_allclose(pinned.state.targets, [HEAD, NECK, (100.0, 50.0)], atol=1e-9)
-
-
-def test_shift_drag_takes_what_was_selected_along(pinned):
-    pinned.click(HEAD)
-    pinned.press(END, shift=True)
-    pinned.move((110.0, 43.0))
-    np.testing.assert_allclose(pinned.state.targets, [(25.0, 43.0), NECK, (110.0, 43.0)], atol=1e-9)
-
-
-def test_a_pin_keeps_its_distance_from_the_pointer(pinned):
-    """Grabbed beside its center, a pin does not jump to the pointer, however often it is dragged."""
-    off = 0.7 * PICK_RADIUS / pinned.editor.camera.zoom
-    at = END
-    for _ in range(4):
-        grab = pinned.where(3)
-        pinned.drag((grab[0] + off, grab[1]), (grab[0] + off, grab[1] + 4.0))
-        pinned.settle()
-        at = at[0], at[1] + 4.0
-    assert np.hypot(*np.subtract(pinned.where(3), at)) < 0.25
-
-
-def test_a_drag_back_to_where_it_began_asks_for_the_old_place(pinned):
-    pinned.press(END)
-    pinned.move((80.0, 70.0))
-    pinned.move(END)
-    np.testing.assert_allclose(pinned.state.pin(3).target, END, rtol=0, atol=1e-9)
-
-
-def test_the_wheel_during_a_drag_does_not_lose_the_grip(pinned):
-    pinned.press(END)
-    pinned.move((100.0, 50.0))
-    pinned.scroll((100.0, 50.0), 3)
-    pinned.move((98.0, 52.0))
-    np.testing.assert_allclose(pinned.state.pin(3).target, (98.0, 52.0), atol=1e-9)
-
-
-def test_a_huge_jump_stays_finite_and_unflipped(pinned):
-    pinned.press(END)
-    for at in ((5105.0, 40.0), (-4000.0, -3000.0)):
-        pinned.move(at)
-        for _ in range(12):
-            pinned.advance()  # the driver checks the pose
-    pinned.key("escape")
-    assert pinned.where(3) == pytest.approx(END)
 
 
 # -- the canvas --------------------------------------------------------------------------------------------

@@ -73,7 +73,11 @@ def test_renumbering_changes_nothing(mesh, renumbered):
     pose = mesh.vertices + np.random.default_rng(9).normal(scale=3.0, size=mesh.vertices.shape)
     other, order, _ = renumbered(mesh, 1)
     before, after = distortion(mesh, pose), distortion(other, pose[order])
-    assert (after.area, after.angle, after.flipped) == (close(before.area), close(before.angle), before.flipped)
+    assert (after.area, after.angle, after.flipped) == (
+        close(before.area),
+        close(before.angle),
+        before.flipped,
+    )
 
 
 def test_pose_of_another_mesh_is_refused(mesh):

@@ -20,7 +20,11 @@ BAD_MESHES = {
     "ragged": ([[0.0, 1.0], [2.0]], FACE, "vertices: expected an array of numbers, got list"),
     "text": ([["0", "1"]] * 3, FACE, "vertices: expected real numbers, got dtype <U1"),
     "complex": (TRIANGLE + 0j, FACE, "vertices: expected real numbers, got dtype complex128"),
-    "not a number": ([[0, 0], [1, 0], [0, np.nan]], FACE, r"vertices: expected finite .*\[0.0, nan\] in row 2"),
+    "not a number": (
+        [[0, 0], [1, 0], [0, np.nan]],
+        FACE,
+        r"vertices: expected finite .*\[0.0, nan\] in row 2",
+    ),
     "infinite": ([[0, 0], [np.inf, 0], [0, 1]], FACE, r"vertices: expected finite .*\[inf, 0.0\] in row 1"),
     "quads": (SQUARE, [[0, 1, 2, 3]], r"faces: expected shape \(m, 3\), got \(1, 4\)"),
     "flat faces": (TRIANGLE, [0, 1, 2], r"faces: expected shape \(m, 3\), got \(3,\)"),
@@ -38,7 +42,11 @@ BAD_MESHES = {
         [[0, 1, 2], [3, 4, 5]],
         "vertices: 1 and 3 are at the same place",
     ),
-    "three at an edge": (FAN, [[0, 1, 2], [0, 1, 3], [0, 1, 4]], r"faces: edge \[0, 1\] .*one face on each side"),
+    "three at an edge": (
+        FAN,
+        [[0, 1, 2], [0, 1, 3], [0, 1, 4]],
+        r"faces: edge \[0, 1\] .*one face on each side",
+    ),
     "two on one side": (FAN[:4], [[0, 1, 2], [0, 1, 3]], r"faces: edge \[0, 1\] .*one face on each side"),
     "face twice": (TRIANGLE, [[0, 1, 2], [1, 2, 0]], r"faces: edge \[0, 1\] .*one face on each side"),
     "joined at one vertex": (
@@ -64,7 +72,14 @@ def test_arrays_are_copied_and_read_only():
     assert mesh.faces.tolist() == FACE.tolist()
     assert mesh.vertices.dtype == np.float64
     assert mesh.faces.dtype == np.int32
-    for array in (mesh.vertices, mesh.faces, mesh.edges, mesh.component, mesh.rest_areas, *mesh.boundary_loops):
+    for array in (
+        mesh.vertices,
+        mesh.faces,
+        mesh.edges,
+        mesh.component,
+        mesh.rest_areas,
+        *mesh.boundary_loops,
+    ):
         assert not array.flags.writeable
 
 
@@ -177,7 +192,7 @@ def test_hole_is_outside(shapes):
 
 
 def test_where_faces_overlap_the_one_drawn_last_is_seen():
-    below, above = TRIANGLE, TRIANGLE + [0.1, 0.1]
+    below, above = TRIANGLE, TRIANGLE + 0.1
     mesh = TriMesh(np.concatenate([below, above]), [[0, 1, 2], [3, 4, 5]])
     assert mesh.locate([[0.3, 0.3], [0.05, 0.05]]).faces.tolist() == [1, 0]
     assert TriMesh(mesh.vertices, mesh.faces[::-1]).locate([[0.3, 0.3]]).faces.tolist() == [1]
@@ -191,7 +206,9 @@ def test_rounding_puts_no_boundary_point_outside(shift):
         assert len(mesh.locate(share * start + (1 - share) * end)) == 200
 
 
-@pytest.mark.parametrize("point", [[1.0, 2.0, 3.0], [1.0], [[0.0, 0.0], [1.0, 1.0]], "ab", [np.nan, 0.0], None])
+@pytest.mark.parametrize(
+    "point", [[1.0, 2.0, 3.0], [1.0], [[0.0, 0.0], [1.0, 1.0]], "ab", [np.nan, 0.0], None]
+)
 def test_find_refuses_what_is_not_a_point(point):
     with pytest.raises(InputError, match="point: expected"):
         TriMesh(TRIANGLE, FACE).find(point)

@@ -19,7 +19,9 @@ def assembled(positions, faces):
     """The matrix whose entries `killing_elements` gives, from the lower triangle."""
     rows, columns = element_pattern(faces)
     matrix = np.zeros((2 * len(positions),) * 2)
-    np.add.at(matrix, (np.maximum(rows, columns), np.minimum(rows, columns)), killing_elements(positions, faces))
+    np.add.at(
+        matrix, (np.maximum(rows, columns), np.minimum(rows, columns)), killing_elements(positions, faces)
+    )
     return matrix + np.tril(matrix, -1).T
 
 

@@ -109,13 +109,17 @@ def test_opaque_picture_is_exactly_the_frame(height, width):
 
 @pytest.mark.parametrize("value", [0, 127])
 def test_transparent_picture_is_refused(value):
-    with pytest.raises(InputError, match="fully transparent: .* none of its 7×5 pixels is more than 50% opaque"):
+    with pytest.raises(
+        InputError, match=r"fully transparent: .* none of its 7×5 pixels is more than 50% opaque"
+    ):
         outlines(np.full((5, 7), value, dtype=np.uint8))
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (3, 3), (2, 5)])
 def test_picture_too_small_is_refused(shape):
-    with pytest.raises(InputError, match=f"too small .* at least {SMALLEST_PART:g} square pixels, got {shape[1]}×"):
+    with pytest.raises(
+        InputError, match=f"too small .* at least {SMALLEST_PART:g} square pixels, got {shape[1]}×"
+    ):
         outlines(np.full(shape, 255, dtype=np.uint8))
 
 
@@ -143,9 +147,12 @@ def test_settings_out_of_range_are_refused(setting, value):
 
 PINCHED = {
     "two squares at a corner": boxes((60, 60), (10, 10, 30, 30), (30, 30, 50, 50)),
-    "hole touching the outside": boxes((60, 60), (10, 10, 50, 50)) - boxes((60, 60), (10, 10, 20, 20), (20, 20, 40, 40)),
-    "two holes at a corner": boxes((60, 60), (5, 5, 55, 55)) - boxes((60, 60), (15, 15, 30, 30), (30, 30, 45, 45)),
-    "ring touching a square": boxes((60, 60), (5, 5, 35, 35), (35, 35, 55, 55)) - boxes((60, 60), (12, 12, 28, 28)),
+    "hole touching the outside": boxes((60, 60), (10, 10, 50, 50))
+    - boxes((60, 60), (10, 10, 20, 20), (20, 20, 40, 40)),
+    "two holes at a corner": boxes((60, 60), (5, 5, 55, 55))
+    - boxes((60, 60), (15, 15, 30, 30), (30, 30, 45, 45)),
+    "ring touching a square": boxes((60, 60), (5, 5, 35, 35), (35, 35, 55, 55))
+    - boxes((60, 60), (12, 12, 28, 28)),
     "checkerboard": np.kron(np.indices((6, 6)).sum(axis=0) % 2, np.full((9, 9), 255)).astype(np.uint8),
 }
 
@@ -157,7 +164,7 @@ def test_parts_that_touch_in_a_point_come_out_apart_or_joined(case, expand, thre
     parts = outlines(PINCHED[case], threshold, expand)
     assert not meets_itself(parts)
     mesh = triangulate(parts, 150)
-    assert len({part for part in mesh.component}) == len(parts)
+    assert len(set(mesh.component)) == len(parts)
     found = shapely.union_all([part.polygon for part in parts])
     assert mesh.rest_areas.sum() == pytest.approx(found.area, rel=1e-9)
     rows, columns = np.nonzero(PINCHED[case])

@@ -1,0 +1,71 @@
+"""A window on GLFW's null platform, which needs no display, and a drawing to open in it."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from akap_editor.editor.document import Document, Drawing, make_drawing, new_document
+
+from .driver import Window, WindowDriver, render_unlocked
+
+
+@pytest.fixture(scope="session")
+def image() -> NDArray[np.uint8]:
+    """(160, 240, 4): a head with a long neck, soft at the rim; the corners are empty."""
+    y, x = np.mgrid[0:160, 0:240] + 0.5
+    head = 1 - np.hypot((x - 70) / 50, (y - 80) / 60)
+    neck = np.minimum(28 - abs(y - 80), np.minimum(x - 60, 224 - x)) / 30
+    alpha = np.clip(30 * np.maximum(head, neck), 0, 1)
+    rgba = np.zeros((160, 240, 4), dtype=np.uint8)
+    rgba[..., 3] = np.rint(255 * alpha)
+    rgba[alpha > 0, :3] = (90, 140, 200)
+    return rgba
+
+
+@pytest.fixture(scope="session")
+def drawing(image: NDArray[np.uint8]) -> Drawing:
+    return make_drawing(image, vertices=200, name="figure")
+
+
+@pytest.fixture
+def document(drawing: Drawing) -> Document:
+    return new_document(drawing)
+
+
+@pytest.fixture(scope="module")
+def new_window() -> Iterator[Callable[..., WindowDriver]]:
+    """Makes the module's window."""
+    made: list[WindowDriver] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("akap_editor.app.window.render_imgui", render_unlocked)
+
+        def make(**options: object) -> WindowDriver:
+            made.append(WindowDriver(Window(null=True, **options)))
+            return made[-1]
+
+        yield make
+        for driver in made:
+            driver.close()
+
+
+@pytest.fixture(scope="module")
+def module_window(new_window: Callable[..., WindowDriver]) -> WindowDriver:
+    return new_window()
+
+
+@pytest.fixture
+def ui(module_window: WindowDriver, document: Document) -> WindowDriver:
+    """The window with the drawing at rest, without pins, the pointer beside it."""
+    module_window.reset(document)
+    return module_window
+
+
+@pytest.fixture
+def pinned(ui: WindowDriver) -> WindowDriver:
+    """Three pins, numbered 1 to 3: in the head, in the neck and at its end; none selected, nothing to save."""
+    for at in ((50.0, 80.0), (130.0, 80.0), (210.0, 80.0)):
+        ui.editor.add_pin(at)
+    ui.reset(ui.document)
+    return ui

@@ -1,0 +1,304 @@
+"""Each command by its menu, its button and its keys; the side panel; the two pages of help."""
+
+from imgui_bundle import imgui  # isort: skip
+import numpy as np
+import pytest
+
+from akap_editor.app import commands
+from akap_editor.app.commands import COMMANDS, CTRL, MENUS, SHIFT, Key, chord_name
+from akap_editor.editor.camera import Camera
+from akap_editor.errors import SolverError
+
+ITEMS = [(menu, command) for menu, group in MENUS for command in group if command is not None]
+
+
+def bend(ui):
+    """Pin 3 goes up; one undo entry."""
+    start = ui.screen(ui.pin_place(3))
+    ui.drag(start, (start[0], start[1] - 120))
+    assert ui.session.posed
+
+
+# -- what each command does: prepare, and a law that holds after it -----------------------------------------
+
+
+def nothing(ui):
+    pass
+
+
+def bent(ui):
+    bend(ui)
+
+
+def undone(ui):
+    bend(ui)
+    ui.editor.undo()
+
+
+def one_selected(ui):
+    ui.editor.select({2})
+
+
+def moved_camera(ui):
+    ui.editor.camera = Camera(0.7, (10.0, 20.0))
+
+
+def is_rest(ui):
+    return not ui.session.posed
+
+
+def zoom_is(factor):
+    def holds(ui):
+        middle = 48 + (1280 - 48 - 268) / 2
+        assert ui.editor.canvas[0] == 48
+        assert (ui.editor.canvas[0] + ui.editor.canvas[2]) / 2 == middle
+        return ui.editor.camera.zoom == pytest.approx(0.7 * factor)
+
+    return holds
+
+
+CASES = {
+    "Open...": (nothing, lambda ui: ui.space.request is not None and not ui.space.request.saving),
+    "Save": (bent, lambda ui: ui.space.request is not None and ui.space.request.saving),
+    "Save As...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
+    "Export PNG...": (nothing, lambda ui: ui.space.request is not None),
+    "Quit": (nothing, lambda ui: ui.space.closing),
+    "Undo": (bent, is_rest),
+    "Redo": (undone, lambda ui: ui.session.posed),
+    "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
+    "Select All Pins": (nothing, lambda ui: ui.editor.selection == {1, 2, 3}),
+    "Deselect": (one_selected, lambda ui: not ui.editor.selection),
+    "Reset Pose": (bent, lambda ui: not ui.session.posed and len(ui.pins) == 3),
+    "Remember the Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
+    "Fit in Window": (moved_camera, lambda ui: ui.editor.camera == fitted(ui)),
+    "100 %": (moved_camera, lambda ui: ui.editor.camera.zoom == pytest.approx(1.0)),
+    "Zoom In": (moved_camera, zoom_is(1.25)),
+    "Zoom Out": (moved_camera, zoom_is(0.8)),
+    "Show Mesh": (nothing, lambda ui: ui.space.show_mesh),
+    "Show Pins": (nothing, lambda ui: not ui.space.show_pins),
+    "Checkerboard": (nothing, lambda ui: not ui.space.checker),
+    "Keys and Mouse": (nothing, lambda ui: ui.space.keys),
+    "About akap-editor": (nothing, lambda ui: ui.space.about),
+    "Pins": (lambda ui: setattr(ui.editor, "hand_tool", True), lambda ui: not ui.editor.hand_tool),
+    "Move Canvas": (nothing, lambda ui: ui.editor.hand_tool),
+}
+
+
+def fitted(ui):
+    camera = ui.editor.camera
+    ui.editor.fit()
+    expected, ui.editor.camera = ui.editor.camera, camera
+    return expected
+
+
+def test_every_command_has_a_case():
+    assert {command.label for command in COMMANDS} == set(CASES)
+
+
+def check(ui, command, run):
+    prepare, holds = CASES[command.label]
+    prepare(ui)
+    assert not holds(ui), "the law must not hold before"
+    run()
+    assert holds(ui)
+    assert not ui.space.error
+
+
+@pytest.mark.parametrize(("menu", "command"), ITEMS, ids=[command.label for _, command in ITEMS])
+def test_by_menu(pinned, menu, command):
+    check(pinned, command, lambda: pinned.menu(menu, command.label))
+
+
+CHORDS = [(command, chord) for command in COMMANDS for chord in command.chords]
+
+
+@pytest.mark.parametrize(("command", "chord"), CHORDS, ids=[f"{c.label}-{chord_name(k)}" for c, k in CHORDS])
+def test_by_key(pinned, command, chord):
+    check(pinned, command, lambda: pinned.key(chord))
+
+
+BUTTONS = [
+    commands.PIN_TOOL,
+    commands.HAND_TOOL,
+    commands.UNDO,
+    commands.REDO,
+    commands.REMOVE,
+    commands.FIT,
+    commands.SHOW_MESH,
+]
+
+
+@pytest.mark.parametrize("command", BUTTONS, ids=[command.label for command in BUTTONS])
+def test_by_button(pinned, command):
+    check(pinned, command, lambda: pinned.tool_button(command))
+
+
+def test_no_key_means_two_things():
+    chords = [int(chord) for command in COMMANDS for chord in command.chords]
+    assert len(set(chords)) == len(chords)
+
+
+@pytest.mark.parametrize(
+    ("chord", "name"),
+    [
+        (CTRL | SHIFT | Key.z, "Ctrl+Shift+Z"),
+        (Key.delete, "Del"),
+        (Key._1, "1"),
+        (CTRL | Key.equal, "Ctrl++"),
+        (Key.f1, "F1"),
+    ],
+)
+def test_chord_name(chord, name):
+    assert chord_name(chord) == name
+
+
+@pytest.mark.parametrize("command", [commands.UNDO, commands.REDO, commands.REMOVE, commands.RESET])
+def test_commands_that_have_nothing_to_do_are_disabled(pinned, command):
+    assert not command.enabled(pinned.space)
+    revision = pinned.document.revision
+    pinned.key(*command.chords)
+    assert pinned.document.revision == revision
+    assert pinned.session.history.depth == 0
+
+
+def test_undo_and_redo_restore_bit_for_bit(pinned):
+    rest = pinned.session.state
+    bend(pinned)
+    bent = pinned.session.state
+    pinned.key(CTRL | Key.z)
+    assert pinned.session.state is rest
+    pinned.key(CTRL | SHIFT | Key.z)
+    assert pinned.session.state.positions.tobytes() == bent.positions.tobytes()
+    pinned.key(CTRL | Key.z, CTRL | Key.y)
+    assert pinned.session.state.positions.tobytes() == bent.positions.tobytes()
+
+
+def test_space_presses_no_button_that_was_clicked_before(pinned):
+    pinned.tool_button(commands.SHOW_MESH)
+    start = pinned.screen(pinned.pin_place(2))
+    camera = pinned.editor.camera
+    pinned.drag(start, (start[0] + 30, start[1]), held=Key.space)
+    assert pinned.editor.camera != camera
+    assert pinned.space.show_mesh
+
+
+def test_keys_do_nothing_while_a_name_is_typed(pinned):
+    pinned.editor.select({1})
+    pinned.key(CTRL | Key.o)
+    pinned.type_name("Open picture or drawing", "mfb", enter=False)
+    pinned.key(Key.delete)
+    assert pinned.space.request.name == "mfb"
+    assert not pinned.space.show_mesh
+    assert len(pinned.pins) == 3
+    pinned.key(Key.escape)
+    assert pinned.space.request is None
+
+
+# -- side panel ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("label", "name"), [("Mesh", "show_mesh"), ("Pins##view", "show_pins"), ("Checkerboard", "checker")]
+)
+def test_view_switches(pinned, label, name):
+    before = getattr(pinned.space, name)
+    picture = pinned.screenshot()
+    pinned.panel(label)
+    assert getattr(pinned.space, name) != before
+    left, top, right, bottom = map(round, pinned.editor.canvas)
+    assert (pinned.screenshot() != picture)[top:bottom, left:right].any()
+    pinned.panel(label)
+    assert getattr(pinned.space, name) == before
+    assert not pinned.editor.modified
+
+
+def test_the_rest_shape_switch_is_an_edit(pinned):
+    pinned.panel("Remember the rest shape")
+    assert pinned.session.state.settings.get("memory") == 0.0
+    pinned.panel("Remember the rest shape")
+    assert pinned.session.state.settings.get("memory") == 1.0
+    pinned.key(CTRL | Key.z)
+    assert pinned.session.state.settings.get("memory") == 0.0
+
+
+def test_reset_pose_by_the_panel(pinned):
+    bend(pinned)
+    pinned.panel("Reset pose")
+    assert not pinned.session.posed
+
+
+def pin_in_list(ui, pin, shift=False):
+    """Click a line of the pin list."""
+
+    def click(hand):
+        if shift:
+            hand.key_down(imgui.Key.mod_shift)
+        hand.item_click(f"//Panel/**/  Pin {pin}##pin")
+        if shift:
+            hand.key_up(imgui.Key.mod_shift)
+
+    ui.do(click)
+
+
+def test_the_pin_list_selects(pinned):
+    pin_in_list(pinned, 2)
+    assert pinned.editor.selection == {2}
+    pin_in_list(pinned, 3, shift=True)
+    assert pinned.editor.selection == {2, 3}
+    pin_in_list(pinned, 2, shift=True)
+    assert pinned.editor.selection == {3}
+    pin_in_list(pinned, 1)
+    assert pinned.editor.selection == {1}
+    assert not pinned.editor.modified
+    pinned.panel("Remove selected")
+    assert [pin.id for pin in pinned.pins] == [2, 3]
+
+
+def test_the_numbers_are_those_of_the_pose_on_the_screen(pinned, monkeypatch):
+    """The last frame before the window sleeps shows what a frame drawn later would."""
+    start = pinned.screen(pinned.pin_place(3))
+    pinned.drag(start, (start[0] - 40, start[1] - 250))
+    last = []
+    pinned.window.after_draw.append(lambda: last.append(pinned.window.screenshot()))
+    pinned.key(CTRL | Key.z, CTRL | Key.y)
+    assert pinned.session.posed
+    pinned.window.after_draw.clear()
+    np.testing.assert_array_equal(last[-1], pinned.screenshot())
+
+
+def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch):
+    from akap_editor.app import panels
+
+    def fail(space):
+        raise SolverError("the numbers are not finite")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(panels, "_numbers", fail)
+        pinned.frame()
+        assert pinned.space.error == "the numbers are not finite"
+    pinned.settle()
+    pinned.dialog("That did not work", "OK")
+    assert not pinned.space.error
+    bend(pinned)
+    pinned.menu("Edit", "Undo")
+    assert not pinned.session.posed
+
+
+# -- help ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("label", "name", "title"),
+    [("Keys and Mouse", "keys", "Keys and mouse"), ("About akap-editor", "about", "About akap-editor")],
+)
+@pytest.mark.parametrize("close", ["Close", "escape", "enter"])
+def test_help_opens_and_closes(pinned, label, name, title, close):
+    pinned.menu("Help", label)
+    assert getattr(pinned.space, name)
+    if close == "Close":
+        pinned.dialog(title, "Close")
+    else:
+        pinned.key(Key.escape if close == "escape" else Key.enter)
+    assert not getattr(pinned.space, name)
+    pinned.click(pinned.screen((100.0, 80.0)))
+    assert len(pinned.pins) == 4, "the canvas is free again"

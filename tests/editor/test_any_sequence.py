@@ -1,0 +1,112 @@
+"""Whatever a hand does, in any order: what must always hold does, and all of it can be undone."""
+
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
+
+from akap_editor.editor.document import new_document
+
+from .driver import BESIDE, Driver, bits
+
+HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
+
+places = st.one_of(
+    st.sampled_from([HEAD, NECK, END, (45.0, 25.0), (45.0, 55.0), BESIDE, (118.0, 78.0)]),
+    st.tuples(st.floats(-20, 140), st.floats(-20, 100)),
+)
+buttons = st.sampled_from(["left", "left", "left", "middle", "right"])
+
+
+def machine(drawing):
+    class Editing(RuleBasedStateMachine):
+        """A hand that does anything; the driver checks after each event what must always hold."""
+
+        @initialize()
+        def begin(self):
+            self.driver = Driver(new_document(drawing))
+            self.editor = self.driver.editor
+            self.first = bits(self.driver.state)
+            self.driver.click(HEAD)
+            self.driver.click(END)
+
+        @rule(at=places, button=buttons, shift=st.booleans())
+        def press(self, at, button, shift):
+            self.driver.press(at, button, shift)
+
+        @rule(at=places, steps=st.integers(0, 3))
+        def move(self, at, steps):
+            self.driver.move(at)
+            for _ in range(steps):
+                self.driver.advance()
+
+        @rule(at=places, button=buttons)
+        def release(self, at, button):
+            self.driver.release(at, button)
+
+        @rule(at=places, shift=st.booleans())
+        def click(self, at, shift):
+            self.driver.click(at, shift)
+
+        @rule(pin=st.integers(0, 5), to=places, shift=st.booleans())
+        def grab_a_pin(self, pin, to, shift):
+            self.driver.key("escape")
+            if self.driver.ids:
+                self.driver.press(self.driver.where(self.driver.ids[pin % len(self.driver.ids)]), shift=shift)
+                self.driver.move(to)
+                self.driver.advance()
+
+        @rule(end=st.booleans())
+        def end_gesture(self, end):
+            if end:
+                self.driver.release(NECK)
+            else:
+                self.driver.key("escape")
+
+        @rule(count=st.integers(1, 20))
+        def advance(self, count):
+            for _ in range(count):
+                self.driver.advance()
+
+        @rule(at=places, amount=st.integers(-3, 3))
+        def look_elsewhere(self, at, amount):
+            self.driver.scroll(at, amount)
+            self.driver.drag(at, NECK, steps=1, button="middle")
+
+        @rule(back=st.booleans())
+        def undo_or_redo(self, back):
+            if back:
+                self.driver.undo()
+            else:
+                self.driver.redo()
+
+        @rule(everything=st.booleans())
+        def remove_selected(self, everything):
+            if everything:
+                self.editor.select_all()
+            self.editor.remove_selected()
+            self.driver.check()
+
+        @rule(memory=st.sampled_from([0.0, 1.0, None]))
+        def change_memory_or_reset_pose(self, memory):
+            if memory is None:
+                self.editor.reset_pose()
+            else:
+                self.editor.set_settings(self.driver.state.settings.with_parameter("memory", memory))
+            self.driver.check()
+
+        def teardown(self):
+            self.editor.cancel()
+            states = [bits(self.driver.state)]
+            while self.driver.depth:
+                self.driver.undo()
+                states.append(bits(self.driver.state))
+            assert states[-1] == self.first
+            for state in reversed(states[:-1]):
+                self.driver.redo()
+                assert bits(self.driver.state) == state
+
+    return Editing
+
+
+def test_whatever_is_done_can_be_undone_and_redone(drawing):
+    run_state_machine_as_test(machine(drawing), settings=settings(max_examples=20, stateful_step_count=30))
