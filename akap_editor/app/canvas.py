@@ -29,10 +29,11 @@ class Canvas:
         position = (at.x, at.y)
         free = not io.want_capture_mouse
         idle = isinstance(editor.tool, Idle)
-        if imgui.is_mouse_pos_valid() and position != self._last and (free or not idle):
+        inside = imgui.is_mouse_pos_valid()
+        if inside and position != self._last and (free or not idle):
             self._last = position
             editor.handle_event(PointerEvent("move", position))
-        if not free and idle:
+        if idle and not (free and inside):
             editor.pointer_left()
         for index, button in enumerate(_BUTTONS):
             if free and imgui.is_mouse_clicked(index):

@@ -27,12 +27,12 @@ class AkapDeformer:
     """As-Killing-as-possible deformation (Solomon, Ben-Chen, Butscher and Guibas 2011).
 
     mesh: the rest pose.
-    memory: 0 is the paper's method, path-dependent; up to 1, each substep also descends towards the rest shape.
+    memory: 0 is the paper's method, path-dependent; up to 1, each substep also descends towards the rest.
     dirichlet: with the second solve (4); trajectory: "spiral" (16) or "linear"; the four combinations are
     the variants of Fig. 8.
     pin_weight: λ on the row as in eq. 5; with area-weighted energies 10 to 1000 behave alike.
-    max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer way
-    is cut, because following one field too far distorts (Fig. 2).
+    max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer
+    way is cut, because following one field too far distorts (Fig. 2).
     Raises InputError on settings out of range.
     """
 

@@ -67,7 +67,7 @@ def method_names() -> list[str]:
     return list(_methods())
 
 
-def make_deformer(method: str, mesh: TriMesh, **settings: Any) -> Deformer:
+def make_deformer(method: str, mesh: TriMesh, /, **settings: Any) -> Deformer:
     """A deformation method by name, its settings by keyword. Raises InputError on unknown ones."""
     methods = _methods()
     if method not in list(methods):

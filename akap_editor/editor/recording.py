@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..geometry.mesh import TriMesh
-from .document import Drawing, Pin
+from .document import Drawing, Pin, Settings
 
 VERSION = 1
 LATEST = 1e9  # seconds
@@ -69,6 +69,11 @@ def drawing_header(drawing: Drawing) -> dict[str, Any]:
     }
 
 
+def settings_to_json(settings: Settings) -> dict[str, Any]:
+    """Settings as the values of a "settings" event."""
+    return {"method": settings.method, "parameters": dict(settings.parameters)}
+
+
 def pins_to_json(mesh: TriMesh, pins: Sequence[Pin]) -> list[dict[str, Any]]:
     """Pins with face and weights, for exactly this mesh, and their place at rest, for any other."""
     result = []
@@ -91,16 +96,18 @@ def parse_recording(text: str) -> Recording:
 
     Raises InputError with the line's number.
     """
-    lines = text.split("\n")
-    complete, tail = lines[:-1], lines[-1]
+    lines = text.removesuffix("\n").split("\n")
     parsed: list[dict[str, Any]] = []
-    for number, line in enumerate([*complete, tail], start=1):
-        if not line.strip():
-            continue
+    for number, line in enumerate(lines, start=1):
         try:
             value = json.loads(line)
         except (ValueError, RecursionError) as error:
-            if number == len(lines):
+            if number == 1:
+                came = repr(line[:40]) if line else "nothing"
+                raise InputError(
+                    f"recording line 1: expected the header of a recording, got {came}"
+                ) from error
+            if number == len(lines) and not text.endswith("\n"):
                 break  # the writer was stopped in the middle of a line
             raise InputError(f"recording line {number}: expected a JSON object, got {line[:40]!r}") from error
         if not isinstance(value, dict):
@@ -110,8 +117,6 @@ def parse_recording(text: str) -> Recording:
         else:
             _check_head(value)
         parsed.append(value)
-    if not parsed:
-        raise InputError("recording line 1: expected the header of a recording, got nothing")
     return Recording(parsed[0]["drawing"], parsed[1:])
 
 

@@ -6,22 +6,27 @@ from ..errors import InputError
 from ..geometry.checks import as_points
 from ..geometry.mesh import TriMesh
 from .document import Document, Drawing, EditState, Pin, Settings, new_document
-from .recording import Event, Recording, mesh_digest
+from .recording import Event, Recording, mesh_digest, settings_to_json
 from .session import Session
 
 # What a malformed value of an event raises where it is used.
 _BAD_EVENT = (AssertionError, AttributeError, KeyError, OverflowError, TypeError, ValueError)
 
 
-def replay(recording: Recording, drawing: Drawing) -> Iterator[tuple[float, EditState]]:
+def replay(
+    recording: Recording, drawing: Drawing, settings: Settings | None = None
+) -> Iterator[tuple[float, EditState]]:
     """Do a recording again on a drawing: the time and the state after each event.
 
     On the mesh that it was made on, poses are those of the session; on another mesh of the same picture pins
-    are found by their place at rest. Raises InputError with the number of the event's line.
+    are found by their place at rest. settings: bend in this way throughout, whatever was recorded.
+    Raises InputError with the number of the event's line.
     """
     session: Session | None = None
     same_mesh = recording.header.get("mesh") == mesh_digest(drawing.mesh)
     for number, event in enumerate(recording.events, start=2):
+        if event["do"] == "settings" and settings is not None:
+            event = {**event, **settings_to_json(settings)}
         try:
             if session is None:
                 session = Session(_start(event, drawing))
@@ -41,6 +46,8 @@ def _settings(event: Event) -> Settings:
 
 def _pins(event: Event, mesh: TriMesh, same_mesh: bool) -> tuple[Pin, ...]:
     pins = event["pins"]
+    if len({int(pin["id"]) for pin in pins}) < len(pins):
+        raise InputError("expected pins with ids of their own, got one id twice")
     if same_mesh:
         points = [(int(pin["face"]), pin["weights"]) for pin in pins]
     else:

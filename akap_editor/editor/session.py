@@ -12,7 +12,7 @@ from ..errors import InputError, SolverError
 from ..geometry.checks import Floats, as_points
 from .document import Document, Drawing, EditState, Pin, Settings
 from .history import History
-from .recording import Recording, drawing_header, pins_to_json
+from .recording import Recording, drawing_header, pins_to_json, settings_to_json
 
 PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
 STILL = 0.02  # pixels: a step that moves no vertex farther has come to rest
@@ -41,8 +41,8 @@ class Session:
         self.recording = Recording(drawing_header(document.drawing))
         self._deformer = self._make_deformer(document.state.settings)
         self._deformer.set_pins(document.state.points)
-        self._record("settings", **_settings_to_json(document.state.settings))
-        if document.state.positions is not document.drawing.mesh.vertices:
+        self._record("settings", **settings_to_json(document.state.settings))
+        if self.posed:
             self._record("pose", positions=document.state.positions.tolist())
         if document.state.pins:
             self._record("pins", pins=pins_to_json(document.drawing.mesh, document.state.pins))
@@ -155,8 +155,14 @@ class Session:
             replace(pin, target=places[pin.id]) if pin.id in places else pin for pin in self.state.pins
         )
         self._set_state(replace(self.state, pins=pins))
-        self._settling = MOST_SETTLING
+        self._settling = MOST_SETTLING + int(self.pin_error() / self._reach)
         self._record("targets", targets={str(pin_id): at.tolist() for pin_id, at in places.items()})
+
+    def hold_pins(self) -> None:
+        """Before a new drag: pins that were stopped on their way, by undo or Escape, stay where they are."""
+        if not self.moving and self.pin_error() > PIN_TOLERANCE:
+            places = zip(self.state.pins, self.pin_positions().tolist(), strict=True)
+            self.set_targets({pin.id: (x, y) for pin, (x, y) in places})
 
     def set_settings(self, settings: Settings) -> None:
         """Bend differently from now on; moves nothing. Raises InputError, and then nothing has changed."""
@@ -165,7 +171,7 @@ class Session:
         self._deformer = deformer
         self._set_state(replace(self.state, settings=settings))
         self._settling = 0
-        self._record("settings", **_settings_to_json(settings))
+        self._record("settings", **settings_to_json(settings))
 
     def set_pose(self, positions: Floats) -> None:
         """Take over a pose (n, 2); the pins stay on the drawing and go there with it. Raises InputError."""
@@ -175,8 +181,9 @@ class Session:
 
     def reset_pose(self) -> None:
         """Back to the rest pose; the pins stay on the drawing and go there with it."""
-        self._put(self.drawing.mesh.vertices)
-        self._record("reset")
+        if self.posed:
+            self._put(self.drawing.mesh.vertices)
+            self._record("reset")
 
     # -- motion --------------------------------------------------------------------------------------------
 
@@ -233,7 +240,3 @@ class Session:
 
     def _record(self, do: str, **values: object) -> None:
         self.recording.events.append({"t": round(self._clock() - self._started, 4), "do": do, **values})
-
-
-def _settings_to_json(settings: Settings) -> dict[str, object]:
-    return {"method": settings.method, "parameters": dict(settings.parameters)}

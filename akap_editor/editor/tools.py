@@ -140,6 +140,7 @@ class DraggingPin(Tool):
             session.history.rename("Add pin and bend")
         else:
             session.begin(label)
+        session.hold_pins()
         where = zip(session.state.pins, session.pin_positions(), strict=True)
         self._from = {pin.id: (x, y) for pin, (x, y) in where if pin.id in editor.selection}
 

@@ -83,3 +83,17 @@ def test_a_huge_jump_stays_finite_and_unflipped(pinned):
             pinned.advance()  # the driver checks the pose
     pinned.key("escape")
     assert pinned.where(3) == pytest.approx(END)
+
+
+def test_pins_that_were_stopped_on_their_way_hold_while_another_is_dragged(pinned):
+    first, second = pinned.ids[:2]
+    x, y = pinned.where(first)
+    pinned.drag((x, y), (x + 25, y - 20), steps=1)
+    pinned.undo()
+    pinned.redo()
+    stopped = pinned.where(first)
+    assert np.hypot(x + 25 - stopped[0], y - 20 - stopped[1]) > 1
+    x, y = pinned.where(second)
+    pinned.drag((x, y), (x + 4, y + 4))
+    pinned.settle()
+    assert np.allclose(pinned.where(first), stopped, atol=0.25)

@@ -229,8 +229,14 @@ def test_a_failed_edit_changes_nothing_and_leaves_no_gesture_open(pinned, bad):
 def test_a_new_edit_ends_redo(pinned):
     pinned.undo()
     assert pinned.session.history.redo_label == "Add pin"
-    pinned.editor.reset_pose()
+    pinned.editor.remove_pins([1])
     assert pinned.session.history.redo_label is None
+
+
+def test_resetting_a_pose_that_is_at_rest_is_no_edit(pinned):
+    before = pinned.everything
+    pinned.editor.reset_pose()
+    assert pinned.everything == before
 
 
 def test_select_knows_only_pins_that_are_there(pinned):

@@ -203,3 +203,21 @@ def test_on_another_mesh_a_pin_beside_the_drawing_is_named(drawing):
     events = [{"t": 0, "do": "begin", "label": "Pins"}, {"t": 0, **pins(rest=[2.0, 2.0])}]
     with pytest.raises(InputError, match=r"line 3: cannot be replayed, .* outside the drawing"):
         list(replay(Recording({}, events), drawing))
+
+
+def test_a_recording_is_replayed_with_other_settings(driver, drawing):
+    a = driver.editor.add_pin(NECK)
+    assert a is not None
+    other = Settings("akap", (("dirichlet", False), ("memory", 0.0)))
+    states = [state for _, state in replay(driver.session.recording, drawing, other)]
+    assert {state.settings for state in states} == {other}
+
+
+def test_pins_with_the_same_id_are_refused_with_their_line(driver, drawing):
+    assert driver.editor.add_pin(NECK) is not None
+    recording = driver.session.recording
+    event = next(event for event in recording.events if event["do"] == "pins")
+    line = recording.events.index(event) + 2
+    event["pins"].append(event["pins"][0])
+    with pytest.raises(InputError, match=f"line {line}: .*one id twice"):
+        list(replay(recording, drawing))

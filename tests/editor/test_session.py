@@ -216,8 +216,8 @@ def test_modified_is_about_the_saved_state_not_about_the_number_of_edits(session
     session.mark_saved(tmp_path / "figure.akap")
     assert not session.modified
     assert session.document.path == tmp_path / "figure.akap"
-    session.begin("Reset")
-    session.reset_pose()
+    session.begin("Move")
+    session.set_pose(session.state.positions + 1.0)
     session.commit()
     assert session.modified
     session.undo()

@@ -1,0 +1,390 @@
+"""Opening, saving and exporting through the window, the questions on the way, and files that are no good."""
+
+import json
+import zipfile
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from akap_editor.app.commands import CTRL, SHIFT, Key
+from akap_editor.app.workspace import FileRequest
+from akap_editor.io.documents import open_document
+from akap_editor.io.images import read_image, write_png
+from akap_editor.io.project_file import load, save
+from akap_editor.render.offscreen import OffscreenRenderer
+from akap_editor.resources import bundled_drawings
+
+OPEN, SAVE, EXPORT = "Open picture or drawing", "Save drawing", "Export picture"
+UNSAVED, MESSAGE = "Unsaved changes", "That did not work"
+
+
+@pytest.fixture
+def bent(pinned, tmp_path):
+    """Three pins, one of them dragged, not saved; dialogs begin in an empty folder."""
+    start = pinned.screen(pinned.pin_place(3))
+    pinned.drag(start, (start[0], start[1] - 120))
+    pinned.space.folder = tmp_path
+    assert pinned.editor.modified
+    return pinned
+
+
+def bits(state):
+    pins = [(pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes()) for pin in state.pins]
+    return state.positions.tobytes(), pins, state.settings
+
+
+def finish(ui):
+    """Let work that was put off be done."""
+    ui.settle()
+    assert not ui.space.waiting
+
+
+# -- saving and opening -------------------------------------------------------------------------------------
+
+
+def test_save_as_and_open_again_restore_every_bit(bent, tmp_path):
+    before = bits(bent.session.state)
+    bent.menu("File", "Save As...")
+    bent.type_name(SAVE, "posed")
+    assert bent.space.request is None
+    assert bent.space.notice == "Saved posed.akap"
+    assert not bent.editor.modified
+    assert bent.space.title == "posed.akap - akap-editor"
+    bent.menu("Edit", "Reset Pose")
+    assert bent.space.title == "posed.akap * - akap-editor"
+    bent.menu("Edit", "Undo")
+    bent.menu("File", "Open...")
+    bent.type_name(OPEN, "posed.akap")
+    bent.dialog(UNSAVED, "Discard") if bent.space.question else None
+    finish(bent)
+    assert bent.document.path == tmp_path / "posed.akap"
+    assert bits(bent.session.state) == before
+    assert bent.session.history.depth == 0
+    assert not bent.editor.selection
+
+
+def test_save_asks_once_and_then_writes_to_the_same_file(bent, tmp_path):
+    bent.key(CTRL | Key.s)
+    bent.dialog(SAVE, "Save")
+    path = tmp_path / "figure.akap"
+    assert bits(load(path).state) == bits(bent.session.state)
+    bent.panel("Reset pose")
+    bent.key(CTRL | Key.s)
+    assert bent.space.request is None
+    assert bits(load(path).state) == bits(bent.session.state)
+    assert not bent.editor.modified
+
+
+def test_an_existing_file_is_replaced_only_on_demand(bent, tmp_path):
+    (tmp_path / "old.akap").write_bytes(b"old")
+    bent.key(CTRL | SHIFT | Key.s)
+    bent.type_name(SAVE, "old", enter=False)
+
+    def look(hand):
+        assert hand.item_exists(f"//{SAVE}###dialog {SAVE}/Replace")
+        assert not hand.item_exists(f"//{SAVE}###dialog {SAVE}/Save")
+
+    bent.do(look)
+    bent.dialog(SAVE, "Cancel")
+    assert (tmp_path / "old.akap").read_bytes() == b"old"
+    assert bent.editor.modified
+    bent.key(CTRL | SHIFT | Key.s)
+    bent.type_name(SAVE, "old", enter=False)
+    bent.dialog(SAVE, "Replace")
+    assert bits(load(tmp_path / "old.akap").state) == bits(bent.session.state)
+
+
+def test_the_file_dialog_goes_through_folders(bent, tmp_path):
+    inner = tmp_path / "inner" / "deeper"
+    inner.mkdir(parents=True)
+    save(bent.document, inner / "there.akap")
+    write_png(tmp_path / "picture.png", bent.document.drawing.image)
+    (tmp_path / "notes.txt").write_text("not listed")
+    (tmp_path / ".hidden.png").write_bytes(b"")
+    bent.menu("File", "Open...")
+    request = bent.space.request
+    assert request.entries() == [("inner", True), ("picture.png", False)]
+
+    def open_(name):
+        bent.do(lambda hand: hand.item_double_click(f"//{OPEN}###dialog {OPEN}/**/{name}"))
+
+    open_("\uf07b  inner")
+    assert request.folder == tmp_path / "inner"
+    bent.dialog(OPEN, "\uf062##up")
+    assert request.folder == tmp_path
+    bent.type_name(OPEN, "inner/deeper")
+    assert request.folder == inner
+    assert request.name == ""
+    open_("\uf15b  there.akap")
+    bent.dialog(UNSAVED, "Discard")
+    finish(bent)
+    assert bent.document.path == inner / "there.akap"
+
+
+@pytest.mark.parametrize("name", ["/", "~nobody-of-this-name/x", "..", "x" * 300, "\N{ELEPHANT}", "a/b/c"])
+@pytest.mark.parametrize("saving", [False, True])
+def test_no_name_that_can_be_typed_breaks_the_file_dialog(bent, tmp_path, name, saving):
+    """Each is seen half typed, e.g. the "/" of "/home"."""
+    state = bent.session.state
+    bent.key(CTRL | SHIFT | Key.s if saving else CTRL | Key.o)
+    bent.do(lambda hand: None)
+    bent.space.request.name = name
+    bent.settle()
+    bent.key(Key.escape)
+    assert bent.space.request is None
+    assert bent.session.state is state
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "saving", "expected"),
+    [
+        ("cat", True, "cat.akap"),
+        ("cat.akap", True, "cat.akap"),
+        (" cat.akap ", True, "cat.akap"),
+        ("sub/cat", True, "sub/cat.akap"),
+        ("folder", True, "folder"),
+        ("cat", False, "cat"),
+        ("/elsewhere/cat.png", False, "/elsewhere/cat.png"),
+    ],
+)
+def test_the_path_that_a_name_means(tmp_path, name, saving, expected):
+    (tmp_path / "folder").mkdir()
+    request = FileRequest("", (".akap", ".png"), tmp_path, print, name, saving)
+    assert request.path == tmp_path / expected
+
+
+def test_a_file_that_cannot_be_written_is_told_and_stays_unsaved(bent, tmp_path):
+    bent.key(CTRL | SHIFT | Key.s)
+    bent.type_name(SAVE, "no-such-folder/posed")
+    assert str(tmp_path / "no-such-folder" / "posed.akap") in bent.space.error
+    assert bent.editor.modified
+    assert bent.document.path is None
+    bent.dialog(MESSAGE, "OK")
+    assert not bent.space.error
+
+
+def test_export_is_the_picture_of_the_offscreen_renderer(bent, tmp_path):
+    with OffscreenRenderer(bent.window.ctx) as renderer:
+        expected = renderer.render(bent.document.drawing, bent.session.state.positions)
+    bent.key(CTRL | Key.e)
+    bent.type_name(EXPORT, "picture")
+    finish(bent)
+    written = read_image(tmp_path / "picture.png")
+    np.testing.assert_array_equal(written, expected)
+    assert bent.space.notice == f"Exported picture.png, {expected.shape[1]} × {expected.shape[0]} pixels"
+    assert bent.editor.modified, "a picture is not the drawing's file"
+
+
+@pytest.mark.parametrize("path", bundled_drawings()[:1], ids=lambda path: path.stem)
+def test_bundled_drawings_open_from_the_menu(pinned, path):
+    pinned.menu("File", "Open Bundled Drawing", path.stem.capitalize())
+    finish(pinned)
+    assert not pinned.space.error
+    assert pinned.document.drawing.name == path.stem
+    np.testing.assert_array_equal(pinned.document.drawing.image, read_image(path))
+
+
+# -- unsaved changes ----------------------------------------------------------------------------------------
+
+
+def open_other(ui, tmp_path):
+    save(ui.document, tmp_path / "other.akap")
+    ui.key(CTRL | Key.o)
+    ui.type_name(OPEN, "other.akap")
+
+
+def quit_(ui, tmp_path):
+    ui.key(CTRL | Key.q)
+
+
+def close_window(ui, tmp_path):
+    ui.window._on_close(None)
+    finish(ui)
+
+
+def gone_on(ui):
+    return ui.space.closing or ui.space.title.startswith("other.akap")
+
+
+ENDS = [open_other, quit_, close_window]
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_discard_goes_on(bent, tmp_path, end):
+    end(bent, tmp_path)
+    assert not gone_on(bent)
+    bent.dialog(UNSAVED, "Discard")
+    finish(bent)
+    assert gone_on(bent)
+    assert not (tmp_path / "figure.akap").exists()
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_save_saves_and_goes_on(bent, tmp_path, end):
+    state = bits(bent.session.state)
+    end(bent, tmp_path)
+    bent.dialog(UNSAVED, "Save")
+    bent.type_name(SAVE, "kept")
+    finish(bent)
+    assert gone_on(bent)
+    assert bits(load(tmp_path / "kept.akap").state) == state
+
+
+@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("answer", ["Cancel", "escape"])
+def test_cancel_stays(bent, tmp_path, end, answer):
+    state = bent.session.state
+    end(bent, tmp_path)
+    if answer == "escape":
+        bent.key(Key.escape)
+    else:
+        bent.dialog(UNSAVED, "Cancel")
+    finish(bent)
+    assert not gone_on(bent)
+    assert bent.space.question is None
+    assert bent.session.state is state
+    assert bent.editor.modified
+
+
+def test_cancel_of_the_file_dialog_after_save_stays(bent, tmp_path):
+    quit_(bent, tmp_path)
+    bent.dialog(UNSAVED, "Save")
+    bent.dialog(SAVE, "Cancel")
+    finish(bent)
+    assert not bent.space.closing
+    assert bent.editor.modified
+
+
+def test_a_failed_save_does_not_go_on(bent, tmp_path):
+    quit_(bent, tmp_path)
+    bent.dialog(UNSAVED, "Save")
+    bent.type_name(SAVE, "no-such-folder/x")
+    assert bent.space.error
+    bent.dialog(MESSAGE, "OK")
+    finish(bent)
+    assert not bent.space.closing
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_nothing_is_asked_where_nothing_would_be_lost(pinned, tmp_path, end):
+    pinned.space.folder = tmp_path
+    end(pinned, tmp_path)
+    finish(pinned)
+    assert gone_on(pinned)
+
+
+# -- files that are no good ---------------------------------------------------------------------------------
+
+
+def png_bytes(tmp_path, image):
+    path = tmp_path / "whole.png"
+    write_png(path, image)
+    return path.read_bytes()
+
+
+def missing(path, image):
+    return path / "nothing.png", "no such file"
+
+
+def text(path, image):
+    file = path / "text.png"
+    file.write_text("This is no picture.\n")
+    return file, "picture"
+
+
+def truncated(path, image):
+    data = png_bytes(path, image)
+    file = path / "truncated.png"
+    file.write_bytes(data[: len(data) // 2])
+    return file, "truncated"
+
+
+def transparent(path, image):
+    file = path / "transparent.png"
+    write_png(file, np.zeros_like(image))
+    return file, "transparent"
+
+
+def one_pixel(path, image):
+    file = path / "pixel.png"
+    write_png(file, np.zeros((1, 1, 4), dtype=np.uint8))
+    return file, ""
+
+
+def corrupt(path, image):
+    file = path / "corrupt.akap"
+    file.write_bytes(b"PK\x03\x04" + bytes(200))
+    return file, ".akap"
+
+
+def newer(path, image, document):
+    file = path / "newer.akap"
+    save(document, file)
+    with zipfile.ZipFile(file) as archive:
+        contents = {name: archive.read(name) for name in archive.namelist()}
+    description = json.loads(contents["document.json"])
+    description["version"] = 999
+    contents["document.json"] = json.dumps(description).encode()
+    with zipfile.ZipFile(file, "w") as archive:
+        for name, content in contents.items():
+            archive.writestr(name, content)
+    return file, "999"
+
+
+def folder(path, image):
+    (path / "folder.akap").mkdir()
+    return path / "folder.akap", "folder"
+
+
+BAD = [missing, text, truncated, transparent, one_pixel, corrupt, newer, folder]
+
+
+@pytest.mark.parametrize("make", BAD)
+def test_a_bad_file_is_told_in_one_sentence_and_changes_nothing(bent, tmp_path, image, make):
+    extra = (bent.document,) if make is newer else ()
+    path, part = make(tmp_path, image, *extra)
+    before, camera = bent.document, bent.editor.camera
+    bent.drop(path)
+    bent.dialog(UNSAVED, "Discard")
+    finish(bent)
+    error = bent.space.error
+    assert str(path) in error
+    assert part in error.replace(str(path), "")
+    assert "\n" not in error
+    assert bent.document is before
+    assert bent.editor.camera == camera
+    assert bent.editor.modified
+    bent.dialog(MESSAGE, "OK")
+    bent.key(CTRL | Key.z)
+    assert not bent.session.posed, "undo still works"
+
+
+def test_a_picture_without_alpha_opens_with_a_notice(pinned, tmp_path, image):
+    path = tmp_path / "opaque.png"
+    Image.fromarray(image[..., :3]).save(path)
+    pinned.drop(path)
+    finish(pinned)
+    assert not pinned.space.error
+    assert "no transparent background" in pinned.space.notice
+    assert pinned.document.drawing.name == "opaque"
+    height, width = image.shape[:2]
+    assert pinned.document.drawing.mesh.rest_areas.sum() >= 0.98 * width * height
+    pinned.click(pinned.screen((width / 2, height / 2)))
+    assert len(pinned.pins) == 1
+    assert not pinned.space.notice
+
+
+def test_a_dropped_picture_opens(pinned, tmp_path, image):
+    path = tmp_path / "dropped.png"
+    write_png(path, image)
+    pinned.drop(path)
+    finish(pinned)
+    expected = open_document(path)
+    assert pinned.document.drawing.name == "dropped"
+    np.testing.assert_array_equal(
+        pinned.document.drawing.mesh.vertices, expected.drawing.mesh.vertices
+    )
+    assert pinned.space.folder == tmp_path
+    assert not pinned.editor.modified
