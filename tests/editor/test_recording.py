@@ -85,7 +85,7 @@ def test_windows_line_ends_are_read():
     [
         ([], "line 1: expected the header of a recording, got nothing"),
         (["", ""], "line 1: expected the header"),
-        (["not JSON"], "line 1: expected a JSON object, got 'not JSON'"),
+        (["not JSON"], "line 1: expected the header of a recording, got 'not JSON'"),
         ([{"format": "something else"}], "line 1: expected the header"),
         ([{**HEAD, "drawing": None}], "line 1: expected the header"),
         ([{**HEAD, "version": 2}], "line 1: expected version 1, got 2"),
