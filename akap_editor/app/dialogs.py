@@ -1,5 +1,6 @@
 """What must be answered before work goes on: messages, unsaved changes, files; and two pages of help."""
 
+import os
 import shutil
 import sys
 from pathlib import Path
@@ -172,7 +173,7 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
     if is_new:
         imgui.set_keyboard_focus_here()
     _, request.name = imgui.input_text("##name", request.name)
-    replaces = request.saving and bool(request.name.strip()) and request.path.is_file()
+    replaces = request.saving and bool(request.name.strip()) and os.path.isfile(request.path)
     if replaces:
         imgui.text_colored(imgui.ImVec4(*ACCENT), f"{request.path.name} is there already and would be replaced")
     accept = ("Replace" if replaces else "Save") if request.saving else "Open"
@@ -208,7 +209,7 @@ def _list_entries(request: FileRequest, scale: float) -> bool:
 
 def _accept(space: Workspace, request: FileRequest) -> None:
     path = request.path
-    if path.is_dir():
+    if os.path.isdir(path):
         request.folder, request.name = path, ""
         return
     _close(space, "request", None)

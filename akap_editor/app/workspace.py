@@ -1,5 +1,6 @@
 """What the window holds besides the drawing's own state: view switches, files, messages, questions."""
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -38,9 +39,12 @@ class FileRequest:
 
     @property
     def path(self) -> Path:
-        """The file that the fields name."""
-        path = self.folder / Path(self.name.strip()).expanduser()
-        return path.with_name(path.name + self.suffixes[0]) if self.saving and not path.suffix else path
+        """The file that the fields name, or a folder that is there."""
+        # os.path, unlike Path, takes whatever may be typed: unknown users, names that are too long
+        path = self.folder / os.path.expanduser(self.name.strip())
+        if self.saving and not path.suffix and not os.path.isdir(path):
+            return path.with_name(path.name + self.suffixes[0])
+        return path
 
     def entries(self) -> list[tuple[str, bool]]:
         """Folders, then files that are meant, each with whether it is a folder; none where it cannot be read."""

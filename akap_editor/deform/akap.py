@@ -33,6 +33,8 @@ class AkapDeformer:
     pin_weight: λ on the row as in eq. 5; with area-weighted energies 10 to 1000 behave alike.
     max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer
     way is cut, because following one field too far distorts (Fig. 2).
+    exact: factorize both systems in every substep, as the paper does; otherwise factorizations are used again while
+    the drawing bends, for fields that are the same within less than a hundredth of a pixel.
     Raises InputError on settings out of range.
     """
 
@@ -43,7 +45,8 @@ class AkapDeformer:
         dirichlet: bool = True,
         trajectory: Trajectory = "spiral",
         pin_weight: float = 100.0,
-        max_step: float = 0.01,
+        max_step: float = 0.02,
+        exact: bool = False,
     ) -> None:
         self._memory = as_number(memory, "memory", 0, 1)
         if trajectory not in ("spiral", "linear"):
@@ -57,10 +60,11 @@ class AkapDeformer:
         # The soft pins give way a little to the rest memory; a field that took them back each time would
         # keep the pose from ever coming to rest.
         self._arrived = _ARRIVED * length if memory else 0.0
-        self._system = KillingSystem(mesh, pin_weight)
+        self._pin_weight = pin_weight
+        self._system = KillingSystem(mesh, pin_weight, bool(exact))
+        self._exact_system: KillingSystem | None = None
         self._flow = LogSpirals(mesh).flow if trajectory == "spiral" else linear_flow
         self._rest = SymmetricDirichlet(mesh)
-        self._pin_energy_weight = pin_weight**2
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
     def set_pins(self, points: MeshPoints) -> None:
@@ -71,13 +75,20 @@ class AkapDeformer:
         pinned = np.unique(self._mesh.component[self._corners[:, :1]])
         self._held = ~np.isin(self._mesh.component, pinned)
         self._system.set_pins(points)
+        self._exact_system = None
 
     def vector_field(self, positions: ArrayLike, velocities: ArrayLike) -> Floats:
-        """U_opt of eq. 4, (n, 2), at a pose (n, 2) for pin velocities (k, 2), pixels per unit of time."""
+        """U_opt of eq. 4, (n, 2), at a pose (n, 2) for pin velocities (k, 2), pixels per unit of time.
+
+        Always by fresh factorizations, and without any effect on later steps.
+        """
         pose = as_points(positions, "positions", len(self._mesh.vertices))
         wanted = as_points(velocities, "velocities", len(self._points))
-        self._system.factorize(pose)
-        return to_points(self._system.field(to_complex(wanted), self._dirichlet)[0])
+        if self._exact_system is None:
+            self._exact_system = KillingSystem(self._mesh, self._pin_weight, exact=True)
+            self._exact_system.set_pins(self._points)
+        self._exact_system.prepare(pose)
+        return to_points(self._exact_system.field(to_complex(wanted), self._dirichlet)[0])
 
     def step(self, positions: ArrayLike, targets: ArrayLike) -> StepResult:
         """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2); see `Deformer.step`."""
@@ -112,7 +123,7 @@ class AkapDeformer:
 
     def _substep(self, pose: Complexes, aims: Complexes) -> tuple[Complexes, Complexes, bool]:
         """One field and one move: section 2.4, with velocities towards ``aims`` from where the pins are."""
-        self._system.factorize(to_points(pose))
+        self._system.prepare(to_points(pose))
         velocities = aims - self._pin_positions(pose)
         moved, field, cut = pose, np.zeros_like(pose), False
         if np.abs(velocities).max() > self._arrived:
@@ -149,7 +160,7 @@ class AkapDeformer:
 
         def value(candidate: Complexes) -> float:
             off = self._pin_positions(candidate) - aims
-            return self._rest.value(candidate) + self._pin_energy_weight * float((np.abs(off) ** 2).sum())
+            return self._rest.value(candidate) + self._pin_weight**2 * float((np.abs(off) ** 2).sum())
 
         off = self._pin_positions(pose) - aims
         gradient = self._rest.gradient(pose) + 2 * self._system.pull(off)

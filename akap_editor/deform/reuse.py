@@ -4,8 +4,6 @@ A deformation is nearly isometric, so the matrix at the current pose is nearly t
 vertex by the rotation R since then: R A₀⁻¹ Rᵀ is an excellent preconditioner.
 """
 
-from typing import Any
-
 import numpy as np
 from scipy.sparse import csc_array
 
@@ -24,77 +22,92 @@ class ReusedCholesky:
 
     Unknowns are complex, one for each vertex; the matrix is real, with interleaved x and y. With ``exact`` every
     matrix is factorized. Otherwise a factorization is kept as long as that is cheaper on average than making a
-    new one.
+    new one, and solutions are as near as ``tolerance`` in the energy norm.
     """
 
-    def __init__(self, pattern: SymmetricPattern, exact: bool) -> None:
+    def __init__(self, pattern: SymmetricPattern, exact: bool, tolerance: float) -> None:
         self._cholesky = SparseCholesky(pattern)
         size = pattern.size
         starts = np.searchsorted(pattern.columns, np.arange(size + 1))
         self._lower = csc_array((np.zeros(pattern.count), pattern.rows, starts), shape=(size, size))
         self._diagonal = np.flatnonzero(pattern.rows == pattern.columns)
-        self._always = exact
-        self._stale = True
-        self._fresh = False
-        self._turn: Complexes = np.ones(size // 2, dtype=np.complex128)
-        self._frame = self._turn
-        self._cost, self._uses = 0.0, 0
-        self.iterations = 0
+        self._exact, self._tolerance = exact, tolerance
+        self._frame: Complexes = np.ones(size // 2, dtype=np.complex128)
+        self._turn = self._now = self._frame
+        self._last = np.zeros_like(self._frame)
+        self._cost, self._solves = 0.0, 0
+        self._stale, self._fresh = True, False
+        self.iterations = self.factorizations = 0
 
     def forget(self) -> None:
         """The matrix is about to change by more than the pose does: factorize the next one."""
         self._stale = True
 
-    def prepare(self, nonzeros: Floats, frame: Complexes, exact: bool = False) -> None:
+    def prepare(self, nonzeros: Floats, frame: Complexes) -> None:
         """Set the matrix; ``frame`` (n,) of unit size says how each vertex is turned. Raises SolverError."""
         self._lower.data = nonzeros
-        self._fresh = self._always or self._stale or exact
-        if self._fresh:
-            self._cholesky.factorize(nonzeros)
-            self._frame, self._stale = frame, False
-            self._cost, self._uses = _FACTORIZATION, 0
-        self._turn = frame * self._frame.conj()
+        self._now = frame
+        if self._exact or self._stale:
+            self._factorize()
+        else:
+            self._fresh = False
+            self._turn = frame * self._frame.conj()
 
     def precondition(self, right: Complexes) -> Complexes:
         """An approximation of A⁻¹ b by one solve; exact where the matrix was just factorized."""
-        turned = (self._turn.conj() * right).view(np.float64)
-        return self._turn * self._cholesky.solve(turned).view(np.complex128)
+        turned = np.ascontiguousarray(self._turn.conj() * right)
+        return self._turn * self._cholesky.solve(turned.view(np.float64)).view(np.complex128)
 
-    def solve(self, right: Complexes, tolerance: float) -> Complexes:
-        """A⁻¹ b, by conjugate gradients until the energy norm of the error is about ``tolerance``."""
-        solution = self.precondition(right)
-        self.iterations = 0
+    def solve(self, right: Complexes) -> Complexes:
+        """A⁻¹ b; by conjugate gradients from the last solution, where the factors are of an earlier pose."""
+        if not self._fresh:
+            solution = self._iterate(right)
+            if solution is None:  # too far from the earlier pose
+                self._factorize()
         if self._fresh:
-            return solution
+            solution = self.precondition(right)
+        assert solution is not None
+        self._last = solution
+        return solution
+
+    def _factorize(self) -> None:
+        self._stale = True  # until it has succeeded
+        self._cholesky.factorize(self._lower.data)
+        self._frame, self._turn = self._now, np.ones_like(self._now)
+        self._stale, self._fresh = False, True
+        self._cost, self._solves = _FACTORIZATION, 0
+        self.factorizations += 1
+
+    def _iterate(self, right: Complexes) -> Complexes | None:
+        solution = self._last
         residual = right - self._multiply(solution)
-        direction: Complexes | None = None
-        previous = 1.0
-        while self.iterations < _MOST_ITERATIONS:
-            self.iterations += 1
+        direction = np.zeros_like(residual)
+        previous, count = np.inf, 0
+        while count < _MOST_ITERATIONS:
+            count += 1
             step = self.precondition(residual)
             square = _dot(residual, step)
-            if square <= tolerance**2:
-                solution = solution + step
-                break
-            direction = step if direction is None else step + (square / previous) * direction
+            if square <= self._tolerance**2:
+                self._judge(count)
+                return solution + step
+            direction = step + (square / previous) * direction
             image = self._multiply(direction)
             length = square / _dot(direction, image)
             solution = solution + length * direction
             residual = residual - length * image
             previous = square
-        self._judge()
-        return solution
+        return None
 
-    def _judge(self) -> None:
-        """Factorize again once a step costs more than the average since the last factorization."""
-        cost = _ITERATION * self.iterations
-        self._cost, self._uses = self._cost + cost, self._uses + 1
-        self._stale = cost > self._cost / self._uses or self.iterations >= _MOST_ITERATIONS
+    def _judge(self, count: int) -> None:
+        """Factorize again once a solve costs more than the average since the last factorization."""
+        self.iterations += count
+        cost = _ITERATION * count
+        self._cost, self._solves = self._cost + cost, self._solves + 1
+        self._stale = cost > self._cost / self._solves
 
     def _multiply(self, values: Complexes) -> Complexes:
         flat = values.view(np.float64)
-        lower: Any = self._lower
-        product = lower @ flat + lower.T @ flat - lower.data[self._diagonal] * flat
+        product = self._lower @ flat + self._lower.T @ flat - self._lower.data[self._diagonal] * flat
         return product.view(np.complex128)
 
 

@@ -72,25 +72,26 @@ def element_pattern(faces: Ints) -> tuple[Ints, Ints]:
     Degrees of freedom are interleaved: 2 i and 2 i + 1 are x and y of vertex i. An entry may lie above the
     diagonal; its mirror image is the one meant.
     """
-    dofs = (2 * faces[:, :, None] + np.arange(2)).reshape(-1, 6)
-    return dofs[:, _LOWER_ROWS].ravel(), dofs[:, _LOWER_COLUMNS].ravel()
+    dofs = (2 * faces.T[:, None, :] + np.arange(2)[:, None]).reshape(6, -1)
+    return dofs[_LOWER_ROWS].ravel(), dofs[_LOWER_COLUMNS].ravel()
 
 
 def killing_elements(positions: Floats, faces: Ints) -> Floats:
-    """Entries (21 m,) of K = Pᵀ P face by face, each weighted by its area (paper, eqs. 5-7, Appendix A).
+    """Entries (21 m,) of K = Pᵀ P, the first of each face, then the second, ... (paper, eqs. 5-7, Appendix A).
 
-    Rows of P per face: 2 ∂x U1, √2 (∂y U1 + ∂x U2), 2 ∂y U2. Unlike in the printed eq. 6, the gradient is
-    split into ∂x and ∂y: the whole stacked G would penalize rotations.
+    Rows of P per face, each weighted by the root of its area: 2 ∂x U1, √2 (∂y U1 + ∂x U2), 2 ∂y U2. Unlike in
+    the printed eq. 6, the gradient is split into ∂x and ∂y: the whole stacked G would penalize rotations.
+    Written out, the entry of component a at corner i and b at corner j is 2 A (∂b hᵢ ∂a hⱼ + δ_ab ∇hᵢ·∇hⱼ).
     """
-    dx, dy, areas = hat_gradients(positions, faces)
-    root = np.sqrt(2 * np.abs(areas))[:, None]
-    gx, gy = dx * root, dy * root
-    m = len(faces)
-    xx = gx[:, :, None] * gx[:, None, :]
-    yy = gy[:, :, None] * gy[:, None, :]
-    element = np.empty((m, 3, 2, 3, 2))
-    element[:, :, 0, :, 0] = 2 * xx + yy
-    element[:, :, 1, :, 1] = 2 * yy + xx
-    element[:, :, 0, :, 1] = gy[:, :, None] * gx[:, None, :]
-    element[:, :, 1, :, 0] = gx[:, :, None] * gy[:, None, :]
-    return element.reshape(m, 6, 6)[:, _LOWER_ROWS, _LOWER_COLUMNS].ravel()
+    x, y = (np.ascontiguousarray(column)[faces.T] for column in positions.T)
+    turned_x, turned_y = np.roll(y, -1, axis=0) - np.roll(y, 1, axis=0), np.roll(x, 1, axis=0) - np.roll(x, -1, axis=0)
+    root = np.sqrt(np.abs(turned_y[2] * turned_x[1] - turned_y[1] * turned_x[2]))  # of twice the area
+    gradient = turned_x / root, turned_y / root
+    dots = {(i, j): gradient[0][i] * gradient[0][j] + gradient[1][i] * gradient[1][j] for i in range(3) for j in range(i + 1)}
+    entries = np.empty((21, len(faces)))
+    for entry, row, column in zip(entries, _LOWER_ROWS.tolist(), _LOWER_COLUMNS.tolist(), strict=True):
+        (i, a), (j, b) = divmod(row, 2), divmod(column, 2)
+        np.multiply(gradient[b][i], gradient[a][j], out=entry)
+        if a == b:
+            entry += dots[i, j]
+    return entries.ravel()

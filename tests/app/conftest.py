@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from akap_editor.editor.document import Document, Drawing, make_drawing, new_document
 
-from .driver import Window, WindowDriver, render_unlocked
+from .driver import Window, WindowDriver, end_frame_unlocked, imgui, render_unlocked
 
 
 @pytest.fixture(scope="session")
@@ -40,6 +40,7 @@ def new_window() -> Iterator[Callable[..., WindowDriver]]:
     made: list[WindowDriver] = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("akap_editor.app.window.render_imgui", render_unlocked)
+        patch.setattr(imgui, "end_frame", end_frame_unlocked)
 
         def make(**options: object) -> WindowDriver:
             made.append(WindowDriver(Window(null=True, **options)))

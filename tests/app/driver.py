@@ -4,6 +4,7 @@
 from imgui_bundle import imgui  # isort: skip
 import ctypes
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +24,12 @@ te = imgui.test_engine
 Point = tuple[float, float]
 MOST_FRAMES = 2000
 
-# The Test Engine waits in ImGui::Render for a thread that runs Python. The binding of that function keeps the
-# interpreter locked, so they would wait for one another for ever; a call through ctypes unlocks it.
-render_unlocked = ctypes.CDLL(native.__file__)._ZN5ImGui6RenderEv
-render_unlocked.restype, render_unlocked.argtypes = None, []
+# The Test Engine waits in these for a thread that runs Python. Their bindings keep the interpreter locked, so the
+# two would wait for one another for ever; a call through ctypes unlocks it.
+_library = ctypes.CDLL(native.__file__)
+render_unlocked, end_frame_unlocked = _library._ZN5ImGui6RenderEv, _library._ZN5ImGui8EndFrameEv
+for function in (render_unlocked, end_frame_unlocked):
+    function.restype, function.argtypes = None, []
 
 
 class WindowDriver:
@@ -151,12 +154,13 @@ class WindowDriver:
         test = te.register_test(self._engine, "window", str(self._count))
         test.test_func = guarded
         te.queue_test(self._engine, test)
-        for _ in range(MOST_FRAMES):
-            if te.is_test_queue_empty(self._engine):
-                break
-            while self._between:
-                self._between.pop(0)()
-            self.frame()
+        try:
+            self._run_queue()
+        except BaseException:
+            te.abort_current_test(self._engine)
+            with suppress(Exception):
+                self._run_queue()
+            raise
         log = test.output.log.get_text()
         assert te.is_test_queue_empty(self._engine), f"not done after {MOST_FRAMES} frames: {log}"
         if failures:
@@ -164,6 +168,14 @@ class WindowDriver:
         assert test.output.status == te.TestStatus.success, log
         if settle:
             self.settle()
+
+    def _run_queue(self) -> None:
+        for _ in range(MOST_FRAMES):
+            if te.is_test_queue_empty(self._engine):
+                return
+            while self._between:
+                self._between.pop(0)()
+            self.frame()
 
     def on_main_thread(self, hand: Any, action: Callable[[], None], frames: int = 2) -> None:
         """From inside ``actions``: run something between two frames."""

@@ -1,7 +1,6 @@
 """Each command by its menu, its button and its keys; the side panel; the two pages of help."""
 
 from imgui_bundle import imgui  # isort: skip
-import numpy as np
 import pytest
 
 from akap_editor.app import commands
@@ -252,18 +251,6 @@ def test_the_pin_list_selects(pinned):
     assert not pinned.editor.modified
     pinned.panel("Remove selected")
     assert [pin.id for pin in pinned.pins] == [2, 3]
-
-
-def test_the_numbers_are_those_of_the_pose_on_the_screen(pinned, monkeypatch):
-    """The last frame before the window sleeps shows what a frame drawn later would."""
-    start = pinned.screen(pinned.pin_place(3))
-    pinned.drag(start, (start[0] - 40, start[1] - 250))
-    last = []
-    pinned.window.after_draw.append(lambda: last.append(pinned.window.screenshot()))
-    pinned.key(CTRL | Key.z, CTRL | Key.y)
-    assert pinned.session.posed
-    pinned.window.after_draw.clear()
-    np.testing.assert_array_equal(last[-1], pinned.screenshot())
 
 
 def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch):

@@ -159,18 +159,17 @@ def test_memory_lowers_distortion(shapes):
 
 
 def wild_drag(mesh, points, memory, seed, moves=2):
-    """Targets thrown about by the drawing's own size, a few steps each."""
+    """Targets thrown about by the drawing's own size."""
     rng = np.random.default_rng(seed)
     size = np.sqrt(mesh.rest_areas.sum())
     deformer, pose = deformer_with(mesh, points, memory=memory, max_step=0.05), mesh.vertices
     for _ in range(moves):
         goals = mesh.evaluate(points, mesh.vertices) + rng.normal(scale=size, size=(len(points), 2))
-        for _ in range(2):
-            result = deformer.step(pose, goals)
-            pose = result.positions
-            assert np.isfinite(pose).all()
-            assert result.report.flipped == 0
-            assert distortion(mesh, pose).flipped == 0
+        result = deformer.step(pose, goals)
+        pose = result.positions
+        assert np.isfinite(pose).all()
+        assert result.report.flipped == 0
+        assert distortion(mesh, pose).flipped == 0
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])

@@ -15,7 +15,7 @@ def fields(mesh, positions, points, velocities, weight=WEIGHT):
     """U_opt and U°, (n, 2) each."""
     system = KillingSystem(mesh, weight)
     system.set_pins(points)
-    system.factorize(positions)
+    system.prepare(positions)
     optimal, smooth = system.field(to_complex(velocities))
     return to_points(optimal), to_points(smooth)
 

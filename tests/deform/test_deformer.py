@@ -15,6 +15,8 @@ SETTINGS = {
         {"memory": 0.0, "dirichlet": False},
         {"memory": 0.0, "trajectory": "linear"},
         {"memory": 1.0, "dirichlet": False, "trajectory": "linear"},
+        {"memory": 0.0, "exact": True},
+        {"memory": 1.0, "exact": True},
     ]
 }
 CASES = {
@@ -94,7 +96,9 @@ def test_result_depends_on_nothing_but_the_arguments(case, mesh, shapes):
     used.step(mesh.vertices, mesh.evaluate(others, mesh.vertices) + 4.0)
     used.set_pins(points)
     used.step(pose, targets + 2.0)
-    assert np.abs(used.step(pose, targets).positions - expected).max() < 1e-9
+    # a cache may change a result within the solver's stated tolerance
+    bound = 1e-5 * np.sqrt(mesh.rest_areas.sum()) if case[0] == "akap" and not case[1].get("exact") else 1e-9
+    assert np.abs(used.step(pose, targets).positions - expected).max() < bound
     assert stepped(case, mesh, points, pose, targets).tolist() == expected.tolist()
 
 
@@ -167,6 +171,7 @@ def test_pins_at_their_targets_translate_the_drawing(case, mesh, shapes):
     assert np.abs(result - mesh.vertices - [6.0, -11.0]).max() < 1e-6
 
 
+@pytest.mark.parametrize("shape_name", ["triangle", "strip", "islands"])
 def test_no_argument_leads_to_numbers_that_are_not_finite(case, mesh, shapes):
     """Targets at odds with one another, very far away, or all in one place."""
     points, pose, targets = scene(mesh, shapes)

@@ -31,7 +31,7 @@ def test_no_points(empty):
 
 @pytest.mark.parametrize("value", [None, 3.0, "points", [[1, 2], [3]], [[True, False]], [[1j, 0]], {"x": 1}])
 def test_what_is_no_array_of_points_is_refused(value):
-    with pytest.raises(InputError, match="^handles: expected "):
+    with pytest.raises(InputError, match=r"^handles: expected "):
         as_points(value, "handles")
 
 

@@ -1,0 +1,150 @@
+"""The loop: when it draws and when it sleeps; sizes, scales, and windows that cannot be."""
+
+from imgui_bundle import imgui  # isort: skip
+from types import SimpleNamespace
+
+import glfw
+import numpy as np
+import pytest
+
+from akap_editor.app import window as window_module
+from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES, Window
+from akap_editor.errors import DisplayError, GraphicsError
+
+
+class Loop:
+    """Stands in for GLFW's waiting and for the clock; the window is closed at the last of ``waits`` waits."""
+
+    def __init__(self, ui, monkeypatch):
+        self.ui, self.now, self.waits = ui, 0.0, []
+        self.on_wait = self.on_poll = lambda count: None
+        self._polls = 0
+        monkeypatch.setattr(glfw, "wait_events_timeout", self._wait)
+        monkeypatch.setattr(glfw, "poll_events", self._poll)
+        monkeypatch.setattr(window_module, "time", SimpleNamespace(perf_counter=lambda: self.now))
+
+    def _wait(self, seconds):
+        self.waits.append((seconds, self.ui.window.frames - self._start))
+        if len(self.waits) == self._most:
+            self.ui.space.closing = True
+        interrupted = self.on_wait(len(self.waits))
+        self.now += 0.1 * seconds if interrupted else seconds
+
+    def _poll(self):
+        self._polls += 1
+        self.on_poll(self._polls)
+
+    def run(self, waits=3):
+        """The waits (seconds), each with the number of frames drawn before it."""
+        self._most, self._start = waits, self.ui.window.frames
+        self.ui.window.wake()
+        self.ui.window.run()
+        return self.waits
+
+
+@pytest.fixture
+def loop(pinned, monkeypatch):
+    return Loop(pinned, monkeypatch)
+
+
+def test_a_window_with_nothing_to_do_sleeps(loop):
+    assert loop.run() == [(IDLE_SECONDS, SETTLE_FRAMES)] * 3
+    assert not loop.ui.window._busy
+
+
+def test_an_event_wakes_it_until_all_stands_where_it_belongs(loop):
+    loop.on_wait = lambda count: count == 2
+    frames = [frames for _, frames in loop.run(4)]
+    assert frames == [SETTLE_FRAMES, SETTLE_FRAMES, 2 * SETTLE_FRAMES, 2 * SETTLE_FRAMES]
+
+
+def test_a_caret_blinks(loop):
+    loop.ui.menu("File", "Open...")
+    waits = loop.run(4)
+    assert {seconds for seconds, _ in waits} == {0.4}
+    assert np.diff([frames for _, frames in waits]).tolist() == [1, 1, 1]
+
+
+def test_input_that_comes_with_the_last_frame_is_taken_in_whole(loop):
+    """ImGui takes one change of a key per frame, so a quick press and release needs two."""
+    io = imgui.get_io()
+
+    def press(count):
+        if count == SETTLE_FRAMES:
+            io.add_key_event(imgui.Key.m, True)
+            io.add_key_event(imgui.Key.m, False)
+
+    loop.on_poll = press
+    loop.run()
+    assert loop.ui.space.show_mesh
+    assert not imgui.is_key_down(imgui.Key.m)
+
+
+def test_it_draws_until_the_drawing_has_come_to_rest_and_shows_it(loop):
+    """The last frame before the sleep shows, in the panel's numbers too, what any later frame would."""
+    ui, shots = loop.ui, []
+    x, y = ui.pin_place(3)
+    ui.session.begin("Bend")
+    ui.session.set_targets({3: (x, y - 40)})
+    ui.session.commit()
+    ui.window.after_draw.append(lambda: shots.append(ui.window.screenshot()))
+    waits = loop.run(1)
+    ui.window.after_draw.clear()
+    assert waits[0][1] > SETTLE_FRAMES
+    assert not ui.session.moving
+    assert ui.session.pin_error() < 0.25
+    np.testing.assert_array_equal(shots[-1], ui.screenshot())
+
+
+def test_a_minimised_window_is_not_drawn(loop, monkeypatch):
+    monkeypatch.setattr(glfw, "get_framebuffer_size", lambda handle: (0, 0))
+    seconds = {seconds for seconds, _ in loop.run()}
+    assert loop.waits[-1][1] == 0
+    assert seconds <= {0.25, IDLE_SECONDS}
+
+
+def test_the_fitted_drawing_follows_the_size_of_the_window(ui):
+    handle = ui.window._handle
+    before = ui.editor.camera
+    try:
+        glfw.set_window_size(handle, 900, 700)
+        ui.settle()
+        left, _, right, _ = ui.editor.canvas
+        assert (left, right) == (48.0, 900.0 - 268.0)
+        assert ui.editor.camera.zoom < before.zoom
+        ui.editor.camera = moved = ui.editor.camera.panned(5, 5)
+        glfw.set_window_size(handle, 1280, 800)
+        ui.settle()
+        assert ui.editor.camera == moved, "the user's own view is kept"
+    finally:
+        glfw.set_window_size(handle, 1280, 800)
+        ui.settle()
+    assert ui.screenshot().shape == (800, 1280, 3)
+
+
+def test_without_a_document_the_window_shows_how_to_begin(ui):
+    ui.editor.session = None
+    ui.settle()
+    assert ui.space.title == "akap-editor"
+    assert "Open" in ui.editor.hint
+    for label in ("Save", "Export PNG...", "Fit in Window"):
+        command = next(c for c in window_module.commands.COMMANDS if c.label == label)
+        assert not command.enabled(ui.space)
+    ui.click((400.0, 400.0))
+    ui.wheel((400.0, 400.0), 1.0)
+    assert not ui.space.error
+
+
+def test_no_display_is_said_in_one_sentence(monkeypatch):
+    monkeypatch.setattr(glfw, "init", lambda: False)
+    with pytest.raises(DisplayError, match="no display"):
+        Window()
+
+
+def test_no_opengl_is_said_in_one_sentence(monkeypatch):
+    monkeypatch.setattr(glfw, "init", lambda: True)
+    monkeypatch.setattr(glfw, "window_hint", lambda hint, value: None)
+    monkeypatch.setattr(glfw, "create_window", lambda *args: None)
+    monkeypatch.setattr(glfw, "terminate", lambda: None)
+    with pytest.raises(GraphicsError, match="OpenGL 3.3"):
+        Window()
