@@ -74,7 +74,9 @@ def _edit(document: Document) -> None:
 @cli.command(epilog="Example: akap-editor render posed.akap -o pose.png --scale 2")
 @click.argument("file", type=_FILE)
 @click.option("-o", "--output", type=_FILE, required=True, help="PNG file to write.")
-@click.option("--scale", default=1.0, show_default=True, help="Pixels of the output per pixel of the picture.")
+@click.option(
+    "--scale", default=1.0, show_default=True, help="Pixels of the output per pixel of the picture."
+)
 @click.option("--background", metavar="#RRGGBB", help="Color behind the drawing; transparent without it.")
 def render(file: Path, output: Path, scale: float, background: str | None) -> None:
     """Write the pose of FILE, a saved drawing or a picture, as a PNG."""
@@ -95,7 +97,9 @@ def render(file: Path, output: Path, scale: float, background: str | None) -> No
 @click.option("-o", "--output", type=_FILE, required=True, help="Animation to write: .webp, .gif or .apng.")
 @click.option("--pose", type=_FILE, help="Also write the last pose as this PNG file, in full resolution.")
 @click.option("--fps", default=30.0, show_default=True, help="Frames per second.")
-@click.option("--size", default=640, show_default=True, help="Longest side of the animation in pixels, at most.")
+@click.option(
+    "--size", default=640, show_default=True, help="Longest side of the animation in pixels, at most."
+)
 def replay_command(
     recording: Path, drawing: Path | None, output: Path, pose: Path | None, fps: float, size: int
 ) -> None:
@@ -130,9 +134,7 @@ def _replay(
 def _sampled(recording: Recording, drawing: Drawing, fps: float) -> list[Floats]:
     """The pose at each frame's time."""
     poses: list[Floats] = [drawing.mesh.vertices]
-    with click.progressbar(
-        replay(recording, drawing), length=len(recording.events), label="Bending"
-    ) as bar:
+    with click.progressbar(replay(recording, drawing), length=len(recording.events), label="Bending") as bar:
         for time, state in bar:
             while len(poses) <= time * fps:
                 poses.append(poses[-1])

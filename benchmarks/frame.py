@@ -125,7 +125,9 @@ def print_table(count: int, rows: list[dict[str, float]]) -> None:
         values = [1000 * float(np.percentile([row[part] for row in rows], quantile)) for part in PARTS]
         lead = f"{count:>8,}" if quantile == 50 else " " * 8
         tail = f"{1000 / values[-1]:7.0f} fps  {memory:6.0f} MB" if quantile == 50 else ""
-        print(f"{lead}  {label:>6} " + "".join(f"{value:10.2f}" for value in values) + f"  {tail}", flush=True)
+        print(
+            f"{lead}  {label:>6} " + "".join(f"{value:10.2f}" for value in values) + f"  {tail}", flush=True
+        )
 
 
 def main() -> None:

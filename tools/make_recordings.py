@@ -74,7 +74,10 @@ def line(dx: float, dy: float) -> Curve:
 
 def swing(dx: float, dy: float, times: int) -> Curve:
     """To and fro about the start, ending there."""
-    return lambda t: (dx * np.sin(2 * np.pi * times * t) * (1 - t), dy * np.sin(2 * np.pi * times * t) * (1 - t))
+    return lambda t: (
+        dx * np.sin(2 * np.pi * times * t) * (1 - t),
+        dy * np.sin(2 * np.pi * times * t) * (1 - t),
+    )
 
 
 def elephant() -> Hand:

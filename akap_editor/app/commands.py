@@ -121,7 +121,9 @@ REMOVE = Command(
     icons.ICON_FA_TRASH_CAN,
     lambda space: bool(space.editor.selection),
 )
-SELECT_ALL = Command("Select All Pins", lambda space: space.editor.select_all(), (CTRL | Key.a,), "", _has_drawing)
+SELECT_ALL = Command(
+    "Select All Pins", lambda space: space.editor.select_all(), (CTRL | Key.a,), "", _has_drawing
+)
 DESELECT = Command(
     "Deselect",
     lambda space: space.editor.select(()),
@@ -146,8 +148,12 @@ HAND_TOOL = Command(
 )
 FIT = Command("Fit in Window", lambda space: space.editor.fit(), (Key.f,), icons.ICON_FA_EXPAND, _has_drawing)
 ACTUAL = Command("100 %", _actual_size, (Key._1,), "", _has_drawing)
-ZOOM_IN = Command("Zoom In", lambda space: space.editor.zoom(1.25), (Key.equal, CTRL | Key.equal), "", _has_drawing)
-ZOOM_OUT = Command("Zoom Out", lambda space: space.editor.zoom(0.8), (Key.minus, CTRL | Key.minus), "", _has_drawing)
+ZOOM_IN = Command(
+    "Zoom In", lambda space: space.editor.zoom(1.25), (Key.equal, CTRL | Key.equal), "", _has_drawing
+)
+ZOOM_OUT = Command(
+    "Zoom Out", lambda space: space.editor.zoom(0.8), (Key.minus, CTRL | Key.minus), "", _has_drawing
+)
 SHOW_MESH = Command("Show Mesh", _mesh, (Key.m,), icons.ICON_FA_DRAW_POLYGON, _always, _mesh_on)
 SHOW_PINS = Command("Show Pins", _pins, (SHIFT | Key.p,), "", _always, _pins_on)
 CHECKER = Command("Checkerboard", _checker, (Key.b,), "", _always, _checker_on)

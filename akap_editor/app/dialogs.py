@@ -175,7 +175,9 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
     _, request.name = imgui.input_text("##name", request.name)
     replaces = request.saving and bool(request.name.strip()) and os.path.isfile(request.path)
     if replaces:
-        imgui.text_colored(imgui.ImVec4(*ACCENT), f"{request.path.name} is there already and would be replaced")
+        imgui.text_colored(
+            imgui.ImVec4(*ACCENT), f"{request.path.name} is there already and would be replaced"
+        )
     accept = ("Replace" if replaces else "Save") if request.saving else "Open"
     imgui.spacing()
     imgui.begin_disabled(not request.name.strip())

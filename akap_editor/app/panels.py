@@ -89,7 +89,9 @@ def _tool_bar(space: Workspace, scale: float) -> None:
                 imgui.dummy(ImVec2(size, 1 * scale))
                 at = imgui.get_cursor_screen_pos()
                 imgui.get_window_draw_list().add_line(
-                    ImVec2(at.x + 6 * scale, at.y), ImVec2(at.x + size - 6 * scale, at.y), packed((1, 1, 1, 0.12))
+                    ImVec2(at.x + 6 * scale, at.y),
+                    ImVec2(at.x + size - 6 * scale, at.y),
+                    packed((1, 1, 1, 0.12)),
                 )
                 imgui.dummy(ImVec2(size, 3 * scale))
             else:
@@ -144,7 +146,9 @@ def _row(label: str, value: str, tooltip: str = "") -> None:
     imgui.text_colored(ImVec4(*QUIET), label)
     if tooltip and imgui.is_item_hovered(imgui.HoveredFlags_.delay_normal):
         _tooltip(tooltip)
-    imgui.same_line(imgui.get_content_region_avail().x - imgui.calc_text_size(value).x + imgui.get_cursor_pos_x())
+    imgui.same_line(
+        imgui.get_content_region_avail().x - imgui.calc_text_size(value).x + imgui.get_cursor_pos_x()
+    )
     imgui.text(value)
 
 
@@ -222,11 +226,11 @@ def _numbers(space: Workspace) -> None:
     assert distortion is not None
     _section("Distortion")
     _row(
-        "Area", f"{distortion.area:.4f}", "How much areas change, on average over the drawing. 2 means not at all."
+        "Area",
+        f"{distortion.area:.4f}",
+        "How much areas change, on average over the drawing. 2 means not at all.",
     )
-    _row(
-        "Angle", f"{distortion.angle:.4f}", "How much shapes are sheared or stretched. 2 means not at all."
-    )
+    _row("Angle", f"{distortion.angle:.4f}", "How much shapes are sheared or stretched. 2 means not at all.")
     _row("Pins off target", f"{session.pin_error():.2f} px", "How far the farthest pin is from its place.")
 
 

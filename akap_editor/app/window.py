@@ -106,6 +106,9 @@ class Window:
                 glfw.poll_events()
             else:
                 self._sleep()
+            # ImGui takes some events one per frame, and panels show the pose of the frame before
+            if imgui.get_current_context().input_events_queue.size() or self.space.editor.moving:
+                self.wake()
             if self._busy:
                 self._awake -= 1
                 if not self.frame():

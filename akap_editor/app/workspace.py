@@ -15,6 +15,7 @@ from ..io.documents import PICTURE_SUFFIXES, PROJECT_SUFFIX, open_document
 from ..io.images import has_transparency, write_png
 from ..render.offscreen import OffscreenRenderer
 
+
 @dataclass
 class Question:
     """Unsaved changes stand in the way of ``go_on``."""

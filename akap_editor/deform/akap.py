@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ..errors import InputError, SolverError
 from ..geometry.checks import Complexes, Floats, as_indices, as_number, as_points
 from ..geometry.mesh import MeshPoints, TriMesh, signed_areas
-from ..geometry.operators import killing_energy, to_complex, to_points
+from ..geometry.operators import to_complex, to_points
 from .akvf import KillingSystem
 from .deformer import StepReport, StepResult
 from .log_spiral import LogSpirals, linear_flow
@@ -104,15 +104,14 @@ class AkapDeformer:
                 pose, field, cut = self._substep(pose, aims)
                 blocked = blocked or cut
         result = to_points(pose)
-        faces = self._mesh.faces
         return StepResult(
             result,
             to_points(field),
             StepReport(
                 seconds=time.perf_counter() - started,
                 substeps=count,
-                energy=killing_energy(result, faces, to_points(field)),
-                flipped=int((signed_areas(result, faces) <= 0).sum()),
+                energy=self._system.energy(field) if count else 0.0,
+                flipped=int((signed_areas(result, self._mesh.faces) <= 0).sum()),
                 pin_error=float(np.abs(goals - self._pin_positions(pose)).max(initial=0.0)),
                 blocked=blocked,
             ),

@@ -15,7 +15,7 @@ from ..geometry.mesh import MeshPoints, TriMesh
 class StepReport:
     """What one step cost and how good it is.
 
-    seconds; substeps; energy: Killing energy of the last field, square pixels; flipped: faces with a negative
+    seconds; substeps; energy: Killing energy of the last field at the pose it was made for, square pixels; flipped: faces with a negative
     area afterwards; pin_error: largest distance of a pin from its target, pixels; blocked: whether a move was
     cut short because it would have flipped a face.
     """

@@ -1,19 +1,45 @@
 """Logarithmic-spiral trajectories of a vector field (paper, section 2.3)."""
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..geometry.checks import Complexes
 from ..geometry.mesh import TriMesh
 
-_SERIES_BELOW = 1e-6
+_SERIES_BELOW = 0.25
+_ROUNDING = 1e-17
 
 
 def spiral_factor(s: Complexes) -> Complexes:
-    """φ(s) = (eˢ − 1) / s with φ(0) = 1: a point with velocity u on a spiral of rate s moves by φ(s) u."""
-    small = np.abs(s) < _SERIES_BELOW
+    """φ(s) = (eˢ − 1) / s with φ(0) = 1: a point with velocity u on a spiral of rate s moves by φ(s) u.
+
+    Where all rates are small, as they are in a substep, by as many terms of Σ sᵏ / (k + 1)! as count.
+    """
+    largest = float(np.abs(s).max(initial=0.0))
+    if largest > _SERIES_BELOW:
+        small = np.abs(s) < _SERIES_BELOW
+        return np.where(small, _series(np.where(small, s, 0.0), _SERIES_BELOW), _closed(s, small))
+    return _series(s, largest)
+
+
+def _closed(s: Complexes, small: NDArray[np.bool_]) -> Complexes:
     safe = np.where(small, 1.0, s)
-    return np.where(small, 1.0 + s * (0.5 + s / 6.0), np.expm1(safe) / safe)
+    return np.expm1(safe) / safe
+
+
+def _series(s: Complexes, largest: float) -> Complexes:
+    """Horner's rule, with terms up to the last that rounding does not swallow."""
+    count, term = 1, largest / 2
+    while term > _ROUNDING:
+        count += 1
+        term *= largest / (count + 1)
+    result = np.ones_like(s)
+    for k in range(count, 1, -1):
+        result *= s
+        result *= 1.0 / k
+        result += 1.0
+    return result
 
 
 class LogSpirals:

@@ -7,8 +7,9 @@ Killing operator as preconditioner (Claici, Bessmeltsev, Schaefer and Solomon 20
 from collections.abc import Callable
 
 import numpy as np
+from scipy.sparse import vstack
 
-from ..geometry.checks import Complexes
+from ..geometry.checks import Complexes, Floats
 from ..geometry.mesh import TriMesh
 from ..geometry.operators import gradient_matrices, to_complex, to_points
 
@@ -21,38 +22,32 @@ class SymmetricDirichlet:
     """Σ A_f (‖J‖² + ‖J⁻¹‖²) over the faces, J the Jacobian of the map from rest; infinite at flips."""
 
     def __init__(self, mesh: TriMesh) -> None:
-        self._gx, self._gy = gradient_matrices(mesh)
-        self._gx_t, self._gy_t = self._gx.T.tocsr(), self._gy.T.tocsr()
+        self._gradient = vstack(gradient_matrices(mesh), format="csr")
+        self._divergence = self._gradient.T.tocsr()
         self._areas = mesh.rest_areas
 
-    def _columns(self, positions: Complexes) -> tuple[Complexes, Complexes]:
-        """The columns of J, (m,) each, as complex numbers."""
-        points = to_points(positions)
-        return to_complex(self._gx @ points), to_complex(self._gy @ points)
+    def _terms(self, positions: Complexes) -> tuple[Complexes, Complexes, Floats, Floats]:
+        """The columns of J as complex numbers, det J = Im(conj(jx) jy) and ‖J‖², (m,) each."""
+        columns = to_complex(self._gradient @ to_points(positions))
+        jx, jy = columns[: len(self._areas)], columns[len(self._areas) :]
+        determinant = jx.real * jy.imag - jx.imag * jy.real
+        return jx, jy, determinant, jx.real**2 + jx.imag**2 + jy.real**2 + jy.imag**2
 
     def value(self, positions: Complexes) -> float:
         """The energy of a pose (n,), in square pixels; 4 Σ A_f at rest."""
-        jx, jy = self._columns(positions)
-        determinant = (jx.conj() * jy).imag
+        _, _, determinant, squares = self._terms(positions)
         if determinant.min() <= 0:
             return np.inf
-        squares = _squares(jx, jy)
         return float(self._areas @ (squares + squares / determinant**2))
 
     def gradient(self, positions: Complexes) -> Complexes:
-        """Derivative with respect to the vertices, (n,); det J = Im(conj(jx) jy)."""
-        jx, jy = self._columns(positions)
-        determinant = (jx.conj() * jy).imag
-        squares = _squares(jx, jy)
-        along = 2 * self._areas * (1 + determinant**-2)
-        across = -2 * self._areas * squares * determinant**-3
-        dx = along * jx - 1j * across * jy
-        dy = along * jy + 1j * across * jx
-        return to_complex(self._gx_t @ to_points(dx) + self._gy_t @ to_points(dy))
-
-
-def _squares(jx: Complexes, jy: Complexes) -> np.ndarray:
-    return jx.real**2 + jx.imag**2 + jy.real**2 + jy.imag**2
+        """Derivative with respect to the vertices, (n,)."""
+        jx, jy, determinant, squares = self._terms(positions)
+        inverse = 1.0 / determinant
+        along = 2 * self._areas * (1 + inverse**2)
+        across = -2j * self._areas * squares * inverse**3
+        derivatives = np.concatenate([along * jx - across * jy, along * jy + across * jx])
+        return to_complex(self._divergence @ to_points(derivatives))
 
 
 def descend(

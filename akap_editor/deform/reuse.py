@@ -15,6 +15,7 @@ from .cholesky import SparseCholesky, SymmetricPattern
 _FACTORIZATION = 6.0
 _ITERATION = 1.2
 _MOST_ITERATIONS = 12
+_SIMPLICIAL_BELOW = 10_000  # unknowns: solves are what counts there, factorizations are few and fast enough
 
 
 class ReusedCholesky:
@@ -26,11 +27,12 @@ class ReusedCholesky:
     """
 
     def __init__(self, pattern: SymmetricPattern, exact: bool, tolerance: float) -> None:
-        self._cholesky = SparseCholesky(pattern)
         size = pattern.size
+        self._cholesky = SparseCholesky(pattern, supernodal=exact or size > _SIMPLICIAL_BELOW)
         starts = np.searchsorted(pattern.columns, np.arange(size + 1))
         self._lower = csc_array((np.zeros(pattern.count), pattern.rows, starts), shape=(size, size))
-        self._diagonal = np.flatnonzero(pattern.rows == pattern.columns)
+        self._upper = self._lower.T
+        self._diagonal_slots = np.flatnonzero(pattern.rows == pattern.columns)
         self._exact, self._tolerance = exact, tolerance
         self._frame: Complexes = np.ones(size // 2, dtype=np.complex128)
         self._turn = self._now = self._frame
@@ -45,7 +47,8 @@ class ReusedCholesky:
 
     def prepare(self, nonzeros: Floats, frame: Complexes) -> None:
         """Set the matrix; ``frame`` (n,) of unit size says how each vertex is turned. Raises SolverError."""
-        self._lower.data = nonzeros
+        self._lower.data = self._upper.data = nonzeros
+        self._diagonal = nonzeros[self._diagonal_slots]
         self._now = frame
         if self._exact or self._stale:
             self._factorize()
@@ -69,6 +72,10 @@ class ReusedCholesky:
         assert solution is not None
         self._last = solution
         return solution
+
+    def energy(self, values: Complexes) -> float:
+        """xᵀ A x with the matrix last set."""
+        return _dot(values, self._multiply(values))
 
     def _factorize(self) -> None:
         self._stale = True  # until it has succeeded
@@ -107,7 +114,9 @@ class ReusedCholesky:
 
     def _multiply(self, values: Complexes) -> Complexes:
         flat = values.view(np.float64)
-        product = self._lower @ flat + self._lower.T @ flat - self._lower.data[self._diagonal] * flat
+        product = self._lower @ flat
+        product += self._upper @ flat
+        product -= self._diagonal * flat
         return product.view(np.complex128)
 
 

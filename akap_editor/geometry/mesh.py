@@ -16,9 +16,8 @@ _ROUNDING = 1e-12  # share by which a point may lie beyond a face and still be o
 
 def signed_areas(positions: Floats, faces: Ints) -> Floats:
     """Signed area of each face in square pixels, (m,); positive as stored in a `TriMesh` (y down)."""
-    a, b, c = positions[faces[:, 0]], positions[faces[:, 1]], positions[faces[:, 2]]
-    u, v = b - a, c - a
-    return 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    x, y = positions[:, 0][faces.T], positions[:, 1][faces.T]
+    return 0.5 * ((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]))
 
 
 @dataclass(frozen=True, eq=False)

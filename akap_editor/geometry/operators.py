@@ -9,6 +9,8 @@ from scipy.sparse import csr_array
 from .checks import Complexes, Floats, Ints
 from .mesh import TriMesh, signed_areas
 
+_NEXT, _AFTER = [1, 2, 0], [2, 0, 1]  # the other two corners of a face, seen from each
+
 
 def to_complex(points: Floats) -> Complexes:
     """(n, 2) float64 as (n,) complex128; a view where the array is contiguous."""
@@ -28,10 +30,9 @@ def hat_gradients(positions: Floats, faces: Ints) -> tuple[Floats, Floats, Float
     """
     areas = signed_areas(positions, faces)
     x, y = positions[:, 0][faces], positions[:, 1][faces]
-    following, preceding = [1, 2, 0], [2, 0, 1]
     scale = 0.5 / areas[:, None]
-    dx = (y[:, following] - y[:, preceding]) * scale
-    dy = (x[:, preceding] - x[:, following]) * scale
+    dx = (y[:, _NEXT] - y[:, _AFTER]) * scale
+    dy = (x[:, _AFTER] - x[:, _NEXT]) * scale
     return dx, dy, areas
 
 
@@ -83,11 +84,15 @@ def killing_elements(positions: Floats, faces: Ints) -> Floats:
     the printed eq. 6, the gradient is split into ∂x and ∂y: the whole stacked G would penalize rotations.
     Written out, the entry of component a at corner i and b at corner j is 2 A (∂b hᵢ ∂a hⱼ + δ_ab ∇hᵢ·∇hⱼ).
     """
-    x, y = (np.ascontiguousarray(column)[faces.T] for column in positions.T)
-    turned_x, turned_y = np.roll(y, -1, axis=0) - np.roll(y, 1, axis=0), np.roll(x, 1, axis=0) - np.roll(x, -1, axis=0)
+    x, y = positions[:, 0][faces.T], positions[:, 1][faces.T]
+    turned_x, turned_y = y[_NEXT] - y[_AFTER], x[_AFTER] - x[_NEXT]
     root = np.sqrt(np.abs(turned_y[2] * turned_x[1] - turned_y[1] * turned_x[2]))  # of twice the area
     gradient = turned_x / root, turned_y / root
-    dots = {(i, j): gradient[0][i] * gradient[0][j] + gradient[1][i] * gradient[1][j] for i in range(3) for j in range(i + 1)}
+    dots = {
+        (i, j): gradient[0][i] * gradient[0][j] + gradient[1][i] * gradient[1][j]
+        for i in range(3)
+        for j in range(i + 1)
+    }
     entries = np.empty((21, len(faces)))
     for entry, row, column in zip(entries, _LOWER_ROWS.tolist(), _LOWER_COLUMNS.tolist(), strict=True):
         (i, a), (j, b) = divmod(row, 2), divmod(column, 2)

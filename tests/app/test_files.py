@@ -122,6 +122,24 @@ def test_the_file_dialog_goes_through_folders(bent, tmp_path):
     assert bent.document.path == inner / "there.akap"
 
 
+@pytest.mark.parametrize("chord", [CTRL | Key.o, CTRL | SHIFT | Key.s, CTRL | Key.e])
+def test_a_name_can_be_typed_at_once(bent, chord):
+    typed = []
+
+    def actions(hand):
+        hand.key_press(int(chord))
+        hand.yield_(3)
+        hand.key_press(int(CTRL | Key.a))
+        hand.key_chars("mine")
+        hand.yield_(2)
+        typed.append(bent.space.request.name)
+        hand.key_press(Key.escape)
+
+    bent.do(actions)
+    assert typed == ["mine"]
+    assert bent.space.request is None
+
+
 @pytest.mark.parametrize("name", ["/", "~nobody-of-this-name/x", "..", "x" * 300, "\N{ELEPHANT}", "a/b/c"])
 @pytest.mark.parametrize("saving", [False, True])
 def test_no_name_that_can_be_typed_breaks_the_file_dialog(bent, tmp_path, name, saving):
@@ -383,8 +401,6 @@ def test_a_dropped_picture_opens(pinned, tmp_path, image):
     finish(pinned)
     expected = open_document(path)
     assert pinned.document.drawing.name == "dropped"
-    np.testing.assert_array_equal(
-        pinned.document.drawing.mesh.vertices, expected.drawing.mesh.vertices
-    )
+    np.testing.assert_array_equal(pinned.document.drawing.mesh.vertices, expected.drawing.mesh.vertices)
     assert pinned.space.folder == tmp_path
     assert not pinned.editor.modified

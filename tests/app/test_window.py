@@ -59,7 +59,7 @@ def test_an_event_wakes_it_until_all_stands_where_it_belongs(loop):
 
 
 def test_a_caret_blinks(loop):
-    loop.ui.menu("File", "Open...")
+    loop.ui.space.ask_open()
     waits = loop.run(4)
     assert {seconds for seconds, _ in waits} == {0.4}
     assert np.diff([frames for _, frames in waits]).tolist() == [1, 1, 1]

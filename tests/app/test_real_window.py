@@ -1,0 +1,316 @@
+"""The program on a real X server, with a real mouse and keyboard, judged by what is on the screen."""
+
+import ctypes
+import os
+import shutil
+import subprocess
+import sys
+import time
+from ctypes.util import find_library
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image, ImageGrab
+from scipy.ndimage import distance_transform_edt
+
+import akap_editor
+from akap_editor.io.images import read_image
+from akap_editor.resources import resource
+
+pytestmark = pytest.mark.window
+
+SIZE = (1280, 800)  # of the screen, and of the window by default
+DEADLINE = 30.0  # seconds; a slow machine takes 3 to start the program
+LEFT, TOP, RIGHT, BOTTOM = 48, 40, 1280 - 268, 760  # well within the canvas, without menu and status bar
+CORNER = (LEFT + 12, TOP + 12)  # on the canvas, beside the drawing
+MARKER = 14  # pixels around a pin's center in which its marker lies
+
+
+@pytest.fixture(scope="module")
+def display():
+    """An X server of our own, never the user's screen."""
+    for tool in ("Xvfb", "xdotool"):
+        assert shutil.which(tool), f"{tool} is missing: install the packages xvfb and xdotool"
+    read, write = os.pipe()
+    screen = "{}x{}x24".format(*SIZE)
+    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", screen, "-nolisten", "tcp", "-noreset"]
+    server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
+    os.close(write)
+    with os.fdopen(read) as pipe:
+        number = pipe.readline().strip()
+    assert number, "Xvfb did not start"
+    yield f":{number}"
+    server.terminate()
+    server.wait(DEADLINE)
+
+
+@pytest.fixture
+def start(display, tmp_path):
+    """Starts the program on a file."""
+    programs = []
+
+    def run(file):
+        programs.append(Program(display, file, tmp_path))
+        return programs[-1]
+
+    yield run
+    for program in programs:
+        program.process.kill()
+        program.process.wait()
+
+
+@pytest.fixture
+def picture():
+    """The gecko of the real cartoons; a bundled drawing where they are absent."""
+    gecko = Path(akap_editor.__file__).parents[2] / "shared" / "data" / "noto" / "gecko.png"
+    return gecko if gecko.is_file() else resource("assets", "drawings", "gingerbread.png")
+
+
+class ClientMessage(ctypes.Structure):
+    """XClientMessageEvent, in the room of a whole XEvent."""
+
+    _fields_ = (
+        ("type", ctypes.c_int),
+        ("serial", ctypes.c_ulong),
+        ("send_event", ctypes.c_int),
+        ("display", ctypes.c_void_p),
+        ("window", ctypes.c_ulong),
+        ("message_type", ctypes.c_ulong),
+        ("format", ctypes.c_int),
+        ("data", ctypes.c_long * 5),
+        ("padding", ctypes.c_long * 24),
+    )
+
+
+class Program:
+    """The running program, its screen, and a hand at mouse and keyboard."""
+
+    def __init__(self, display, file, folder):
+        self._folder, self._shots = folder, 0
+        away = {"WAYLAND_DISPLAY", "XDG_SESSION_TYPE"}
+        self._environment = {name: value for name, value in os.environ.items() if name not in away}
+        self._environment["DISPLAY"] = self._display = display
+        command = [sys.executable, "-m", "akap_editor.cli", str(file)]
+        self._log = (folder / f"{Path(file).stem}.log").open("w+")
+        self.process = subprocess.Popen(command, env=self._environment, stderr=self._log)
+        self.hand("mousemove", *CORNER)
+        self.until(
+            lambda shot: len(np.unique(canvas(shot).reshape(-1, 3), axis=0)) > 20, "a drawing is shown"
+        )
+
+    def hand(self, *arguments):
+        subprocess.run(["xdotool", *map(str, arguments)], env=self._environment, check=True)
+
+    def grab(self):
+        """(h, w, 3) of the screen."""
+        return np.asarray(ImageGrab.grab(xdisplay=self._display).convert("RGB")).astype(int)
+
+    def keep(self, shot):
+        """Write a screenshot for whoever reads a failure; returns its path."""
+        self._shots += 1
+        path = self._folder / f"screen-{self._shots}.png"
+        Image.fromarray(shot.astype(np.uint8)).save(path)
+        return path
+
+    def until(self, holds, what):
+        """The screen once ``holds(screen)`` and nothing moves any more."""
+        before, deadline = self.grab(), time.monotonic() + DEADLINE
+        while time.monotonic() < deadline:
+            assert self.process.poll() is None, f"the program has ended: {self.log()}"
+            time.sleep(0.1)
+            shot = self.grab()
+            if holds(shot) and (shot == before).all():
+                return shot
+            before = shot
+        raise AssertionError(f"not within {DEADLINE:g} s: {what}; see {self.keep(before)}; {self.log()}")
+
+    def log(self):
+        self._log.seek(0)
+        return self._log.read()
+
+    def press(self, chord):
+        """Type e.g. "ctrl+s" as a hand does, the key inside the modifiers; xdotool's own chords overlap."""
+        *modifiers, key = chord.split("+")
+        down = [word for name in modifiers for word in ("keydown", name)]
+        up = [word for name in reversed(modifiers) for word in ("keyup", name)]
+        self.hand(*down, "key", key, *up)
+
+    def key(self, chord, what):
+        """Press a key; the canvas must change."""
+        before = canvas(self.grab())
+        self.press(chord)
+        return self.until(lambda shot: (canvas(shot) != before).any(), what)
+
+    def click(self, at):
+        before = canvas(self.grab())
+        self.hand("mousemove", *at, "click", 1, "mousemove", *CORNER)
+        return self.until(lambda shot: (canvas(shot) != before).any(), f"a pin at {at}")
+
+    def drag(self, start, end):
+        self.hand("mousemove", *start)
+        self.hand("mousedown", 1)
+        for x, y in np.linspace(start, end, 11)[1:]:
+            self.hand("mousemove", round(x), round(y))
+            time.sleep(0.02)  # a hand takes its time, but no result depends on it
+        self.hand("mouseup", 1, "mousemove", *CORNER)
+        return self.until(lambda shot: True, "the drawing is at rest")
+
+    def close_window(self):
+        """Ask as a window manager does for whom the cross was clicked."""
+        x11 = ctypes.CDLL(find_library("X11"))
+        for name in ("XOpenDisplay", "XInternAtom"):
+            getattr(x11, name).restype = ctypes.c_void_p
+        x11.XInternAtom.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
+        x11.XSendEvent.argtypes = [
+            ctypes.c_void_p,
+            ctypes.c_ulong,
+            ctypes.c_int,
+            ctypes.c_long,
+            ctypes.POINTER(ClientMessage),
+        ]
+        x11.XCloseDisplay.argtypes = [ctypes.c_void_p]
+        search = ["xdotool", "search", "--name", "akap-editor"]
+        found = subprocess.run(search, env=self._environment, check=True, capture_output=True, text=True)
+        (window,) = map(int, found.stdout.split())
+        connection = x11.XOpenDisplay(self._display.encode())
+        protocols, delete = (
+            x11.XInternAtom(connection, name, False) for name in (b"WM_PROTOCOLS", b"WM_DELETE_WINDOW")
+        )
+        event = ClientMessage(33, 0, True, connection, window, protocols, 32, (ctypes.c_long * 5)(delete))
+        assert x11.XSendEvent(connection, window, False, 0, ctypes.byref(event))
+        x11.XCloseDisplay(connection)
+
+    def without_pins(self):
+        """The screen with pins hidden; they are shown again."""
+        hidden = self.key("shift+p", "pins are hidden")
+        self.key("shift+p", "pins are shown")
+        return hidden
+
+    def seconds_of_work(self):
+        """CPU time so far."""
+        fields = Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def ended(self):
+        try:
+            return self.process.wait(DEADLINE)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"still running; see {self.keep(self.grab())}") from None
+
+
+def canvas(shot):
+    return shot[TOP:BOTTOM, LEFT:RIGHT]
+
+
+def find_camera(shot, alpha):
+    """(zoom, offset (2,)): from the bounding boxes of the drawing on the screen and of the picture's alpha."""
+    part = canvas(shot)
+    seen = np.argwhere(abs(part - part[0, 0]).sum(axis=2) > 60)[:, ::-1] + (LEFT, TOP)
+    drawn = np.argwhere(alpha > 127)[:, ::-1]
+    low, high = seen.min(axis=0), seen.max(axis=0) + 1
+    spans = (high - low) / (drawn.max(axis=0) + 1 - drawn.min(axis=0))
+    assert abs(spans[0] - spans[1]) < 0.02, "the drawing is not stretched"
+    zoom = spans.mean()
+    return zoom, (low + high) / 2 - zoom * (drawn.min(axis=0) + drawn.max(axis=0) + 1) / 2
+
+
+def far_apart(alpha, count):
+    """(count, 2) places (x, y) well inside the drawing, far from one another."""
+    depth = distance_transform_edt(alpha > 127)
+    inside = np.argwhere(depth > 0.4 * depth.max())[:, ::-1].astype(float)
+    chosen = [inside[0]]
+    while len(chosen) < count:
+        distances = np.min([np.linalg.norm(inside - place, axis=1) for place in chosen], axis=0)
+        chosen.append(inside[distances.argmax()])
+    return np.array(chosen) + 0.5
+
+
+def marker_center(shown, hidden, near):
+    """(2,): the middle of what hiding the pins changes around a point of the screen."""
+    x, y = map(round, near)
+    part = slice(y - MARKER, y + MARKER + 1), slice(x - MARKER, x + MARKER + 1)
+    changed = np.argwhere((shown[part] != hidden[part]).any(axis=2))
+    assert len(changed) > 100, f"a pin is expected near {x}, {y}"
+    return (changed.min(axis=0) + changed.max(axis=0) + 1)[::-1] / 2 + (x - MARKER, y - MARKER)
+
+
+def assert_markers(program, shown, hidden, places):
+    for place in places:
+        try:
+            found = marker_center(shown, hidden, place)
+            assert np.linalg.norm(found - place) < 1.5, f"pin at {found}, expected at {place}"
+        except AssertionError as error:
+            raise AssertionError(f"{error}; see {program.keep(shown)} and {program.keep(hidden)}") from None
+
+
+def changed_near(before, after, place, radius=20):
+    """How much of the surroundings of a point of the screen is another color, 0 to 1."""
+    x, y = map(round, place)
+    part = slice(y - radius, y + radius + 1), slice(x - radius, x + radius + 1)
+    return (abs(before[part] - after[part]).sum(axis=2) > 30).mean()
+
+
+def test_bend_save_quit_and_open_again(start, picture, tmp_path):
+    alpha = read_image(picture)[..., 3]
+    program = start(picture)
+    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    pins = np.rint(far_apart(alpha, 3) * zoom + offset).astype(int)
+    rest = program.grab()
+
+    for pin in pins.tolist():
+        shown = program.click(pin)
+    hidden = program.without_pins()
+    assert_markers(program, shown, hidden, pins)
+    assert (canvas(hidden) == canvas(rest)).all(), f"pins alone move nothing; see {program.keep(hidden)}"
+
+    inwards = np.array([(LEFT + RIGHT) / 2, (TOP + BOTTOM) / 2]) - pins[2]
+    end = np.rint(pins[2] + 150 * inwards / np.linalg.norm(inwards)).astype(int)
+    shown = program.drag(pins[2], end)
+    hidden = program.without_pins()
+    assert_markers(program, shown, hidden, [pins[0], pins[1], end])
+    for place in (pins[2], end):
+        assert changed_near(rest, hidden, place) > 0.2, f"nothing bent; see {program.keep(hidden)}"
+
+    began, worked = time.monotonic(), program.seconds_of_work()
+    time.sleep(2.0)
+    share = (program.seconds_of_work() - worked) / (time.monotonic() - began)
+    assert share < 0.05, f"busy for {100 * share:.0f} % of the time though nothing happens"
+
+    program.key("f", "the pose is fitted into the window")
+    last = program.key("ctrl+d", "no pin is selected")
+    saved = tmp_path / "posed.akap"
+    program.key("ctrl+shift+s", "the file dialog is open")
+    program.hand("type", "--delay", 10, str(saved))
+    program.press("Return")
+    program.until(lambda shot: saved.is_file() and (canvas(shot) == canvas(last)).all(), "the file is saved")
+    program.press("ctrl+q")
+    assert program.ended() == 0
+
+    state = akap_editor.load(saved).state
+    drawing = akap_editor.load(saved).drawing
+    targets = ([*pins[:2], end] - offset) / zoom
+    assert np.linalg.norm(state.targets - targets, axis=1).max() * zoom < 2.0
+    arrived = drawing.mesh.evaluate(state.points, state.positions)
+    assert np.linalg.norm(arrived - state.targets, axis=1).max() < 0.25
+    assert akap_editor.distortion(drawing.mesh, state.positions).angle > 2.001
+
+    again = start(saved)
+    shot = again.key("b", "the checkerboard is gone")
+    assert (canvas(shot) == canvas(last)).all(), f"see {again.keep(last)} and {again.keep(shot)}"
+    again.press("ctrl+q")
+    assert again.ended() == 0
+
+
+def test_closing_the_window_asks_for_unsaved_changes_and_else_ends(start, picture):
+    program = start(picture)
+    alpha = read_image(picture)[..., 3]
+    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    pinned = canvas(program.click(np.rint(far_apart(alpha, 1)[0] * zoom + offset).astype(int).tolist()))
+    program.close_window()
+    program.until(lambda shot: (canvas(shot) < pinned).any(axis=2).mean() > 0.9, "a question dims the canvas")
+    program.press("Escape")
+    program.until(lambda shot: (canvas(shot) == pinned).all(), "the question is gone")
+    program.key("ctrl+z", "the pin is taken back")
+    program.close_window()
+    assert program.ended() == 0
