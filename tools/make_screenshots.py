@@ -36,9 +36,7 @@ def main() -> None:
     recording = read_recording(resource("assets", "recordings", "elephant.akaprec"))
     image = read_image(resource("assets", "drawings", "elephant.png"))
     document = new_document(make_drawing(image, name="elephant"))
-    state = document.state
-    for _, state in replay(recording, document.drawing):
-        pass
+    *_, (_, state) = replay(recording, document.drawing)
     with Window(null=True) as window:
         window.space.show(document.with_state(state))
         window.space.editor.mark_saved(Path("elephant.akap"))

@@ -61,7 +61,7 @@ class Window:
         self.renderer = Renderer(self.ctx)
         self.space.exporter = OffscreenRenderer(self.ctx)
         # Callbacks only queue: an exception in one would come out of poll_events. ImGui uses none of these.
-        glfw.set_drop_callback(self._handle, self._on_drop)
+        glfw.set_drop_callback(self._handle, self._on_drop)  # type: ignore[arg-type]  # its stub is wrong
         glfw.set_window_refresh_callback(self._handle, lambda _: self._refresh())
         glfw.set_window_content_scale_callback(self._handle, lambda *_: self._apply_scale())
         glfw.set_window_close_callback(self._handle, self._on_close)
@@ -254,7 +254,7 @@ class Window:
             self._canvas.let_go(self.space)
         self._focused = focused
 
-    def _on_drop(self, _: Any, paths: Any) -> None:
+    def _on_drop(self, _: Any, paths: list[str]) -> None:
         self._dropped += [Path(path) for path in paths[:1]]
         self.wake()
 

@@ -2,6 +2,7 @@
 
 import math
 import time
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -17,10 +18,21 @@ from .log_spiral import LogSpirals, linear_flow
 from .rest_memory import SymmetricDirichlet, descend
 
 Trajectory = Literal["spiral", "linear"]
+Constraints = Literal["soft", "hard"]
 
 _SHORTEST = 2.0**-10  # share of a substep below which a move that would flip a face is given up
 _ARRIVED = 1e-4  # share of √area: pins nearer than this to their targets are left to the rest memory alone
 _THINNEST = 1e-3  # a face may not shrink below this share of its rest area in one move
+
+
+@dataclass(frozen=True, eq=False)
+class _Substep:
+    """From ``start`` along ``field`` for ``share`` of its time; ``end`` is after the rest memory, (n,) each."""
+
+    start: Complexes
+    field: Complexes
+    share: float
+    end: Complexes
 
 
 class AkapDeformer:
@@ -33,6 +45,7 @@ class AkapDeformer:
     pin_weight: λ on the row as in eq. 5; with area-weighted energies 10 to 1000 behave alike.
     max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer
     way is cut, because following one field too far distorts (Fig. 2).
+    constraints: "soft" pins pull with λ as in eq. 3, "hard" ones give U° exactly their velocities (Fig. 3).
     exact: factorize both systems in every substep, as the paper does; otherwise factorizations are used again while
     the drawing bends, for fields that are the same within less than a hundredth of a pixel.
     Raises InputError on settings out of range.
@@ -46,11 +59,14 @@ class AkapDeformer:
         trajectory: Trajectory = "spiral",
         pin_weight: float = 100.0,
         max_step: float = 0.02,
+        constraints: Constraints = "soft",
         exact: bool = False,
     ) -> None:
         self._memory = as_number(memory, "memory", 0, 1)
         if trajectory not in ("spiral", "linear"):
             raise InputError(f"trajectory: expected 'spiral' or 'linear', got {trajectory!r}")
+        if constraints not in ("soft", "hard"):
+            raise InputError(f"constraints: expected 'soft' or 'hard', got {constraints!r}")
         as_number(pin_weight, "pin_weight", 1e-3, 1e6)
         as_number(max_step, "max_step", 1e-4, math.inf)
         self._mesh = mesh
@@ -61,7 +77,8 @@ class AkapDeformer:
         # keep the pose from ever coming to rest.
         self._arrived = _ARRIVED * length if memory else 0.0
         self._pin_weight = pin_weight
-        self._system = KillingSystem(mesh, pin_weight, bool(exact))
+        self._hard = constraints == "hard"
+        self._system = KillingSystem(mesh, pin_weight, bool(exact), self._hard)
         self._exact_system: KillingSystem | None = None
         self._flow = LogSpirals(mesh).flow if trajectory == "spiral" else linear_flow
         self._rest = SymmetricDirichlet(mesh)
@@ -82,60 +99,75 @@ class AkapDeformer:
 
         Always by fresh factorizations, and without any effect on later steps.
         """
+        return self.vector_fields(positions, velocities)[0]
+
+    def vector_fields(self, positions: ArrayLike, velocities: ArrayLike) -> tuple[Floats, Floats]:
+        """U_opt of eq. 4 and U° of eq. 3, (n, 2) each, as in Fig. 4; otherwise like `vector_field`."""
         pose = as_points(positions, "positions", len(self._mesh.vertices))
         wanted = as_points(velocities, "velocities", len(self._points))
         if self._exact_system is None:
-            self._exact_system = KillingSystem(self._mesh, self._pin_weight, exact=True)
+            self._exact_system = KillingSystem(self._mesh, self._pin_weight, True, self._hard)
             self._exact_system.set_pins(self._points)
         self._exact_system.prepare(pose)
-        return to_points(self._exact_system.field(to_complex(wanted), self._dirichlet)[0])
+        optimal, smooth = self._exact_system.field(to_complex(wanted), self._dirichlet)
+        return to_points(optimal), to_points(smooth)
 
     def step(self, positions: ArrayLike, targets: ArrayLike) -> StepResult:
         """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2); see `Deformer.step`."""
         started = time.perf_counter()
         pose = to_complex(as_points(positions, "positions", len(self._mesh.vertices)))
         goals = to_complex(as_points(targets, "targets", len(self._points)))
-        field, blocked, count = np.zeros_like(pose), False, 0
+        way = [_Substep(pose, np.zeros_like(pose), 1.0, pose)]
         if len(goals):
             starts = self._pin_positions(pose)
             count = max(1, math.ceil(np.abs(goals - starts).max() / self._max_length))
             for index in range(1, count + 1):
                 aims = goals if index == count else starts + (index / count) * (goals - starts)
-                pose, field, cut = self._substep(pose, aims)
-                blocked = blocked or cut
-        result = to_points(pose)
+                way.append(self._substep(way[-1].end, aims))
+            del way[0]
+        result, field = to_points(way[-1].end), way[-1].field
         return StepResult(
             result,
             to_points(field),
             StepReport(
                 seconds=time.perf_counter() - started,
-                substeps=count,
-                energy=self._system.energy(field) if count else 0.0,
+                substeps=len(way) if len(goals) else 0,
+                energy=self._system.energy(field) if len(goals) else 0.0,
                 flipped=int((signed_areas(result, self._mesh.faces) <= 0).sum()),
-                pin_error=float(np.abs(goals - self._pin_positions(pose)).max(initial=0.0)),
-                blocked=blocked,
+                pin_error=float(np.abs(goals - self._pin_positions(way[-1].end)).max(initial=0.0)),
+                blocked=any(part.share < 1 for part in way),
             ),
+            flow=lambda t: to_points(self._along(way, t)),
         )
+
+    def _along(self, way: list[_Substep], t: float) -> Complexes:
+        """The pose at time ``t`` of a step; what the rest memory added comes in gradually."""
+        number, local = divmod(t * len(way), 1.0)
+        if number == len(way):
+            return way[-1].end
+        part = way[int(number)]
+        followed = self._flow(part.start, part.field, part.share)
+        return self._flow(part.start, part.field, local * part.share) + local * (part.end - followed)
 
     def _pin_positions(self, pose: Complexes) -> Complexes:
         return (self._points.weights * pose[self._corners]).sum(axis=1)
 
-    def _substep(self, pose: Complexes, aims: Complexes) -> tuple[Complexes, Complexes, bool]:
+    def _substep(self, pose: Complexes, aims: Complexes) -> _Substep:
         """One field and one move: section 2.4, with velocities towards ``aims`` from where the pins are."""
         self._system.prepare(to_points(pose))
         velocities = aims - self._pin_positions(pose)
-        moved, field, cut = pose, np.zeros_like(pose), False
+        moved, field, share = pose, np.zeros_like(pose), 1.0
         if np.abs(velocities).max() > self._arrived:
             field, _ = self._system.field(velocities, self._dirichlet)
-            moved, cut = self._move(pose, field)
+            moved, share = self._move(pose, field)
         if self._memory:
             moved = self._remember(moved, aims)
         if not np.isfinite(moved).all():
             raise SolverError("the step has no finite result")
-        return moved, field, cut
+        return _Substep(pose, field, share, moved)
 
-    def _move(self, pose: Complexes, field: Complexes) -> tuple[Complexes, bool]:
-        """Follow the field as far as no face flips; also whether that was less than the whole way.
+    def _move(self, pose: Complexes, field: Complexes) -> tuple[Complexes, float]:
+        """Follow the field as far as no face flips; also for what share of the way that was.
 
         Faces that are flipped already, by another method, move freely.
         """
@@ -146,9 +178,9 @@ class AkapDeformer:
         while t >= _SHORTEST:
             moved = self._flow(pose, field, t)
             if (signed_areas(to_points(moved), mesh.faces) > least).all():
-                return moved, t < 1.0
+                return moved, t
             t /= 2
-        return pose, True
+        return pose, 0.0
 
     def _remember(self, pose: Complexes, aims: Complexes) -> Complexes:
         """One descent step towards the rest shape, pins held softly at ``aims``.

@@ -27,11 +27,12 @@ class KillingSystem:
 
     With ``exact`` both matrices are factorized at every pose; otherwise factorizations are kept for several poses
     (see `ReusedCholesky`) and fields are near the exact ones: for velocities of a substep, by less than a
-    hundredth of a pixel on a drawing of 1000 × 1000.
+    hundredth of a pixel on a drawing of 1000 × 1000. With ``hard`` the field has exactly the pins' velocities.
     """
 
-    def __init__(self, mesh: TriMesh, pin_weight: float, exact: bool = True) -> None:
+    def __init__(self, mesh: TriMesh, pin_weight: float, exact: bool = True, hard: bool = False) -> None:
         self._mesh = mesh
+        self._hard = hard
         length = float(np.sqrt(mesh.rest_areas.sum()))
         self._weight = pin_weight**2
         size = 2 * len(mesh.vertices)
@@ -118,27 +119,46 @@ class KillingSystem:
     def field(self, velocities: Complexes, dirichlet: bool = True) -> tuple[Complexes, Complexes]:
         """U_opt of (8) and U° of (7), (n,) each, for pin velocities (k,), at the pose last prepared.
 
+        Hard pins are the limit of (7) for λ → ∞: U° = A⁻¹ Wᵀ (W A⁻¹ Wᵀ)⁻¹ ũ, one solve for each pin.
         (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = λ² Wᵀ(W U° − ũ): the residual that
         the pins leave in (7), which by (7) is −K U°. Without ``dirichlet`` both are U°.
         """
         wanted = self._constraints(velocities)
-        smooth = self._pinned.solve(self._spread(self._weight * wanted))
+        pull = self._reactions(wanted) if self._hard else self._weight * wanted
+        smooth = self._pinned.solve(self._spread(pull))
         if not dirichlet or self._inner is None or not self._needs_interior:
             return smooth, smooth
-        reached = (self._weights * smooth[self._corners]).sum(axis=1)
-        force = self._spread(self._weight * (reached - wanted))[self._interior]
+        reached = self._at_constraints(smooth)
+        force = self._spread(self._weight * reached - pull)[self._interior]
         optimal = smooth.copy()
         optimal[self._interior] += self._inner.solve(force)
         return optimal, smooth
 
     def energy(self, field: Complexes) -> float:
         """The Killing energy of a field (n,), eq. 2, at the pose last prepared."""
-        at_pins = (self._weights * field[self._corners]).sum(axis=1)
-        return max(self._pinned.energy(field) - self._weight * float((np.abs(at_pins) ** 2).sum()), 0.0)
+        at_pins = float((np.abs(self._at_constraints(field)) ** 2).sum())
+        return max(self._pinned.energy(field) - self._weight * at_pins, 0.0)
 
     def _constraints(self, velocities: Complexes) -> Complexes:
         """Velocities of pins and anchors; an anchor follows the pins of its component, or holds still."""
         return np.concatenate([velocities, np.repeat(self._means @ velocities, 3)])
+
+    def _at_constraints(self, field: Complexes) -> Complexes:
+        """W applied to a field (n,)."""
+        return np.asarray((self._weights * field[self._corners]).sum(axis=1))
+
+    def _reactions(self, wanted: Complexes) -> Complexes:
+        """The pull at the constraints, (c,), under which A⁻¹ Wᵀ has exactly the velocities ``wanted`` there.
+
+        Least squares, since constraints may contradict one another or say the same twice.
+        """
+        count = len(wanted)
+        compliance = np.empty((2 * count, 2 * count))
+        for column, unit in enumerate(np.eye(2 * count)):
+            answer = self._at_constraints(self._pinned.solve(self._spread(to_complex(unit.reshape(-1, 2)))))
+            compliance[:, column] = to_points(answer).ravel()
+        reactions = np.linalg.lstsq(compliance, to_points(wanted).ravel(), rcond=1e-12)[0]
+        return to_complex(np.asarray(reactions, dtype=np.float64).reshape(-1, 2))
 
     def _spread(self, values: Complexes) -> Complexes:
         """Wᵀ applied to values (c,) at the constraints."""

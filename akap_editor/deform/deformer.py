@@ -1,13 +1,14 @@
 """The contract of all deformation methods, and the table of those that there are."""
 
 import inspect
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..geometry.checks import Floats
+from ..geometry.checks import Floats, as_number
 from ..geometry.mesh import MeshPoints, TriMesh
 
 
@@ -30,11 +31,25 @@ class StepReport:
 
 @dataclass(frozen=True, eq=False)
 class StepResult:
-    """positions: (n, 2) new pose; field: (n, 2) the last vector field, or None for methods without one."""
+    """positions: (n, 2) new pose; field: (n, 2) the last vector field, or None for methods without one.
+
+    flow: the way there, for `at`; None for methods that know no way.
+    """
 
     positions: Floats
     field: Floats | None
     report: StepReport
+    flow: Callable[[float], Floats] | None = None
+
+    def at(self, t: float) -> Floats:
+        """The pose (n, 2) at time ``t`` of the step: 0 is where it began, 1 is `positions`.
+
+        Vertices move along the trajectories γ(t) of eq. 14, substep after substep, for in-betweens, slow motion
+        and motion blur. Raises InputError outside [0, 1], or where the method knows no way.
+        """
+        if self.flow is None:
+            raise InputError("at: expected the result of a method that moves along trajectories, got another")
+        return self.flow(as_number(t, "t", 0, 1))
 
 
 class Deformer(Protocol):

@@ -25,7 +25,7 @@ def spiral_factor(s: Complexes) -> Complexes:
 
 def _closed(s: Complexes, small: NDArray[np.bool_]) -> Complexes:
     safe = np.where(small, 1.0, s)
-    return np.expm1(safe) / safe
+    return np.asarray(np.expm1(safe) / safe, dtype=np.complex128)
 
 
 def _series(s: Complexes, largest: float) -> Complexes:

@@ -1,0 +1,116 @@
+"""The package as a library, as its documentation shows it, with and without what windows need."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import akap_editor as akap
+from akap_editor.resources import resource
+
+ROOT = Path(__file__).parents[1]
+
+EXAMPLE = """
+import akap_editor as akap
+
+drawing = akap.make_drawing(akap.read_image("cat.png"), vertices=2000)
+points = drawing.mesh.locate([[120.0, 80.0], [300.0, 410.0]])
+deformer = akap.make_deformer("akap", drawing.mesh, memory=1.0)
+deformer.set_pins(points)
+pose = drawing.mesh.vertices
+pose = deformer.step(pose, targets=[[130.0, 70.0], [300.0, 410.0]]).positions
+distortion = akap.distortion(drawing.mesh, pose)
+field = deformer.vector_field(pose, velocities=[[1.0, 0.0], [0.0, 1.0]])
+"""
+
+BLOCKED = """
+import sys
+
+
+class NoWindows:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {"moderngl", "glfw", "imgui_bundle"}:
+            raise ImportError(f"{name} is blocked")
+
+
+sys.meta_path.insert(0, NoWindows())
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The current folder, with cat.png in it."""
+    shutil.copy(resource("assets", "drawings", "cat.png"), tmp_path)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def example(folder):
+    """The names that the example leaves."""
+    names = {}
+    exec(EXAMPLE, names)
+    return names
+
+
+def test_the_example_bends_the_cat(example):
+    drawing, pose, points = example["drawing"], example["pose"], example["points"]
+    count = len(drawing.mesh.vertices)
+    assert 1000 < count < 4000
+    assert pose.shape == (count, 2)
+    assert pose.dtype == np.float64
+    before = drawing.mesh.evaluate(points, drawing.mesh.vertices)
+    after = drawing.mesh.evaluate(points, pose)
+    targets = np.array([[130.0, 70.0], [300.0, 410.0]])
+    near = np.linalg.norm(before - [[120.0, 80.0], [300.0, 410.0]], axis=1) < 1e-6
+    assert near.all(), "both places lie on the cat"
+    assert np.linalg.norm(after - targets, axis=1).max() < 0.5 * np.linalg.norm(before - targets, axis=1).max()
+
+
+def test_distortion_is_above_2_where_something_bends_and_2_at_rest(example):
+    bent = example["distortion"]
+    assert bent.area >= 2.0
+    assert bent.angle > 2.0
+    assert bent.flipped == 0
+    mesh = example["drawing"].mesh
+    rest = akap.distortion(mesh, mesh.vertices)
+    assert rest.area == pytest.approx(2.0, abs=1e-12)
+    assert rest.angle == pytest.approx(2.0, abs=1e-12)
+    assert rest.flipped == 0
+
+
+def test_the_vector_field_has_the_velocities_of_the_pins(example):
+    mesh, field = example["drawing"].mesh, example["field"]
+    assert field.shape == (len(mesh.vertices), 2)
+    assert np.isfinite(field).all()
+    np.testing.assert_allclose(
+        mesh.evaluate(example["points"], field), [[1.0, 0.0], [0.0, 1.0]], atol=1e-6
+    )
+
+
+def test_the_example_in_the_package_is_the_one_tested():
+    shown = [line.strip() for line in (akap.__doc__ or "").splitlines()]
+    for line in EXAMPLE.strip().splitlines()[:6]:
+        assert line.strip() in shown
+
+
+def test_the_example_runs_where_windows_and_opengl_are_missing(folder):
+    program = f"{BLOCKED}{EXAMPLE}\nprint(pose.shape == drawing.mesh.vertices.shape)"
+    command = [sys.executable, "-c", program]
+    result = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment())
+    assert (result.stdout, result.stderr, result.returncode) == ("True\n", "", 0)
+
+
+def test_every_public_name_is_there():
+    for name in akap.__all__:
+        assert getattr(akap, name) is not None
+
+
+def environment():
+    """This process's, with the checkout on the path, so that the current folder may be any."""
+    import os
+
+    return {**os.environ, "PYTHONPATH": str(ROOT)}
