@@ -4,11 +4,11 @@ The engine as a library, without a window::
 
     import akap_editor as akap
 
-    drawing = akap.make_drawing(akap.read_image("cat.png"), vertices=2000)
-    points = drawing.mesh.locate([[120.0, 80.0], [300.0, 410.0]])
+    drawing = akap.make_drawing(akap.read_image("assets/drawings/cat.png"), vertices=2000)
+    points = drawing.mesh.locate([[140.0, 120.0], [300.0, 410.0]])
     deformer = akap.make_deformer("akap", drawing.mesh, memory=1.0)
     deformer.set_pins(points)
-    pose = deformer.step(drawing.mesh.vertices, targets=[[130.0, 70.0], [300.0, 410.0]]).positions
+    pose = deformer.step(drawing.mesh.vertices, targets=[[150.0, 110.0], [300.0, 410.0]]).positions
     akap.distortion(drawing.mesh, pose)
 """
 

@@ -14,7 +14,7 @@ from .editor.replay import replay
 from .errors import AkapError, DisplayError, InputError
 from .geometry.checks import Floats
 from .io.documents import open_document
-from .io.images import read_image, write_animation, write_png
+from .io.images import animation_suffix, read_image, write_animation, write_png
 from .io.recordings import read_recording
 from .resources import bundled_drawings, resource
 
@@ -28,7 +28,7 @@ class _Main(click.Group):
     """A file in place of a command is opened in the editor."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        options = {"--help", "--version"}
+        options = {"-h", "--help", "--version"}
         if not args or (args[0] not in self.commands and args[0] not in options):
             args = ["edit", *args]
         return super().parse_args(ctx, args)
@@ -82,6 +82,7 @@ def render(file: Path, output: Path, scale: float, background: str | None) -> No
     """Write the pose of FILE, a saved drawing or a picture, as a PNG."""
     from .render.offscreen import OffscreenRenderer
 
+    _check_png(output)
     document = open_document(file)
     with OffscreenRenderer() as renderer:
         picture = renderer.render(
@@ -116,12 +117,15 @@ def _replay(
         raise InputError(f"--fps: expected a number from 1 to 120, got {fps:g}")
     if not 16 <= size <= 8192:
         raise InputError(f"--size: expected a number from 16 to 8192, got {size}")
+    animation_suffix(animation)
+    if pose is not None:
+        _check_png(pose)
     recording = read_recording(path)
     drawing = _drawing_of(recording, drawing_path)
     poses = _sampled(recording, drawing, fps)
     box = frame_box(drawing, poses)
     scale = min(1.0, size / max(box[2] - box[0], box[3] - box[1]))
-    animation.parent.mkdir(parents=True, exist_ok=True)
+    _make_folder_of(animation)
     with OffscreenRenderer() as renderer:
         with click.progressbar(poses, label="Drawing") as bar:
             write_animation(animation, (renderer.render(drawing, p, box, scale) for p in bar), fps)
@@ -159,7 +163,8 @@ def _bundled(name: str) -> Path:
     names = {path.stem: path for path in bundled_drawings()}
     if name not in names:
         raise InputError(
-            f"drawing: expected a bundled one ({', '.join(names)}), got {name!r}; name its file with --drawing"
+            f"drawing: expected a bundled one ({', '.join(names)}), got {name!r}; "
+            "name its file with --drawing"
         )
     return names[name]
 
@@ -175,18 +180,33 @@ def _color(text: str | None) -> tuple[float, float, float] | None:
     return red / 255, green / 255, blue / 255
 
 
+def _check_png(path: Path) -> None:
+    if path.suffix.lower() != ".png":
+        raise InputError(f"{path}: expected a name that ends in .png, got {path.suffix or 'none'}")
+
+
+def _make_folder_of(path: Path) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from error
+
+
 def _write_png(path: Path, picture: Any) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
+    _make_folder_of(path)
     write_png(path, picture)
 
 
 def main() -> None:
     """Run the command line; what goes wrong on purpose is one line on stderr and exit code 2."""
     try:
-        cli()
-    except AkapError as error:
-        click.echo(f"akap-editor: {error}", err=True)
+        cli(prog_name="akap-editor", standalone_mode=False)
+    except (AkapError, click.ClickException) as error:
+        message = error.format_message() if isinstance(error, click.ClickException) else str(error)
+        click.echo(f"akap-editor: {message}", err=True)
         sys.exit(2)
+    except click.Abort:
+        sys.exit(130)  # as shells say of a program that Ctrl+C ended
 
 
 if __name__ == "__main__":

@@ -16,10 +16,9 @@ import resource as system
 import subprocess
 import sys
 import time
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
+from timing import Clock
 
 from akap_editor.app import window as window_module
 from akap_editor.app.window import Window
@@ -38,38 +37,9 @@ GRIP, REACH = (915, 180), (-250.0, -90.0)
 PARTS = ("solve", "spirals", "memory", "upload", "draw", "interface", "frame")
 
 
-class Clock:
-    """Adds up the seconds spent in wrapped functions, by name; what is nested is taken off the outer one."""
-
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = dict.fromkeys(PARTS, 0.0)
-        self._inner = [0.0]
-
-    def wrap(self, owner: Any, name: str, part: str) -> None:
-        """Time every call of ``owner.name`` as ``part``."""
-        original: Callable[..., Any] = getattr(owner, name)
-
-        def timed(*args: Any, **kwargs: Any) -> Any:
-            self._inner.append(0.0)
-            started = time.perf_counter()
-            try:
-                return original(*args, **kwargs)
-            finally:
-                spent = time.perf_counter() - started
-                self.seconds[part] += spent - self._inner.pop()
-                self._inner[-1] += spent
-
-        setattr(owner, name, timed)
-
-    def take(self) -> dict[str, float]:
-        """What was added up since the last call."""
-        taken, self.seconds = self.seconds, dict.fromkeys(PARTS, 0.0)
-        return taken
-
-
 def instrument(clock: Clock) -> None:
     """Sort the parts of a frame; whatever no other part claims is the interface."""
-    clock.wrap(KillingSystem, "factorize", "solve")
+    clock.wrap(KillingSystem, "prepare", "solve")
     clock.wrap(KillingSystem, "field", "solve")
     clock.wrap(AkapDeformer, "_move", "spirals")
     clock.wrap(AkapDeformer, "_remember", "memory")
@@ -82,7 +52,7 @@ def instrument(clock: Clock) -> None:
 
 def measure(vertices: int, frames: int, name: str) -> tuple[int, list[dict[str, float]], float]:
     """Drag for ``frames`` frames; the vertex count, the seconds of each frame, steps per frame."""
-    clock = Clock()
+    clock = Clock(PARTS)
     instrument(clock)
     steps = [0]
     original = Editor.advance

@@ -4,6 +4,7 @@ import importlib
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -100,8 +101,8 @@ def test_as_a_program():
 
 
 def test_the_entry_point_is_there():
-    (line,) = [line for line in (ROOT / "pyproject.toml").read_text().splitlines() if "akap_editor." in line and "=" in line and line.startswith("akap-editor")]
-    module, _, name = line.split('"')[1].partition(":")
+    scripts = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
+    module, _, name = scripts["akap-editor"].partition(":")
     assert getattr(importlib.import_module(module), name) is cli.main
 
 
@@ -224,7 +225,12 @@ def test_replay_of_an_unknown_drawing_says_how_to_name_it(run, tmp_path):
 
 @pytest.mark.parametrize(
     ("content", "part"),
-    [(None, "no such file"), (b"not a recording\n", "line 1"), (b"\xff\xfe\x00", "recording"), (b"", "line 1")],
+    [
+        (None, "no such file"),
+        (b"not a recording\n", "line 1"),
+        (b"\xff\xfe\x00", "recording"),
+        (b"", "line 1"),
+    ],
 )
 def test_replay_of_a_bad_recording(run, tmp_path, content, part):
     if content is not None:
@@ -241,13 +247,21 @@ def test_replay_to_an_unknown_kind_of_animation(run, tmp_path):
 # -- edit without a display ---------------------------------------------------------------------------------
 
 
-def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path):
+def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path, monkeypatch):
+    wanted = {}
+
+    def smaller(*arguments, **options):
+        wanted.update(options)
+        replay(*arguments, fps=6.0, size=96)
+
+    replay = cli._replay
+    monkeypatch.setattr(cli, "_replay", smaller)
     code, output, errors = run()
     assert (code, errors) == (0, "")
     assert "there is no display" in output.splitlines()[0]
     with Image.open(tmp_path / "out" / "elephant.webp") as animation:
-        assert animation.n_frames > 20
-        assert max(animation.size) <= 480
+        assert animation.n_frames > 10
+    assert wanted == {"fps": 24.0, "size": 480}
     pose = read_image(tmp_path / "out" / "elephant.png")
     assert (pose[..., 3] > 127).sum() > 10_000
     assert "elephant.png" in output
@@ -296,4 +310,13 @@ def test_a_bad_file_is_told_in_one_line(run, tmp_path, image, name, part, comman
     result = run(*arguments)
     assert_one_line(result, name, part)
     assert "no display" not in result[2]
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_picture_is_written_as_png_only(run, picture, tmp_path):
+    before = sorted(tmp_path.iterdir())
+    code, output, errors = run("render", picture, "-o", tmp_path / "pose.jpg")
+    assert (code, output) == (2, "")
+    assert errors.count("\n") == 1
+    assert "expected a name that ends in .png, got .jpg" in errors
     assert sorted(tmp_path.iterdir()) == before

@@ -46,7 +46,7 @@ class Canvas:
 
     @staticmethod
     def let_go(space: Workspace) -> None:
-        """End what is held half-way, for its end will not be seen: a dialog or another window has the input."""
+        """End what is held half-way: its end goes to a dialog or another window and will not be seen here."""
         space.editor.cancel()
         space.editor.handle_event(KeyEvent("space", pressed=False))
 
@@ -72,7 +72,7 @@ class Canvas:
 
     @staticmethod
     def draw_overlay(space: Workspace, scale: float) -> None:
-        """Pins, the pin that a click would add, and the selection box, over the drawing and under the panels."""
+        """Pins, the pin that a click would add, and the selection box: over the drawing, under the panels."""
         editor, session = space.editor, space.editor.session
         if session is None:
             return

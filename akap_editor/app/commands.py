@@ -22,7 +22,7 @@ def _has_drawing(space: Workspace) -> bool:
 
 @dataclass(frozen=True)
 class Command:
-    """label: as in menus; chords: keys, the first one is shown; checked: for switches, whether they are on."""
+    """label: as in menus; chords: keys, the first one is shown; checked: of a switch, whether it is on."""
 
     label: str
     run: Callable[[Workspace], None]

@@ -251,8 +251,8 @@ def _about(space: Workspace, scale: float) -> None:
     )
     imgui.push_style_color(imgui.Col_.text, imgui.ImVec4(*QUIET))
     _text(
-        "Free software under the GNU General Public License, version 3 or later. Meshes are made by Triangle, "
-        "whose own terms allow non-commercial use only.",
+        "Free software under the GNU General Public License, version 3 or later. Meshes are made by "
+        "Triangle, whose own terms allow non-commercial use only.",
         380 * scale,
     )
     imgui.pop_style_color()

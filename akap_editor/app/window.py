@@ -4,6 +4,7 @@
 from imgui_bundle import imgui  # isort: skip
 import ctypes
 import time
+import traceback
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -163,11 +164,10 @@ class Window:
             self._interface()
         except AkapError as error:
             self._recover(recovery, str(error))
-        except Exception:
-            self._recover(recovery, "")
+        except Exception as error:  # a bug must not cost the user's work
+            traceback.print_exc()
+            self._recover(recovery, f"Something went wrong in the program ({type(error).__name__}: {error})")
             self.space.editor.cancel()
-            imgui.end_frame()
-            raise
         render_imgui()
         self._draw(framebuffer)
         imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
@@ -202,7 +202,7 @@ class Window:
         io.config_error_recovery_enable_assert = False
         imgui.internal.error_recovery_try_to_recover_state(state)
         io.config_error_recovery_enable_assert = True
-        self.space.error = message or self.space.error
+        self.space.error = message
         self.wake()
 
     def _draw(self, framebuffer: tuple[int, int]) -> None:

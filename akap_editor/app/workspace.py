@@ -48,7 +48,7 @@ class FileRequest:
         return path
 
     def entries(self) -> list[tuple[str, bool]]:
-        """Folders, then files that are meant, each with whether it is a folder; none where it cannot be read."""
+        """Folders, then files that are meant, each with whether it is a folder; none if unreadable."""
         try:
             found = [(entry.name, entry.is_dir()) for entry in self.folder.iterdir()]
         except OSError:
@@ -82,23 +82,24 @@ class Workspace:
     folder: Path = field(default_factory=Path.cwd)
     exporter: OffscreenRenderer = field(default_factory=OffscreenRenderer)
     _jobs: list[Callable[[], None]] = field(default_factory=list)
+    _due: list[Callable[[], None]] = field(default_factory=list)
     _measured: tuple[Floats, Distortion] | None = None
 
     # -- work that may fail ----------------------------------------------------------------------------------
 
     def later(self, job: Callable[[], None], notice: str = "") -> None:
-        """Do ``job`` after the next frame, so that ``notice`` is seen while it runs."""
+        """Do ``job`` once a whole frame has been drawn, so that ``notice`` is seen while it runs."""
         self.notice = notice or self.notice
         self._jobs.append(job)
 
     @property
     def waiting(self) -> bool:
         """Whether there is work left."""
-        return bool(self._jobs)
+        return bool(self._jobs or self._due)
 
     def work(self) -> None:
-        """Do what was put off."""
-        jobs, self._jobs = self._jobs, []
+        """After a frame: do what was put off before it began."""
+        jobs, self._due, self._jobs = self._due, self._jobs, []
         for job in jobs:
             self.attempt(job)
 

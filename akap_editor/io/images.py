@@ -122,6 +122,16 @@ def write_png(path: str | Path, image: Picture) -> None:
     write_atomic(path, encode_png(image))
 
 
+def animation_suffix(path: str | Path) -> str:
+    """The ending of a name that `write_animation` can write, in lower case. Raises InputError on any other."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in _ENCODERS:
+        raise InputError(
+            f"{path}: expected a name that ends in {_either(list(_ENCODERS))}, got {suffix or 'none'}"
+        )
+    return suffix
+
+
 def write_animation(path: str | Path, frames: Iterable[Picture], fps: float) -> None:
     """Write an animation that loops for ever; the name decides on GIF, WebP (.webp) or APNG (.png, .apng).
 
@@ -133,11 +143,7 @@ def write_animation(path: str | Path, frames: Iterable[Picture], fps: float) -> 
     is right (of 60 fps, each sixth).
     Raises InputError on another name, frame or rate (0.1 to 1000 fps), or where the file cannot be written.
     """
-    suffix = Path(path).suffix.lower()
-    if suffix not in _ENCODERS:
-        raise InputError(
-            f"{path}: expected a name that ends in {_either(list(_ENCODERS))}, got {suffix or 'none'}"
-        )
+    suffix = animation_suffix(path)
     if not 0.1 <= fps <= 1000:
         raise InputError(f"fps: expected a number from 0.1 to 1000, got {fps}")
     encode, max_side = _ENCODERS[suffix]

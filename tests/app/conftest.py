@@ -7,8 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from akap_editor.editor.document import Document, Drawing, make_drawing, new_document
+from akap_editor.editor.editor import Editor
 
-from .driver import Window, WindowDriver, end_frame_unlocked, imgui, render_unlocked
+from .driver import Window, WindowDriver, render_unlocked
 
 
 @pytest.fixture(scope="session")
@@ -40,7 +41,6 @@ def new_window() -> Iterator[Callable[..., WindowDriver]]:
     made: list[WindowDriver] = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("akap_editor.app.window.render_imgui", render_unlocked)
-        patch.setattr(imgui, "end_frame", end_frame_unlocked)
 
         def make(**options: object) -> WindowDriver:
             made.append(WindowDriver(Window(null=True, **options)))
@@ -64,9 +64,12 @@ def ui(module_window: WindowDriver, document: Document) -> WindowDriver:
 
 
 @pytest.fixture
-def pinned(ui: WindowDriver) -> WindowDriver:
-    """Three pins, numbered 1 to 3: in the head, in the neck and at its end; none selected, nothing to save."""
+def pinned(module_window: WindowDriver, document: Document) -> WindowDriver:
+    """The window with pins 1 to 3, in the head, in the neck and at its end; none selected, all saved."""
+    editor = Editor()
+    editor.open(document)
     for at in ((50.0, 80.0), (130.0, 80.0), (210.0, 80.0)):
-        ui.editor.add_pin(at)
-    ui.reset(ui.document)
-    return ui
+        editor.add_pin(at)
+    assert editor.session is not None
+    module_window.reset(editor.session.document)
+    return module_window

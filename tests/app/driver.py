@@ -24,12 +24,10 @@ te = imgui.test_engine
 Point = tuple[float, float]
 MOST_FRAMES = 2000
 
-# The Test Engine waits in these for a thread that runs Python. Their bindings keep the interpreter locked, so the
+# The Test Engine waits in this for a thread that runs Python. Its binding keeps the interpreter locked, so the
 # two would wait for one another for ever; a call through ctypes unlocks it.
-_library = ctypes.CDLL(native.__file__)
-render_unlocked, end_frame_unlocked = _library._ZN5ImGui6RenderEv, _library._ZN5ImGui8EndFrameEv
-for function in (render_unlocked, end_frame_unlocked):
-    function.restype, function.argtypes = None, []
+render_unlocked = ctypes.CDLL(native.__file__)._ZN5ImGui6RenderEv
+render_unlocked.restype, render_unlocked.argtypes = None, []
 
 
 class WindowDriver:
@@ -191,19 +189,6 @@ class WindowDriver:
         hand.set_ref("##MainMenuBar")
         hand.menu_click("/".join(path))
 
-    def menu_item_exists(self, menu: str, label: str) -> bool:
-        found: list[bool] = []
-
-        def look(hand: Any) -> None:
-            hand.set_ref("##MainMenuBar")
-            hand.menu_action(te.TestAction.open, menu)
-            hand.set_ref("//$FOCUSED")
-            found.append(hand.item_exists(label))
-            hand.popup_close_all()
-
-        self.do(look)
-        return found[0]
-
     def tool_button(self, command: Command) -> None:
         """Click a command's button in the tool bar."""
         self.do(lambda hand: hand.item_click(f"//Tools/{command.icon}##{command.label}"))
@@ -253,7 +238,7 @@ class WindowDriver:
         self.do(click)
 
     def drag(self, *path: Point, button: int = 0, held: int | None = None) -> None:
-        """Press at the first point, move through the others, release at the last; ``held``: a key meanwhile."""
+        """Press at the first point, move through the others, release at the last; held: a key meanwhile."""
 
         def drag(hand: Any) -> None:
             self.begin_drag(hand, path[0], button, held)

@@ -88,7 +88,7 @@ def test_selected_pins_are_dragged_together(pinned):
     start = pinned.screen(before[3])
     pinned.drag(start, (start[0], start[1] + 100))
     for pin, place in before.items():
-        wanted = place + [0, 100 / pinned.editor.camera.zoom]
+        wanted = place + np.array([0, 100 / pinned.editor.camera.zoom])
         assert np.linalg.norm(pinned.pin_place(pin) - wanted) < PIN_TOLERANCE
 
 
@@ -216,7 +216,7 @@ def test_a_drag_goes_on_over_a_panel_and_ends_there(pinned):
     wanted = pinned.pin_place(3)
     (tool, target), shift = seen[0], np.subtract(PANEL, start) / pinned.editor.camera.zoom
     assert tool == "DraggingPin"
-    np.testing.assert_allclose(target, [210.0, 80.0] + shift, atol=0.01)
+    np.testing.assert_allclose(target, np.add((210.0, 80.0), shift), atol=0.01)
     assert pinned.tool == "Idle"
     assert np.linalg.norm(wanted - target) < PIN_TOLERANCE
 

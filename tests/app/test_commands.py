@@ -253,16 +253,24 @@ def test_the_pin_list_selects(pinned):
     assert [pin.id for pin in pinned.pins] == [2, 3]
 
 
-def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch):
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [
+        (SolverError("the numbers are not finite"), "the numbers are not finite"),
+        (KeyError("oops"), "Something went wrong in the program (KeyError: 'oops')"),
+    ],
+)
+def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd, error, message):
     from akap_editor.app import panels
 
     def fail(space):
-        raise SolverError("the numbers are not finite")
+        raise error
 
     with monkeypatch.context() as patch:
         patch.setattr(panels, "_numbers", fail)
         pinned.frame()
-        assert pinned.space.error == "the numbers are not finite"
+        assert pinned.space.error == message
+    assert ("Traceback" in capfd.readouterr().err) == isinstance(error, KeyError)
     pinned.settle()
     pinned.dialog("That did not work", "OK")
     assert not pinned.space.error

@@ -95,22 +95,20 @@ class Program:
         self._log = (folder / f"{Path(file).stem}.log").open("w+")
         self.process = subprocess.Popen(command, env=self._environment, stderr=self._log)
         self.hand("mousemove", *CORNER)
-        self.until(
-            lambda shot: len(np.unique(canvas(shot).reshape(-1, 3), axis=0)) > 20, "a drawing is shown"
-        )
+        self.until(lambda shot: (np.ptp(canvas(shot), axis=2) > 60).mean() > 0.02, "a drawing is shown")
 
     def hand(self, *arguments):
         subprocess.run(["xdotool", *map(str, arguments)], env=self._environment, check=True)
 
     def grab(self):
-        """(h, w, 3) of the screen."""
-        return np.asarray(ImageGrab.grab(xdisplay=self._display).convert("RGB")).astype(int)
+        """(h, w, 3) uint8 of the screen."""
+        return np.asarray(ImageGrab.grab(xdisplay=self._display).convert("RGB"))
 
     def keep(self, shot):
         """Write a screenshot for whoever reads a failure; returns its path."""
         self._shots += 1
         path = self._folder / f"screen-{self._shots}.png"
-        Image.fromarray(shot.astype(np.uint8)).save(path)
+        Image.fromarray(shot).save(path)
         return path
 
     def until(self, holds, what):
@@ -118,7 +116,7 @@ class Program:
         before, deadline = self.grab(), time.monotonic() + DEADLINE
         while time.monotonic() < deadline:
             assert self.process.poll() is None, f"the program has ended: {self.log()}"
-            time.sleep(0.1)
+            time.sleep(0.05)
             shot = self.grab()
             if holds(shot) and (shot == before).all():
                 return shot
@@ -204,8 +202,8 @@ def canvas(shot):
 
 
 def find_camera(shot, alpha):
-    """(zoom, offset (2,)): from the bounding boxes of the drawing on the screen and of the picture's alpha."""
-    part = canvas(shot)
+    """(zoom, offset (2,)): from the bounding boxes of what is seen and of the picture's alpha."""
+    part = canvas(shot).astype(int)
     seen = np.argwhere(abs(part - part[0, 0]).sum(axis=2) > 60)[:, ::-1] + (LEFT, TOP)
     drawn = np.argwhere(alpha > 127)[:, ::-1]
     low, high = seen.min(axis=0), seen.max(axis=0) + 1
@@ -248,7 +246,7 @@ def changed_near(before, after, place, radius=20):
     """How much of the surroundings of a point of the screen is another color, 0 to 1."""
     x, y = map(round, place)
     part = slice(y - radius, y + radius + 1), slice(x - radius, x + radius + 1)
-    return (abs(before[part] - after[part]).sum(axis=2) > 30).mean()
+    return (abs(before[part].astype(int) - after[part]).sum(axis=2) > 30).mean()
 
 
 def test_bend_save_quit_and_open_again(start, picture, tmp_path):

@@ -1,0 +1,175 @@
+"""The engine alone: one step of a dragged mesh, at several sizes, against the plain method and libigl's ARAP.
+
+Run from the project's root: python benchmarks/step.py [--sizes 1000 3000 10000 30000] [--no-plain]
+The bar is bent by 90°, the elephant lifts its trunk, each in 60 frames of one step. All figures of a row come from
+one run on one thread: "plain" factorizes both systems in every substep (`exact=True`), as the paper does; "ours" is
+the default, with and without the memory step. libigl's row appears where `pip install libigl` was done.
+"""
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import argparse
+import resource as system
+import sys
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from timing import Clock
+
+from akap_editor.deform import akvf
+from akap_editor.deform.akap import AkapDeformer
+from akap_editor.deform.akvf import KillingSystem
+from akap_editor.deform.cholesky import SparseCholesky, SymmetricPattern
+from akap_editor.deform.reuse import ReusedCholesky
+from akap_editor.editor.document import make_drawing
+from akap_editor.geometry.distortion import distortion
+from akap_editor.geometry.mesh import MeshPoints, TriMesh
+from akap_editor.geometry.outline import Outline
+from akap_editor.geometry.triangulate import triangulate
+from akap_editor.io.images import read_image
+from akap_editor.resources import resource
+
+FRAMES = 60
+PARTS = ("assemble", "factor", "solve", "spirals", "memory")
+
+
+@dataclass
+class Drag:
+    """A mesh, its pins, and where they are at each frame, (frames, k, 2)."""
+
+    name: str
+    mesh: TriMesh
+    points: MeshPoints
+    path: np.ndarray
+
+
+def bar(vertices: int) -> Drag:
+    """A 5:1 bar, two pins at each end, the right end led along an arc to 90°."""
+    mesh = triangulate([Outline(np.array([[0.0, 0.0], [1000, 0], [1000, 200], [0, 200]]))], vertices)
+    points = mesh.locate([[20, 50], [20, 150], [980, 50], [980, 150]])
+    start = mesh.evaluate(points, mesh.vertices)
+    path = np.repeat(start[None], FRAMES, axis=0)
+    for frame, angle in enumerate(np.linspace(0, np.pi / 2, FRAMES + 1)[1:]):
+        turn = np.exp(1j * angle)
+        end = 1000 / angle * (np.sin(angle) + 1j * (1 - np.cos(angle))) + 100j
+        for pin in (2, 3):
+            place = end + turn * complex(start[pin, 0] - 1000, start[pin, 1] - 100)
+            path[frame, pin] = place.real, place.imag
+    return Drag("bar", mesh, points, path)
+
+
+def elephant(vertices: int) -> Drag:
+    """The bundled elephant, five pins that hold and one that lifts the trunk."""
+    image = read_image(resource("assets", "drawings", "elephant.png"))
+    mesh = make_drawing(image, vertices=vertices).mesh
+    points = mesh.locate([(135, 800), (285, 795), (445, 795), (625, 800), (260, 420), (915, 180)])
+    path = np.repeat(mesh.evaluate(points, mesh.vertices)[None], FRAMES, axis=0)
+    path[:, -1] += np.linspace(0, 1, FRAMES + 1)[1:, None] * [-250.0, -90.0]
+    return Drag("elephant", mesh, points, path)
+
+
+def run_ours(drag: Drag, clock: Clock, memory: float, exact: bool) -> float:
+    """Print one row; the median of a frame in milliseconds."""
+    deformer = AkapDeformer(drag.mesh, memory=memory, exact=exact)
+    deformer.set_pins(drag.points)
+    # From here on only: the figures are those of a drag that is under way.
+    pose, frames, parts, creep = drag.mesh.vertices, [], [], 0.0
+    clock.take()
+    for targets in drag.path:
+        started = time.perf_counter()
+        result = deformer.step(pose, targets)
+        frames.append(1000 * (time.perf_counter() - started))
+        parts.append(clock.take())
+        pose = result.positions
+        held = (drag.path[0] == drag.path[-1]).all(axis=1)
+        off = drag.mesh.evaluate(drag.points, pose) - targets
+        creep = max(creep, float(np.linalg.norm(off[held], axis=1).max()))
+    solver = deformer._system._pinned
+    split = "  ".join(f"{np.median([1000 * row[part] for row in parts]):7.2f}" for part in PARTS)
+    name = ("plain" if exact else "ours") + (" + memory" if memory else "")
+    tail = f"{solver.factorizations:4d} {solver.iterations / FRAMES:5.1f}"
+    quality = quality_of(drag, pose, creep)
+    print(
+        f"  {name:<22}{np.median(frames):8.2f} {np.percentile(frames, 95):8.2f}  {split}  {tail}  {quality}"
+    )
+    return float(np.median(frames))
+
+
+def quality_of(drag: Drag, pose: np.ndarray, creep: float) -> str:
+    """E_area, E_angle, flipped faces, and how far a held pin ever was from its place."""
+    measure = distortion(drag.mesh, pose)
+    return f"{measure.area:8.4f} {measure.angle:8.4f} {measure.flipped:5d} {creep:7.3f}"
+
+
+def run_libigl(drag: Drag, iterations: int) -> None:
+    """libigl's ARAP pins vertices only: the vertices nearest to our pins, led along the same ways."""
+    try:
+        import igl
+    except ImportError:
+        return
+    mesh = drag.mesh
+    start = drag.mesh.evaluate(drag.points, mesh.vertices)
+    near = np.array([np.argmin(((mesh.vertices - p) ** 2).sum(axis=1)) for p in start], dtype=np.int32)
+    data = igl.ARAPData()
+    data.max_iter = iterations
+    data.energy = igl.ARAP_ENERGY_TYPE_ELEMENTS
+    igl.arap_precomputation(mesh.vertices, mesh.faces.astype(np.int64), 2, near, data)
+    pose, frames = np.array(mesh.vertices), []
+    for targets in drag.path:
+        goal = mesh.vertices[near] + targets - start
+        started = time.perf_counter()
+        pose = np.asarray(igl.arap_solve(goal, data, pose))
+        frames.append(1000 * (time.perf_counter() - started))
+    blank = "  ".join("      –" for _ in PARTS)
+    name = f"libigl ARAP, {iterations} it."
+    print(
+        f"  {name:<22}{np.median(frames):8.2f} {np.percentile(frames, 95):8.2f}  {blank}     –     –  "
+        f"{quality_of(drag, pose, 0.0)}"
+    )
+
+
+def instrument() -> Clock:
+    """Sort the engine's time by part."""
+    clock = Clock(PARTS)
+    clock.wrap(akvf, "killing_elements", "assemble")
+    clock.wrap(SymmetricPattern, "summed", "assemble")
+    clock.wrap(SparseCholesky, "factorize", "factor")
+    clock.wrap(ReusedCholesky, "solve", "solve")
+    clock.wrap(KillingSystem, "field", "solve")
+    clock.wrap(AkapDeformer, "_move", "spirals")
+    clock.wrap(AkapDeformer, "_remember", "memory")
+    return clock
+
+
+def main() -> None:
+    """One table a drag and size."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--sizes", type=int, nargs="+", default=[1000, 3000, 10000, 30000])
+    parser.add_argument("--no-plain", action="store_true", help="leave out the slow rows")
+    options = parser.parse_args()
+    clock = instrument()
+    head = "  ".join(f"{part:>7}"[-8:] for part in PARTS)
+    print(
+        f"{'milliseconds a frame':<24}{'median':>8} {'95 %':>8}  {head}  fact. iter.    E_area  E_angle flips   creep"
+    )
+    for make in (bar, elephant):
+        for size in options.sizes:
+            drag = make(size)
+            print(f"{drag.name}, {len(drag.mesh.vertices):,} vertices")
+            for memory in (0.0, 1.0):
+                ours = run_ours(drag, clock, memory, exact=False)
+                if not options.no_plain:
+                    plain = run_ours(drag, clock, memory, exact=True)
+                    print(f"    {plain / ours:.2f} times as fast as plain")
+            if not options.no_plain:
+                run_libigl(drag, 10)
+    memory = system.getrusage(system.RUSAGE_SELF).ru_maxrss / (1024**2 if sys.platform == "darwin" else 1024)
+    print(f"peak memory {memory:.0f} MB")
+
+
+if __name__ == "__main__":
+    main()
