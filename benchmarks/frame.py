@@ -1,9 +1,9 @@
 """One dragged frame of the editor, taken apart: what does each part of it cost?
 
 Run from the project's root: python benchmarks/frame.py [--frames N] [--drawing NAME]
-Opens the real window on GLFW's null platform (no display needed), drags the trunk of the bundled elephant with
-pointer events, and prints for each mesh size the median and the 95th percentile of one frame in milliseconds,
-split into the parts named in `PARTS`, and the process's peak memory.
+Opens the real window on GLFW's null platform (no display needed), drags the trunk of the bundled elephant
+with pointer events, and prints for each mesh size the median and the 95th percentile of one frame in
+milliseconds, split into the parts named in `PARTS`, and the process's peak memory.
 """
 
 import os

@@ -1,9 +1,9 @@
 """The engine alone: one step of a dragged mesh, at several sizes, against the plain method and libigl's ARAP.
 
 Run from the project's root: python benchmarks/step.py [--sizes 1000 3000 10000 30000] [--no-plain]
-The bar is bent by 90°, the elephant lifts its trunk, each in 60 frames of one step. All figures of a row come from
-one run on one thread: "plain" factorizes both systems in every substep (`exact=True`), as the paper does; "ours" is
-the default, with and without the memory step. libigl's row appears where `pip install libigl` was done.
+The bar is bent by 90°, the elephant lifts its trunk, each in 60 frames of one step. All figures come from one
+run on one thread: "plain" factorizes both systems in every substep (`exact=True`), as the paper does; "ours"
+is the default, with and without the memory step. libigl's row appears where `pip install libigl` was done.
 """
 
 import os
@@ -154,7 +154,8 @@ def main() -> None:
     clock = instrument()
     head = "  ".join(f"{part:>7}"[-8:] for part in PARTS)
     print(
-        f"{'milliseconds a frame':<24}{'median':>8} {'95 %':>8}  {head}  fact. iter.    E_area  E_angle flips   creep"
+        f"{'milliseconds a frame':<24}{'median':>8} {'95 %':>8}  {head}  fact. iter."
+        "    E_area  E_angle flips   creep"
     )
     for make in (bar, elephant):
         for size in options.sizes:

@@ -82,6 +82,11 @@ def _can_undo(space: Workspace) -> bool:
     return editor.busy or (editor.session is not None and editor.session.history.undo_label is not None)
 
 
+def _is_akap(space: Workspace) -> bool:
+    session = space.editor.session
+    return session is not None and session.state.settings.method == "akap"
+
+
 def remembers(space: Workspace) -> bool:
     """Whether the drawing remembers its rest shape."""
     session = space.editor.session
@@ -138,7 +143,7 @@ RESET = Command(
     icons.ICON_FA_PERSON,
     lambda space: space.editor.session is not None and space.editor.session.posed,
 )
-REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _has_drawing, remembers)
+REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _is_akap, remembers)
 
 PIN_TOOL = Command(
     "Pins", _set_hand(False), (Key.p,), icons.ICON_FA_THUMBTACK, _always, lambda s: not s.editor.hand_tool

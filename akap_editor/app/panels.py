@@ -2,6 +2,7 @@
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from ..editor.document import Settings
 from ..resources import bundled_drawings
 from . import commands
 from .commands import MENUS, Command
@@ -27,6 +28,26 @@ _TOOLS: tuple[Command | None, ...] = (
     commands.SHOW_MESH,
 )
 
+# Label and what to know about it, by the method's name.
+_METHODS = {
+    "akap": (
+        "As Killing as possible",
+        "The drawing flows along a vector field that is as near to a rigid motion as it can be.",
+    ),
+    "arap": (
+        "As rigid as possible",
+        "Each triangle keeps its shape as well as it can; found by repeated local and global steps.",
+    ),
+    "cauchy-green": (
+        "Cauchy-Green",
+        "A conformal map: angles stay, areas may swell or shrink a lot. Holes are bent as if filled.",
+    ),
+    "mls": (
+        "Moving least squares",
+        "Bends the plane around the pins; near limbs pull on one another, because outlines do not count.",
+    ),
+}
+
 
 def draw(space: Workspace, scale: float) -> tuple[float, float, float, float]:
     """Draw the frame around the canvas; returns the canvas as (left, top, right, bottom) in window points."""
@@ -42,6 +63,11 @@ def draw(space: Workspace, scale: float) -> tuple[float, float, float, float]:
 def _run(space: Workspace, command: Command) -> None:
     space.notice = ""
     space.attempt(lambda: command.run(space))
+
+
+def _change(space: Workspace, settings: Settings) -> None:
+    space.notice = ""
+    space.attempt(lambda: space.editor.set_settings(settings))
 
 
 def _menu_bar(space: Workspace) -> None:
@@ -199,7 +225,19 @@ def _pins(space: Workspace, scale: float) -> None:
 
 
 def _bending(space: Workspace) -> None:
+    assert space.document is not None
     _section("Bending")
+    settings = space.document.state.settings
+    names = list(_METHODS)
+    imgui.set_next_item_width(-1)
+    labels = [label for label, _ in _METHODS.values()]
+    changed, index = imgui.combo("##method", names.index(settings.method), labels)
+    if changed:
+        chosen = names[index]
+        _change(space, Settings() if chosen == Settings().method else Settings(chosen, ()))
+    if imgui.is_item_hovered(imgui.HoveredFlags_.delay_normal):
+        _tooltip(_METHODS[settings.method][1])
+    imgui.begin_disabled(not commands.REMEMBER.enabled(space))
     if _switch("Remember the rest shape", commands.remembers(space))[0]:
         _run(space, commands.REMEMBER)
     if imgui.is_item_hovered(imgui.HoveredFlags_.delay_normal):
@@ -207,6 +245,7 @@ def _bending(space: Workspace) -> None:
             "On: the drawing springs back towards its own shape as you drag, so that going there and back "
             "leaves no trace. Off: it keeps what each drag did to it, as clay would."
         )
+    imgui.end_disabled()
     imgui.begin_disabled(not commands.RESET.enabled(space))
     if imgui.button("Reset pose", ImVec2(-1, 0)):
         _run(space, commands.RESET)

@@ -78,7 +78,7 @@ def element_pattern(faces: Ints) -> tuple[Ints, Ints]:
 
 
 def killing_elements(positions: Floats, faces: Ints) -> Floats:
-    """Entries (21 m,) of K = Pᵀ P, the first of each face, then the second, ... (paper, eqs. 5-7, Appendix A).
+    """Entries (21 m,) of K = Pᵀ P, the first of all faces, then the second, ... (paper, eqs. 5-7, App. A).
 
     Rows of P per face, each weighted by the root of its area: 2 ∂x U1, √2 (∂y U1 + ∂x U2), 2 ∂y U2. Unlike in
     the printed eq. 6, the gradient is split into ∂x and ∂y: the whole stacked G would penalize rotations.

@@ -123,7 +123,7 @@ def write_png(path: str | Path, image: Picture) -> None:
 
 
 def animation_suffix(path: str | Path) -> str:
-    """The ending of a name that `write_animation` can write, in lower case. Raises InputError on any other."""
+    """The ending of a name that `write_animation` knows, in lower case. Raises InputError on another."""
     suffix = Path(path).suffix.lower()
     if suffix not in _ENCODERS:
         raise InputError(

@@ -24,8 +24,8 @@ te = imgui.test_engine
 Point = tuple[float, float]
 MOST_FRAMES = 2000
 
-# The Test Engine waits in this for a thread that runs Python. Its binding keeps the interpreter locked, so the
-# two would wait for one another for ever; a call through ctypes unlocks it.
+# The Test Engine waits in this for a thread that runs Python. Its binding keeps the interpreter locked, so
+# the two would wait for one another for ever; a call through ctypes unlocks it.
 render_unlocked = ctypes.CDLL(native.__file__)._ZN5ImGui6RenderEv
 render_unlocked.restype, render_unlocked.argtypes = None, []
 
