@@ -2,7 +2,7 @@
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -15,19 +15,25 @@ from ..geometry.operators import to_complex, to_points
 from .akvf import KillingSystem
 from .deformer import StepReport, StepResult
 from .log_spiral import LogSpirals, linear_flow
-from .rest_memory import SymmetricDirichlet, descend
+from .rest_memory import SymmetricDirichlet, descend, newton_direction
 
 Trajectory = Literal["spiral", "linear"]
 Constraints = Literal["soft", "hard"]
 
 _SHORTEST = 2.0**-10  # share of a substep below which a move that would flip a face is given up
 _ARRIVED = 1e-4  # share of √area: pins nearer than this to their targets are left to the rest memory alone
+_CORRECTIONS = 2  # most of them in one step
+_LONGEST = 4.0  # times its field: as far as a correction may go
+_LEVER = 10.0  # times the velocity of a pin: as far as others may go where that is more than √area
 _THINNEST = 1e-3  # a face may not shrink below this share of its rest area in one move
 
 
 @dataclass(frozen=True, eq=False)
 class _Substep:
-    """From ``start`` along ``field`` for ``share`` of its time; ``end`` is after the rest memory, (n,) each."""
+    """From ``start`` along ``field`` for ``share`` of its time; ``end`` is after memory and corrections.
+
+    Arrays (n,).
+    """
 
     start: Complexes
     field: Complexes
@@ -46,8 +52,8 @@ class AkapDeformer:
     max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer
     way is cut, because following one field too far distorts (Fig. 2).
     constraints: "soft" pins pull with λ as in eq. 3, "hard" ones give U° exactly their velocities (Fig. 3).
-    exact: factorize both systems in every substep, as the paper does; otherwise factorizations are used again while
-    the drawing bends, for fields that are the same within less than a hundredth of a pixel.
+    exact: factorize both systems in every substep, as the paper does; otherwise factorizations are used again
+    while the drawing bends, for fields that are the same within less than a hundredth of a pixel.
     Raises InputError on settings out of range.
     """
 
@@ -58,7 +64,7 @@ class AkapDeformer:
         dirichlet: bool = True,
         trajectory: Trajectory = "spiral",
         pin_weight: float = 100.0,
-        max_step: float = 0.02,
+        max_step: float = 0.01,
         constraints: Constraints = "soft",
         exact: bool = False,
     ) -> None:
@@ -72,10 +78,12 @@ class AkapDeformer:
         self._mesh = mesh
         self._dirichlet = bool(dirichlet)
         length = math.sqrt(mesh.rest_areas.sum())
+        self._length = length
         self._max_length = max_step * length
         # The soft pins give way a little to the rest memory; a field that took them back each time would
         # keep the pose from ever coming to rest.
-        self._arrived = _ARRIVED * length if memory else 0.0
+        self._near = _ARRIVED * length
+        self._arrived = self._near if memory else 0.0
         self._pin_weight = pin_weight
         self._hard = constraints == "hard"
         self._system = KillingSystem(mesh, pin_weight, bool(exact), self._hard)
@@ -125,7 +133,8 @@ class AkapDeformer:
                 aims = goals if index == count else starts + (index / count) * (goals - starts)
                 way.append(self._substep(way[-1].end, aims))
             del way[0]
-        result, field = to_points(way[-1].end), way[-1].field
+        way[-1] = replace(way[-1], end=self._corrected(way[-1], goals))
+        result, field = to_points(way[-1].end.copy()), way[-1].field
         return StepResult(
             result,
             to_points(field),
@@ -144,7 +153,7 @@ class AkapDeformer:
         """The pose at time ``t`` of a step; what the rest memory added comes in gradually."""
         number, local = divmod(t * len(way), 1.0)
         if number == len(way):
-            return way[-1].end
+            return way[-1].end.copy()
         part = way[int(number)]
         followed = self._flow(part.start, part.field, part.share)
         return self._flow(part.start, part.field, local * part.share) + local * (part.end - followed)
@@ -159,42 +168,72 @@ class AkapDeformer:
         moved, field, share = pose, np.zeros_like(pose), 1.0
         if np.abs(velocities).max() > self._arrived:
             field, _ = self._system.field(velocities, self._dirichlet)
-            moved, share = self._move(pose, field)
+            moved, share = self._move(pose, field, velocities)
+        if share < 1:  # faces at their limit open again, or the pins could not even go back
+            moved = self._remember(moved, self._pin_positions(moved), 1.0)
         if self._memory:
-            moved = self._remember(moved, aims)
+            moved = self._remember(moved, aims, self._memory)
         if not np.isfinite(moved).all():
             raise SolverError("the step has no finite result")
         return _Substep(pose, field, share, moved)
 
-    def _move(self, pose: Complexes, field: Complexes) -> tuple[Complexes, float]:
+    def _corrected(self, last: _Substep, goals: Complexes) -> Complexes:
+        """The pose after a step once its pins were brought back to ``goals``.
+
+        The second solve is blind to pins in the interior: without this, one that holds still would drift with
+        whatever is dragged fast. What is below the tolerance stays, so that nothing jumps where it is passed.
+        """
+        pose, share = last.end, last.share
+        for _ in range(_CORRECTIONS):
+            off = goals - self._pin_positions(pose)
+            miss = float(np.abs(off).max(initial=0.0))
+            if miss <= self._near or share < 1:
+                break
+            off *= 1 - self._near / miss
+            field, _ = self._system.field(off, self._dirichlet)
+            reached = self._pin_positions(field)
+            size = float(np.vdot(reached, reached).real)
+            if size == 0:
+                break
+            best = float(np.vdot(reached, off).real) / size
+            pose, share = self._move(pose, min(max(best, 0.0), _LONGEST) * field, off)
+        return pose
+
+    def _move(self, pose: Complexes, field: Complexes, velocities: Complexes) -> tuple[Complexes, float]:
         """Follow the field as far as no face flips; also for what share of the way that was.
 
-        Faces that are flipped already, by another method, move freely.
+        Faces that are flipped already, by another method, move freely. A part that hangs on the pins by a
+        collapsed face is flung away by a small velocity: no vertex goes farther than the drawing is large.
         """
         mesh = self._mesh
         areas = signed_areas(to_points(pose), mesh.faces)
         least = np.where(areas > 0, np.minimum(_THINNEST * mesh.rest_areas, 0.5 * areas), -np.inf)
+        farthest = max(self._length, _LEVER * float(np.abs(velocities).max()))
         t = 1.0
         while t >= _SHORTEST:
             moved = self._flow(pose, field, t)
-            if (signed_areas(to_points(moved), mesh.faces) > least).all():
+            near = np.abs(moved - pose).max() <= farthest
+            if near and (signed_areas(to_points(moved), mesh.faces) > least).all():
                 return moved, t
             t /= 2
         return pose, 0.0
 
-    def _remember(self, pose: Complexes, aims: Complexes) -> Complexes:
-        """One descent step towards the rest shape, pins held softly at ``aims``.
+    def _remember(self, pose: Complexes, aims: Complexes, length: float) -> Complexes:
+        """One step of Newton's method towards the rest shape, pins held softly at ``aims``.
 
-        Near an isometry the Hessian of the energy is 2 (K + λ² WᵀW): half the preconditioned gradient is
-        Newton's step.
+        Near an isometry the Hessian of the energy is 2 (K + λ² WᵀW), so that one iteration finds the
+        direction; the few more that bent faces need save hundreds of steps.
         """
 
         def value(candidate: Complexes) -> float:
             off = self._pin_positions(candidate) - aims
             return self._rest.value(candidate) + self._pin_weight**2 * float((np.abs(off) ** 2).sum())
 
-        off = self._pin_positions(pose) - aims
-        gradient = self._rest.gradient(pose) + 2 * self._system.pull(off)
-        direction = -0.5 * self._system.precondition(gradient)
-        direction[self._held] = 0.0
-        return descend(pose, value, gradient, direction, self._memory)
+        def curvature(change: Complexes) -> Complexes:
+            return bend(change) + 2 * self._system.pull(self._pin_positions(change))
+
+        bend = self._rest.curvature(pose)
+        gradient = self._rest.gradient(pose) + 2 * self._system.pull(self._pin_positions(pose) - aims)
+        gradient[self._held] = 0.0
+        direction = newton_direction(gradient, curvature, self._system.precondition)
+        return descend(pose, value, gradient, direction, length)

@@ -10,7 +10,7 @@ from ..geometry.operators import element_pattern, killing_elements, to_complex, 
 from .cholesky import SymmetricPattern
 from .reuse import ReusedCholesky
 
-_TOLERANCE = 3e-6  # share of √area: how near in the energy norm a field comes to the exact one, if not exact
+_TOLERANCE = 2e-7  # share of √area: how near in the energy norm a field comes to the exact one, if not exact
 _SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
 
 
@@ -25,9 +25,10 @@ class KillingSystem:
     has none, could turn freely and make (7) singular: the vertices of one of its faces are then held to the
     mean velocity of its pins, or to zero, which moves it without turning.
 
-    With ``exact`` both matrices are factorized at every pose; otherwise factorizations are kept for several poses
-    (see `ReusedCholesky`) and fields are near the exact ones: for velocities of a substep, by less than a
-    hundredth of a pixel on a drawing of 1000 × 1000. With ``hard`` the field has exactly the pins' velocities.
+    With ``exact`` both matrices are factorized at every pose; otherwise factorizations are kept for several
+    poses (see `ReusedCholesky`) and fields are near the exact ones: for velocities of a substep, by less than
+    a hundredth of a pixel on a drawing of 1000 × 1000. With ``hard`` U° has exactly the pins' velocities, and
+    (7) is always factorized, since many solves go into one field.
     """
 
     def __init__(self, mesh: TriMesh, pin_weight: float, exact: bool = True, hard: bool = False) -> None:
@@ -38,7 +39,7 @@ class KillingSystem:
         size = 2 * len(mesh.vertices)
         rows, columns = element_pattern(mesh.faces)
         self._pattern = SymmetricPattern(rows, columns, size)
-        self._pinned = ReusedCholesky(self._pattern, exact, _TOLERANCE * length)
+        self._pinned = ReusedCholesky(self._pattern, exact or hard, _TOLERANCE * length)
         on_boundary = np.zeros(len(mesh.vertices), dtype=bool)
         on_boundary[mesh.boundary_vertices] = True
         self._interior = np.flatnonzero(~on_boundary).astype(np.int32)
@@ -120,18 +121,17 @@ class KillingSystem:
         """U_opt of (8) and U° of (7), (n,) each, for pin velocities (k,), at the pose last prepared.
 
         Hard pins are the limit of (7) for λ → ∞: U° = A⁻¹ Wᵀ (W A⁻¹ Wᵀ)⁻¹ ũ, one solve for each pin.
-        (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = λ² Wᵀ(W U° − ũ): the residual that
-        the pins leave in (7), which by (7) is −K U°. Without ``dirichlet`` both are U°.
+        (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = −K U°: by (7) λ² Wᵀ(W U° − ũ), which
+        would carry λ times the error of U°. Without ``dirichlet`` both are U°.
         """
         wanted = self._constraints(velocities)
         pull = self._reactions(wanted) if self._hard else self._weight * wanted
         smooth = self._pinned.solve(self._spread(pull))
         if not dirichlet or self._inner is None or not self._needs_interior:
             return smooth, smooth
-        reached = self._at_constraints(smooth)
-        force = self._spread(self._weight * reached - pull)[self._interior]
+        force = self._spread(self._weight * self._at_constraints(smooth)) - self._pinned.multiply(smooth)
         optimal = smooth.copy()
-        optimal[self._interior] += self._inner.solve(force)
+        optimal[self._interior] += self._inner.solve(force[self._interior])
         return optimal, smooth
 
     def energy(self, field: Complexes) -> float:

@@ -16,9 +16,9 @@ from ..geometry.mesh import MeshPoints, TriMesh
 class StepReport:
     """What one step cost and how good it is.
 
-    seconds; substeps; energy: Killing energy of the last field at the pose it was made for, square pixels; flipped: faces with a negative
-    area afterwards; pin_error: largest distance of a pin from its target, pixels; blocked: whether a move was
-    cut short because it would have flipped a face.
+    seconds; substeps; energy: Killing energy of the last field at the pose it was made for, square pixels, 0
+    without a field; flipped: faces with a negative area afterwards; pin_error: largest distance of a pin from
+    its target, pixels; blocked: whether a move was cut short because it would have flipped a face.
     """
 
     seconds: float
@@ -44,8 +44,8 @@ class StepResult:
     def at(self, t: float) -> Floats:
         """The pose (n, 2) at time ``t`` of the step: 0 is where it began, 1 is `positions`.
 
-        Vertices move along the trajectories γ(t) of eq. 14, substep after substep, for in-betweens, slow motion
-        and motion blur. Raises InputError outside [0, 1], or where the method knows no way.
+        Vertices move along the trajectories γ(t) of eq. 14, substep after substep, for in-betweens, slow
+        motion and motion blur. Raises InputError outside [0, 1], or where the method knows no way.
         """
         if self.flow is None:
             raise InputError("at: expected the result of a method that moves along trajectories, got another")
@@ -73,8 +73,16 @@ class Deformer(Protocol):
 
 def _methods() -> dict[str, Any]:
     from .akap import AkapDeformer
+    from .arap import ArapDeformer
+    from .cauchy_green import CauchyGreenDeformer
+    from .moving_least_squares import MovingLeastSquaresDeformer
 
-    return {"akap": AkapDeformer}
+    return {
+        "akap": AkapDeformer,
+        "arap": ArapDeformer,
+        "cauchy-green": CauchyGreenDeformer,
+        "mls": MovingLeastSquaresDeformer,
+    }
 
 
 def method_names() -> list[str]:

@@ -15,6 +15,8 @@ from ..geometry.operators import gradient_matrices, to_complex, to_points
 
 _SUFFICIENT = 1e-4  # Armijo's share of the decrease that the slope promises
 _TRIES = 12
+_ITERATIONS = 12
+_SOLVED = 0.03  # share of the gradient that Newton's direction may leave
 _NEAR = 0.8  # a try within this share of the parabola's minimum is near enough
 
 
@@ -48,6 +50,56 @@ class SymmetricDirichlet:
         across = -2j * self._areas * squares * inverse**3
         derivatives = np.concatenate([along * jx - across * jy, along * jy + across * jx])
         return to_complex(self._divergence @ to_points(derivatives))
+
+    def curvature(self, positions: Complexes) -> Callable[[Complexes], Complexes]:
+        """The product of the Hessian at a pose (n,) with a change of the vertices (n,)."""
+        jx, jy, determinant, squares = self._terms(positions)
+        inverse = 1.0 / determinant
+        along = 2 * self._areas * (1 + inverse**2)
+        across = 2 * self._areas * squares * inverse**3
+
+        def product(change: Complexes) -> Complexes:
+            columns = to_complex(self._gradient @ to_points(change))
+            hx, hy = columns[: len(jx)], columns[len(jx) :]
+            d = (hx.conj() * jy + jx.conj() * hy).imag
+            s = 2 * (jx.conj() * hx + jy.conj() * hy).real
+            more_along = -4 * self._areas * inverse**3 * d
+            more_across = 2 * self._areas * inverse**3 * (s - 3 * squares * inverse * d)
+            derivatives = np.concatenate(
+                [
+                    more_along * jx + along * hx + 1j * (more_across * jy + across * hy),
+                    more_along * jy + along * hy - 1j * (more_across * jx + across * hx),
+                ]
+            )
+            return to_complex(self._divergence @ to_points(derivatives))
+
+        return product
+
+
+def newton_direction(
+    gradient: Complexes,
+    curvature: Callable[[Complexes], Complexes],
+    precondition: Callable[[Complexes], Complexes],
+) -> Complexes:
+    """A descent direction: Newton's, by conjugate gradients that stop where the energy is not convex."""
+    solution = np.zeros_like(gradient)
+    residual = -gradient
+    step = direction = precondition(residual)
+    first = square = float(np.vdot(residual, step).real)
+    for _ in range(_ITERATIONS):
+        image = curvature(direction)
+        bend = float(np.vdot(direction, image).real)
+        if bend <= 0:
+            return solution if solution.any() else direction
+        length = square / bend
+        solution = solution + length * direction
+        residual = residual - length * image
+        step = precondition(residual)
+        previous, square = square, float(np.vdot(residual, step).real)
+        if square <= _SOLVED**2 * first:
+            break
+        direction = step + (square / previous) * direction
+    return solution
 
 
 def descend(

@@ -10,8 +10,8 @@ from scipy.sparse import csc_array
 from ..geometry.checks import Complexes, Floats
 from .cholesky import SparseCholesky, SymmetricPattern
 
-# What things cost, in units of one solve; the ratio of a numeric factorization to a solve is about the same at
-# all mesh sizes.
+# What things cost, in units of one solve; the ratio of a numeric factorization to a solve is about the same
+# at all mesh sizes.
 _FACTORIZATION = 6.0
 _ITERATION = 1.2
 _MOST_ITERATIONS = 12
@@ -21,9 +21,9 @@ _SIMPLICIAL_BELOW = 10_000  # unknowns: solves are what counts there, factorizat
 class ReusedCholesky:
     """Solves A x = b for a matrix that changes a little from pose to pose.
 
-    Unknowns are complex, one for each vertex; the matrix is real, with interleaved x and y. With ``exact`` every
-    matrix is factorized. Otherwise a factorization is kept as long as that is cheaper on average than making a
-    new one, and solutions are as near as ``tolerance`` in the energy norm.
+    Unknowns are complex, one for each vertex; the matrix is real, with interleaved x and y. With ``exact``
+    every matrix is factorized. Otherwise a factorization is kept as long as that is cheaper on average than
+    making a new one, and solutions are as near as ``tolerance`` in the energy norm.
     """
 
     def __init__(self, pattern: SymmetricPattern, exact: bool, tolerance: float) -> None:
@@ -62,7 +62,7 @@ class ReusedCholesky:
         return self._turn * self._cholesky.solve(turned.view(np.float64)).view(np.complex128)
 
     def solve(self, right: Complexes) -> Complexes:
-        """A⁻¹ b; by conjugate gradients from the last solution, where the factors are of an earlier pose."""
+        """A⁻¹ b; where the factors are of an earlier pose, by conjugate gradients from the last solution."""
         if not self._fresh:
             solution = self._iterate(right)
             if solution is None:  # too far from the earlier pose
@@ -75,7 +75,7 @@ class ReusedCholesky:
 
     def energy(self, values: Complexes) -> float:
         """xᵀ A x with the matrix last set."""
-        return _dot(values, self._multiply(values))
+        return _dot(values, self.multiply(values))
 
     def _factorize(self) -> None:
         self._stale = True  # until it has succeeded
@@ -86,8 +86,10 @@ class ReusedCholesky:
         self.factorizations += 1
 
     def _iterate(self, right: Complexes) -> Complexes | None:
-        solution = self._last
-        residual = right - self._multiply(solution)
+        image = self.multiply(self._last)  # of which the best multiple is where to start
+        size = _dot(self._last, image)
+        share = _dot(self._last, right) / size if size > 0 else 0.0
+        solution, residual = share * self._last, right - share * image
         direction = np.zeros_like(residual)
         previous, count = np.inf, 0
         while count < _MOST_ITERATIONS:
@@ -98,7 +100,7 @@ class ReusedCholesky:
                 self._judge(count)
                 return solution + step
             direction = step + (square / previous) * direction
-            image = self._multiply(direction)
+            image = self.multiply(direction)
             length = square / _dot(direction, image)
             solution = solution + length * direction
             residual = residual - length * image
@@ -112,7 +114,8 @@ class ReusedCholesky:
         self._cost, self._solves = self._cost + cost, self._solves + 1
         self._stale = cost > self._cost / self._solves
 
-    def _multiply(self, values: Complexes) -> Complexes:
+    def multiply(self, values: Complexes) -> Complexes:
+        """A x with the matrix last set."""
         flat = values.view(np.float64)
         product = self._lower @ flat
         product += self._upper @ flat

@@ -4,13 +4,19 @@ from pathlib import Path
 from runpy import run_path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from akap_editor.geometry.mesh import TriMesh
+from akap_editor.geometry.outline import outlines
+from akap_editor.geometry.triangulate import triangulate
+from akap_editor.resources import resource
 
 FOLDER = Path(__file__).parent
 SHAPES = SimpleNamespace(**run_path(str(FOLDER.parent / "geometry" / "shapes.py")))
 DENSE = SimpleNamespace(**run_path(str(FOLDER / "dense.py")))
+ARAP = SimpleNamespace(**run_path(str(FOLDER / "arap_reference.py")))
 
 
 @pytest.fixture(scope="session")
@@ -35,3 +41,25 @@ def shape_name(request: pytest.FixtureRequest) -> str:
 def mesh(shape_name: str) -> TriMesh:
     """Each shape in turn."""
     return SHAPES.SHAPES[shape_name]
+
+
+@pytest.fixture(scope="session")
+def arap() -> SimpleNamespace:
+    """What arap_reference.py defines."""
+    return ARAP
+
+
+@pytest.fixture(scope="session")
+def cartoon(request: pytest.FixtureRequest):
+    """Meshes of cartoons by name and number of vertices: "cat" comes with the program, "noto/cat" is shared."""
+    meshes: dict[tuple[str, int], TriMesh] = {}
+
+    def mesh_of(name: str, vertices: int = 800) -> TriMesh:
+        if (name, vertices) not in meshes:
+            shared = "/" in name
+            folder = request.getfixturevalue("shared_data") if shared else resource("assets", "drawings")
+            alpha = np.array(Image.open(folder / f"{name}.png").convert("RGBA"))[..., 3]
+            meshes[name, vertices] = triangulate(outlines(alpha), vertices)
+        return meshes[name, vertices]
+
+    return mesh_of

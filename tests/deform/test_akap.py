@@ -32,7 +32,9 @@ def bent(mesh):
 @pytest.mark.parametrize("dirichlet", [True, False])
 def test_step_without_memory_is_that_of_the_paper(mesh, shapes, dense, dirichlet, trajectory):
     points, pose = shapes.random_pins(mesh, 1), bent(mesh)
-    velocities = np.random.default_rng(1).normal(scale=0.3, size=(len(points), 2))
+    velocities = np.random.default_rng(1).normal(
+        scale=1e-3, size=(len(points), 2)
+    )  # too slow to be corrected
     deformer = deformer_with(mesh, points, dirichlet=dirichlet, trajectory=trajectory, max_step=WHOLE)
     result = deformer.step(pose, mesh.evaluate(points, pose) + velocities)
     field = dense.smooth_field(mesh, pose, points, velocities, 100.0)
@@ -60,7 +62,7 @@ def test_long_way_is_cut_into_equal_substeps(mesh, shapes):
 
 def test_report(mesh, shapes):
     points = shapes.random_pins(mesh, 3)
-    offsets = 0.2 * np.random.default_rng(3).normal(size=(len(points), 2))
+    offsets = 0.1 * np.random.default_rng(3).normal(size=(len(points), 2))
     goals = mesh.evaluate(points, mesh.vertices) + offsets
     result = deformer_with(mesh, points).step(mesh.vertices, goals)
     off = mesh.evaluate(points, result.positions) - goals
@@ -221,11 +223,9 @@ def test_single_vertex_of_an_interior_pin_gets_no_singularity(shapes):
     mesh = shapes.SHAPES["disc 2"]
     inner = np.setdiff1d(np.arange(len(mesh.vertices)), mesh.boundary_vertices)[[3, 60]]
     points = shapes.vertex_pins(mesh, inner)
-    goals = mesh.vertices[inner] + [[4.0, 0.0], [-4.0, 0.0]]
-    worst = []
-    for dirichlet in (True, False):
-        pose = deformer_with(mesh, points, dirichlet=dirichlet).step(mesh.vertices, goals).positions
-        worst.append(distortion(mesh, pose).face_angle.max())
+    velocities = [[4.0, 0.0], [-4.0, 0.0]]
+    fields = deformer_with(mesh, points).vector_fields(mesh.vertices, velocities)
+    worst = [distortion(mesh, mesh.vertices + field).face_angle.max() for field in fields]
     assert worst[0] < worst[1]
 
 

@@ -17,7 +17,10 @@ SETTINGS = {
         {"memory": 1.0, "dirichlet": False, "trajectory": "linear"},
         {"memory": 0.0, "exact": True},
         {"memory": 1.0, "exact": True},
-    ]
+    ],
+    "arap": [{}, {"iterations": 1}],
+    "cauchy-green": [{}, {"cage": 40, "smoothness": 0.1}],
+    "mls": [{}, {"transform": "similarity"}, {"transform": "affine"}, {"alpha": 3.0}],
 }
 CASES = {
     " ".join([method, *(f"{name}={value}" for name, value in settings.items())]): (method, settings)

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from akap_editor.deform.akap import AkapDeformer
+from akap_editor.deform.deformer import method_names
 from akap_editor.editor.document import Settings, new_document
 from akap_editor.editor.session import PIN_TOLERANCE, Session
 from akap_editor.errors import InputError, SolverError
@@ -164,6 +165,39 @@ def test_settings_move_nothing_and_decide_how_it_bends(session):
         poses.append(session.state.positions)
         session.abort()
     assert np.abs(poses[0] - poses[1]).max() > 0.5
+
+
+@pytest.mark.parametrize("method", method_names())
+def test_switching_the_method_in_mid_pose_moves_nothing_and_goes_on_bending(session, method):
+    session.begin("Bend")
+    session.set_targets({2: (90.0, 65.0)})
+    session.settle()
+    session.commit()
+    bent = session.state
+    session.begin("Method")
+    session.set_settings(Settings(method, ()))
+    session.commit()
+    assert session.state.positions is bent.positions
+    session.undo()
+    assert bits(session.state) == bits(bent)
+    session.redo()
+    assert session.state.settings.method == method
+    session.begin("Bend on")
+    session.set_targets({2: (80.0, 70.0)})
+    session.settle()
+    session.commit()
+    assert not session.moving
+    # moving least squares take pins to their targets, but are evaluated at the vertices around them
+    assert session.pin_error() < (1.0 if method == "mls" else PIN_TOLERANCE)
+    there = session.state.positions
+    session.begin("Method")
+    session.set_settings(Settings())
+    session.commit()
+    assert session.state.positions is there
+    session.begin("Bend back")
+    session.set_targets({2: (90.0, 65.0)})
+    session.settle()
+    assert session.pin_error() < PIN_TOLERANCE
 
 
 def test_after_undo_of_settings_the_old_method_bends(session):
