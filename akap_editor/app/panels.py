@@ -29,7 +29,7 @@ _TOOLS: tuple[Command | None, ...] = (
 )
 
 # Label and what to know about it, by the method's name.
-_METHODS = {
+METHODS = {
     "akap": (
         "As Killing as possible",
         "The drawing flows along a vector field that is as near to a rigid motion as it can be.",
@@ -228,15 +228,15 @@ def _bending(space: Workspace) -> None:
     assert space.document is not None
     _section("Bending")
     settings = space.document.state.settings
-    names = list(_METHODS)
+    names = list(METHODS)
     imgui.set_next_item_width(-1)
-    labels = [label for label, _ in _METHODS.values()]
+    labels = [label for label, _ in METHODS.values()]
     changed, index = imgui.combo("##method", names.index(settings.method), labels)
     if changed:
         chosen = names[index]
         _change(space, Settings() if chosen == Settings().method else Settings(chosen, ()))
     if imgui.is_item_hovered(imgui.HoveredFlags_.delay_normal):
-        _tooltip(_METHODS[settings.method][1])
+        _tooltip(METHODS[settings.method][1])
     imgui.begin_disabled(not commands.REMEMBER.enabled(space))
     if _switch("Remember the rest shape", commands.remembers(space))[0]:
         _run(space, commands.REMEMBER)

@@ -121,8 +121,8 @@ class KillingSystem:
         """U_opt of (8) and U° of (7), (n,) each, for pin velocities (k,), at the pose last prepared.
 
         Hard pins are the limit of (7) for λ → ∞: U° = A⁻¹ Wᵀ (W A⁻¹ Wᵀ)⁻¹ ũ, one solve for each pin.
-        (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = −K U°: by (7) λ² Wᵀ(W U° − ũ), which
-        would carry λ times the error of U°. Without ``dirichlet`` both are U°.
+        (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = −K U°: by (7) λ² Wᵀ(W U° − ũ),
+        which would carry λ times the error of U°. Without ``dirichlet`` both are U°.
         """
         wanted = self._constraints(velocities)
         pull = self._reactions(wanted) if self._hard else self._weight * wanted

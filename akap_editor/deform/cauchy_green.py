@@ -109,9 +109,8 @@ def _holomorphic_maps(mesh: TriMesh, part: int, size: int) -> _HolomorphicMaps:
     # Affine values stay out of the features, since those come for nothing.
     affine = np.linalg.qr(np.stack([np.ones_like(cage), cage], axis=1))[0]
     rows = np.vstack([roughness, _DAMPING * np.eye(len(cage)), affine.conj().T])
-    features = solve_triangular(
-        np.linalg.cholesky(rows.conj().T @ rows), _coordinates(cage, points).conj().T, lower=True
-    ).conj().T
+    lower = np.linalg.cholesky(rows.conj().T @ rows)
+    features = solve_triangular(lower, _coordinates(cage, points).conj().T, lower=True).conj().T
     return _HolomorphicMaps(features, np.stack([np.ones_like(points), points], axis=1))
 
 

@@ -5,6 +5,8 @@ import pytest
 
 from akap_editor.app import commands
 from akap_editor.app.commands import COMMANDS, CTRL, MENUS, SHIFT, Key, chord_name
+from akap_editor.app.panels import METHODS
+from akap_editor.deform.deformer import method_names
 from akap_editor.editor.camera import Camera
 from akap_editor.errors import SolverError
 
@@ -297,3 +299,26 @@ def test_help_opens_and_closes(pinned, label, name, title, close):
     assert not getattr(pinned.space, name)
     pinned.click(pinned.screen((100.0, 80.0)))
     assert len(pinned.pins) == 4, "the canvas is free again"
+
+
+# -- methods ------------------------------------------------------------------------------------------------
+
+
+def test_every_method_can_be_chosen():
+    assert list(METHODS) == method_names()
+
+
+def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):
+    bend(pinned)
+    pose = pinned.session.state.positions
+
+    def choose(hand):
+        hand.set_ref("Panel")
+        hand.combo_click(f"##method/{METHODS['arap'][0]}")
+
+    pinned.do(choose)
+    assert pinned.session.state.settings.method == "arap"
+    assert pinned.session.state.positions is pose
+    pinned.menu("Edit", "Undo")
+    assert pinned.session.state.settings.method == "akap"
+    assert pinned.session.state.positions is pose

@@ -21,7 +21,7 @@ def gradient(mesh):
 
 
 def converged_arap(mesh, points, targets, pose, most=5000):
-    """Pose (n, 2) of least Σ A ‖J − R‖² that is reached from ``pose``, with its pins exactly at ``targets``."""
+    """Pose (n, 2) of least Σ A ‖J − R‖² that is reached from ``pose``, its pins exactly at ``targets``."""
     n, k = len(mesh.vertices), len(points)
     derive = gradient(mesh)
     collect = csr_array(derive.T * np.repeat(mesh.rest_areas, 2))

@@ -51,7 +51,7 @@ def arap() -> SimpleNamespace:
 
 @pytest.fixture(scope="session")
 def cartoon(request: pytest.FixtureRequest):
-    """Meshes of cartoons by name and number of vertices: "cat" comes with the program, "noto/cat" is shared."""
+    """Meshes of cartoons by name and number of vertices: "cat" is a bundled one, "noto/cat" a shared one."""
     meshes: dict[tuple[str, int], TriMesh] = {}
 
     def mesh_of(name: str, vertices: int = 800) -> TriMesh:

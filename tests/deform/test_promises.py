@@ -1,4 +1,4 @@
-"""What the deformer promises on any mesh: hard pins, the field beside the step, the way of a step, no flips."""
+"""What the deformer promises on any mesh: hard pins, fields beside steps, the way of a step, no flips."""
 
 import numpy as np
 import pytest
@@ -229,7 +229,7 @@ def test_time_beyond_the_step_is_refused(shapes, t):
     mesh = shapes.SHAPES["square"]
     points = shapes.random_pins(mesh, 1)
     result = deformer_with(mesh, points).step(mesh.vertices, mesh.evaluate(points, mesh.vertices))
-    with pytest.raises(InputError, match="^t: expected a number from 0 to 1, got "):
+    with pytest.raises(InputError, match=r"^t: expected a number from 0 to 1, got "):
         result.at(t)
 
 
@@ -251,7 +251,7 @@ def check(mesh, result):
 @pytest.mark.parametrize("memory", [0.0, 1.0])
 @pytest.mark.parametrize("name", ["square", "L", "star", "islands", "strip"])
 def test_no_face_flips_in_many_random_gestures(shapes, name, memory):
-    """Each from where the last one ended: 10,000 gestures over all cases, pins chosen anew after every ten."""
+    """Each from where the last one ended: 10,000 gestures in all cases, pins chosen anew after every ten."""
     mesh = shapes.SHAPES[name]
     rng = np.random.default_rng(len(name))
     size = np.sqrt(mesh.rest_areas.sum())
