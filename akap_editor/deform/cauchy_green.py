@@ -45,7 +45,7 @@ class CauchyGreenDeformer(RestBasedDeformer):
     """
 
     def __init__(self, mesh: TriMesh, cage: int = 200, smoothness: float = 1e-4) -> None:
-        size = int(as_number(cage, "cage", 16, 10_000))
+        size = int(as_number(cage, "cage", 16, 1000))
         self._smoothness = as_number(smoothness, "smoothness", 1e-6, 1e6)
         self._maps = [_holomorphic_maps(mesh, part, size) for part in range(mesh.component.max() + 1)]
         super().__init__(mesh)

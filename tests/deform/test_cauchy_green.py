@@ -215,7 +215,7 @@ def test_rest_pose_that_overlaps_itself_is_refused():
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"cage": 3}, "cage: expected a number from 16 to 10000, got 3"),
+        ({"cage": 3}, "cage: expected a number from 16 to 1000, got 3"),
         ({"cage": None}, "cage: expected a number"),
         ({"smoothness": 0}, r"smoothness: expected a number from 1e-06 to 1e\+06, got 0"),
     ],
