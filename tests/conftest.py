@@ -1,5 +1,10 @@
 """What every test may use: the real cartoons, reproducible random cases, and windows last."""
 
+import os
+
+# Before numpy is loaded: threads of BLAS wait for one another on small machines, longer than the work takes.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from pathlib import Path
 
 import pytest

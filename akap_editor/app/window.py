@@ -176,7 +176,8 @@ class Window:
             action()
         glfw.swap_buffers(self._handle)
         self._update_title()
-        self.space.work()
+        if self.space.work():
+            self.wake()
 
     def _interface(self) -> None:
         space = self.space

@@ -97,11 +97,12 @@ class Workspace:
         """Whether there is work left."""
         return bool(self._jobs or self._due)
 
-    def work(self) -> None:
-        """After a frame: do what was put off before it began."""
+    def work(self) -> bool:
+        """After a frame: do what was put off before it began; whether there was anything."""
         jobs, self._due, self._jobs = self._due, self._jobs, []
         for job in jobs:
             self.attempt(job)
+        return bool(jobs)
 
     def attempt(self, job: Callable[[], object]) -> bool:
         """Run ``job``; what it raises on purpose becomes a message, and everything open stays as it was."""

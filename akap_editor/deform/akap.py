@@ -52,8 +52,8 @@ class AkapDeformer:
     max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer
     way is cut, because following one field too far distorts (Fig. 2).
     constraints: "soft" pins pull with λ as in eq. 3, "hard" ones give U° exactly their velocities (Fig. 3).
-    exact: factorize both systems in every substep, as the paper does; otherwise factorizations are used again
-    while the drawing bends, for fields that are the same within less than a hundredth of a pixel.
+    exact: factorize both systems in every substep, as the paper does; otherwise the factorizations of the
+    rest pose serve for all poses, for fields that are the same within less than a hundredth of a pixel.
     Raises InputError on settings out of range.
     """
 

@@ -10,7 +10,7 @@ from ..geometry.operators import element_pattern, killing_elements, to_complex, 
 from .cholesky import SymmetricPattern
 from .reuse import ReusedCholesky
 
-_TOLERANCE = 2e-7  # share of √area: how near in the energy norm a field comes to the exact one, if not exact
+_TOLERANCE = 2e-6  # share of √area: how near in the energy norm a field comes to the exact one, if not exact
 _SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
 
 
@@ -25,8 +25,8 @@ class KillingSystem:
     has none, could turn freely and make (7) singular: the vertices of one of its faces are then held to the
     mean velocity of its pins, or to zero, which moves it without turning.
 
-    With ``exact`` both matrices are factorized at every pose; otherwise factorizations are kept for several
-    poses (see `ReusedCholesky`) and fields are near the exact ones: for velocities of a substep, by less than
+    With ``exact`` both matrices are factorized at every pose; otherwise those of the rest pose serve for all
+    (see `ReusedCholesky`) and fields are near the exact ones: for velocities of a substep, by less than
     a hundredth of a pixel on a drawing of 1000 × 1000. With ``hard`` U° has exactly the pins' velocities, and
     (7) is always factorized, since many solves go into one field.
     """
@@ -51,6 +51,7 @@ class KillingSystem:
         self._first_faces = np.unique(mesh.component[mesh.faces[:, 0]], return_index=True)[1]
         self._same_place = _SAME_PLACE * length
         self._frames = _VertexFrames(mesh)
+        self._rest = self._pattern.summed(killing_elements(mesh.vertices, mesh.faces))
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
     def set_pins(self, points: MeshPoints) -> None:
@@ -95,6 +96,8 @@ class KillingSystem:
         interior_vertex = np.zeros(len(mesh.vertices), dtype=bool)
         interior_vertex[self._interior] = True
         self._needs_interior = bool((interior_vertex[self._corners] & (weights != 0)).any())
+        self._pinned_rest = self._rest.copy()
+        np.add.at(self._pinned_rest, self._pin_slots, self._pin_entries)
         self._pinned.forget()
 
     def prepare(self, positions: Floats) -> None:
@@ -105,9 +108,10 @@ class KillingSystem:
         nonzeros = self._pattern.summed(killing_elements(positions, self._mesh.faces))
         frames = self._frames(to_complex(positions))
         if self._inner is not None and self._needs_interior:
-            self._inner.prepare(nonzeros[self._inner_nonzeros], frames[self._interior])
+            inner = self._inner_nonzeros
+            self._inner.prepare(nonzeros[inner], frames[self._interior], self._rest[inner])
         np.add.at(nonzeros, self._pin_slots, self._pin_entries)
-        self._pinned.prepare(nonzeros, frames)
+        self._pinned.prepare(nonzeros, frames, self._pinned_rest)
 
     def precondition(self, gradient: Complexes) -> Complexes:
         """(K + λ² WᵀW)⁻¹ applied to a vector (n,) at the pose last prepared, nearly unless ``exact``."""

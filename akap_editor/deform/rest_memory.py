@@ -16,7 +16,7 @@ from ..geometry.operators import gradient_matrices, to_complex, to_points
 _SUFFICIENT = 1e-4  # Armijo's share of the decrease that the slope promises
 _TRIES = 12
 _ITERATIONS = 12
-_SOLVED = 0.003  # share of the gradient that Newton's direction may leave
+_SOLVED = 0.01  # share of the gradient that Newton's direction may leave
 _NEAR = 0.8  # a try within this share of the parabola's minimum is near enough
 
 

@@ -1,7 +1,8 @@
-"""One factorization for many poses: conjugate gradients, preconditioned by the factors of an earlier pose.
+"""One factorization for all poses: conjugate gradients, preconditioned by the factors of the rest pose.
 
-A deformation is nearly isometric, so the matrix at the current pose is nearly the earlier one turned at each
-vertex by the rotation R since then: R A₀⁻¹ Rᵀ is an excellent preconditioner.
+A deformation is nearly isometric, so the matrix at a pose is nearly that of the rest pose turned at each
+vertex by its rotation R since then: R A₀⁻¹ Rᵀ is an excellent preconditioner. It depends on the pose alone,
+and not on the way there, so that what is computed with it does not either.
 """
 
 import numpy as np
@@ -10,11 +11,7 @@ from scipy.sparse import csc_array
 from ..geometry.checks import Complexes, Floats
 from .cholesky import SparseCholesky, SymmetricPattern
 
-# What things cost, in units of one solve; the ratio of a numeric factorization to a solve is about the same
-# at all mesh sizes.
-_FACTORIZATION = 6.0
-_ITERATION = 1.2
-_MOST_ITERATIONS = 12
+_MOST_ITERATIONS = 15
 _SIMPLICIAL_BELOW = 10_000  # unknowns: solves are what counts there, factorizations are few and fast enough
 
 
@@ -22,8 +19,8 @@ class ReusedCholesky:
     """Solves A x = b for a matrix that changes a little from pose to pose.
 
     Unknowns are complex, one for each vertex; the matrix is real, with interleaved x and y. With ``exact``
-    every matrix is factorized. Otherwise a factorization is kept as long as that is cheaper on average than
-    making a new one, and solutions are as near as ``tolerance`` in the energy norm.
+    every matrix is factorized. Otherwise that of the rest pose is, and solutions are as near as ``tolerance``
+    in the energy norm; where iterations do not come that near, the matrix at hand is factorized after all.
     """
 
     def __init__(self, pattern: SymmetricPattern, exact: bool, tolerance: float) -> None:
@@ -34,27 +31,30 @@ class ReusedCholesky:
         self._upper = self._lower.T
         self._diagonal_slots = np.flatnonzero(pattern.rows == pattern.columns)
         self._exact, self._tolerance = exact, tolerance
-        self._frame: Complexes = np.ones(size // 2, dtype=np.complex128)
-        self._turn = self._now = self._frame
-        self._last = np.zeros_like(self._frame)
-        self._cost, self._solves = 0.0, 0
-        self._stale, self._fresh = True, False
+        self._turn: Complexes = np.ones(size // 2, dtype=np.complex128)
+        self._last = np.zeros_like(self._turn)
+        self._at_rest = self._fresh = False
         self.iterations = self.factorizations = 0
 
     def forget(self) -> None:
-        """The matrix is about to change by more than the pose does: factorize the next one."""
-        self._stale = True
+        """The matrix of the rest pose has changed."""
+        self._at_rest = False
 
-    def prepare(self, nonzeros: Floats, frame: Complexes) -> None:
-        """Set the matrix; ``frame`` (n,) of unit size says how each vertex is turned. Raises SolverError."""
+    def prepare(self, nonzeros: Floats, frame: Complexes, rest: Floats) -> None:
+        """Set the matrix by its nonzeros at the pose and at rest. Raises SolverError.
+
+        frame: (n,) of unit size, how each vertex is turned from rest.
+        """
         self._lower.data = self._upper.data = nonzeros
         self._diagonal = nonzeros[self._diagonal_slots]
-        self._now = frame
-        if self._exact or self._stale:
+        if self._exact:
             self._factorize()
-        else:
-            self._fresh = False
-            self._turn = frame * self._frame.conj()
+            return
+        if not self._at_rest:
+            self._cholesky.factorize(rest)
+            self.factorizations += 1
+            self._at_rest = True
+        self._fresh, self._turn = False, frame
 
     def precondition(self, right: Complexes) -> Complexes:
         """An approximation of A⁻¹ b by one solve; exact where the matrix was just factorized."""
@@ -62,10 +62,10 @@ class ReusedCholesky:
         return self._turn * self._cholesky.solve(turned.view(np.float64)).view(np.complex128)
 
     def solve(self, right: Complexes) -> Complexes:
-        """A⁻¹ b; where the factors are of an earlier pose, by conjugate gradients from the last solution."""
+        """A⁻¹ b; where the factors are those of the rest pose, iterated from the last solution."""
         if not self._fresh:
             solution = self._iterate(right)
-            if solution is None:  # too far from the earlier pose
+            if solution is None:  # too far from an isometry
                 self._factorize()
         if self._fresh:
             solution = self.precondition(right)
@@ -78,11 +78,9 @@ class ReusedCholesky:
         return _dot(values, self.multiply(values))
 
     def _factorize(self) -> None:
-        self._stale = True  # until it has succeeded
+        self._at_rest = False
         self._cholesky.factorize(self._lower.data)
-        self._frame, self._turn = self._now, np.ones_like(self._now)
-        self._stale, self._fresh = False, True
-        self._cost, self._solves = _FACTORIZATION, 0
+        self._fresh, self._turn = True, np.ones_like(self._turn)
         self.factorizations += 1
 
     def _iterate(self, right: Complexes) -> Complexes | None:
@@ -97,7 +95,7 @@ class ReusedCholesky:
             step = self.precondition(residual)
             square = _dot(residual, step)
             if square <= self._tolerance**2:
-                self._judge(count)
+                self.iterations += count
                 return solution + step
             direction = step + (square / previous) * direction
             image = self.multiply(direction)
@@ -106,13 +104,6 @@ class ReusedCholesky:
             residual = residual - length * image
             previous = square
         return None
-
-    def _judge(self, count: int) -> None:
-        """Factorize again once a solve costs more than the average since the last factorization."""
-        self.iterations += count
-        cost = _ITERATION * count
-        self._cost, self._solves = self._cost + cost, self._solves + 1
-        self._stale = cost > self._cost / self._solves
 
     def multiply(self, values: Complexes) -> Complexes:
         """A x with the matrix last set."""

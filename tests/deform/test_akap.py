@@ -35,7 +35,8 @@ def test_step_without_memory_is_that_of_the_paper(mesh, shapes, dense, dirichlet
     velocities = np.random.default_rng(1).normal(
         scale=1e-3, size=(len(points), 2)
     )  # too slow to be corrected
-    deformer = deformer_with(mesh, points, dirichlet=dirichlet, trajectory=trajectory, max_step=WHOLE)
+    settings = {"dirichlet": dirichlet, "trajectory": trajectory, "max_step": WHOLE, "exact": True}
+    deformer = deformer_with(mesh, points, **settings)
     result = deformer.step(pose, mesh.evaluate(points, pose) + velocities)
     field = dense.smooth_field(mesh, pose, points, velocities, 100.0)
     if dirichlet:

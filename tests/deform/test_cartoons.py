@@ -122,8 +122,10 @@ def test_without_corrections_the_inner_pin_would_creep(cartoon, monkeypatch):
 # -- rest memory ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("direction", ["aside", "inward"])
-@pytest.mark.parametrize("name", BUNDLED + SHARED)
+@pytest.mark.parametrize(
+    ("name", "direction"),
+    [(name, "inward") for name in BUNDLED + SHARED] + [("bar", "aside"), ("raptor", "aside")],
+)
 def test_memory_comes_back_to_rest(cartoon, name, direction):
     drag = Drag(cartoon(name), memory=1.0)
     there = np.linspace(0, 150, 61)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from akap_editor.deform.rest_memory import SymmetricDirichlet, descend
+from akap_editor.deform.rest_memory import SymmetricDirichlet, descend, newton_direction
 from akap_editor.geometry.operators import to_complex, to_points
 
 
@@ -52,6 +52,49 @@ def test_gradient_is_that_of_finite_differences(mesh):
         step = 1e-5
         slope = (energy.value(pose + step * direction) - energy.value(pose - step * direction)) / (2 * step)
         assert slope == pytest.approx((gradient.conj() * direction).real.sum(), rel=1e-5, abs=1e-4)
+
+
+def test_curvature_is_that_of_finite_differences(mesh):
+    energy = SymmetricDirichlet(mesh)
+    pose = noisy(mesh, 1) * (1.2 - 0.4j)
+    curvature = energy.curvature(pose)
+    rng = np.random.default_rng(3)
+    for _ in range(3):
+        change = to_complex(rng.normal(size=mesh.vertices.shape))
+        step = 1e-5
+        difference = energy.gradient(pose + step * change) - energy.gradient(pose - step * change)
+        product = curvature(change)
+        assert np.abs(product - difference / (2 * step)).max() < 1e-5 * np.abs(product).max()
+
+
+def real_product(matrix):
+    """The product with a real symmetric matrix, of complex numbers with interleaved x and y."""
+    return lambda values: to_complex((matrix @ to_points(values).ravel()).reshape(-1, 2))
+
+
+def test_newton_direction_solves_where_the_energy_is_convex():
+    rng = np.random.default_rng(4)
+    root = rng.normal(size=(12, 12))
+    matrix, gradient = root @ root.T + np.eye(12), rng.normal(size=6) + 1j * rng.normal(size=6)
+    expected = -real_product(np.linalg.inv(matrix))(gradient)
+    off = newton_direction(gradient, real_product(matrix), real_product(np.eye(12))) - expected
+    assert np.abs(off).max() < 1e-2 * np.abs(expected).max()
+    exactly = newton_direction(gradient, real_product(matrix), real_product(np.linalg.inv(matrix)))
+    assert np.abs(exactly - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("lowest", [-3.0, 0.0])
+def test_newton_direction_descends_where_the_energy_is_not_convex(lowest):
+    rng = np.random.default_rng(5)
+    axes, _ = np.linalg.qr(rng.normal(size=(12, 12)))
+    matrix = axes @ np.diag([lowest, lowest, *range(1, 11)]) @ axes.T
+    for gradient in to_complex(rng.normal(size=(60, 2))).reshape(10, 6):
+        direction = newton_direction(gradient, real_product(matrix), real_product(np.eye(12)))
+        assert np.vdot(gradient, direction).real < 0
+
+
+def test_newton_direction_at_a_minimum_is_none():
+    assert not newton_direction(np.zeros(3, dtype=complex), lambda x: x, lambda x: x).any()
 
 
 @pytest.mark.parametrize("seed", range(4))

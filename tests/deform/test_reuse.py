@@ -57,23 +57,23 @@ def right_side(system, seed):
 
 def test_solutions_at_later_poses_are_as_near_as_stated(system):
     solver = ReusedCholesky(system.pattern, exact=False, tolerance=TOLERANCE)
-    solver.prepare(system.nonzeros(system.mesh.vertices), np.ones(system.size // 2, dtype=complex))
+    rest = system.nonzeros(system.mesh.vertices)
     for seed, angle in enumerate([0.05, 0.1, 0.2, 0.4, 0.8]):
         positions, frame = bent(system.mesh, angle)
-        solver.prepare(system.nonzeros(positions), frame)
+        solver.prepare(system.nonzeros(positions), frame, rest)
         matrix, right = system.matrix(positions), right_side(system, seed)
         expected = to_complex(np.linalg.solve(matrix, to_points(right).ravel()).reshape(-1, 2))
         assert energy_norm(matrix, solver.solve(right) - expected) < 2 * TOLERANCE
-    assert solver.factorizations < 5
+    assert solver.factorizations == 1
 
 
 def test_a_turned_drawing_costs_one_iteration(system):
     solver = ReusedCholesky(system.pattern, exact=False, tolerance=TOLERANCE)
     ones = np.ones(system.size // 2, dtype=complex)
-    solver.prepare(system.nonzeros(system.mesh.vertices), ones)
+    rest = system.nonzeros(system.mesh.vertices)
     turn = np.exp(1.3j)
     positions = to_points(turn * to_complex(system.mesh.vertices))
-    solver.prepare(system.nonzeros(positions), turn * ones)
+    solver.prepare(system.nonzeros(positions), turn * ones, rest)
     solver.solve(right_side(system, 1))
     assert solver.factorizations == 1
     assert solver.iterations <= 2  # the second one finds that nothing is left
@@ -82,9 +82,9 @@ def test_a_turned_drawing_costs_one_iteration(system):
 def test_a_pose_too_far_away_is_factorized(system):
     solver = ReusedCholesky(system.pattern, exact=False, tolerance=TOLERANCE)
     ones = np.ones(system.size // 2, dtype=complex)
-    solver.prepare(system.nonzeros(system.mesh.vertices), ones)
+    rest = system.nonzeros(system.mesh.vertices)
     positions = system.mesh.vertices * [1.0, 0.01]
-    solver.prepare(system.nonzeros(positions), ones)
+    solver.prepare(system.nonzeros(positions), ones, rest)
     right = right_side(system, 2)
     found = solver.solve(right)
     assert solver.factorizations == 2
@@ -96,7 +96,8 @@ def test_exact_factorizes_every_matrix(system):
     solver = ReusedCholesky(system.pattern, exact=True, tolerance=TOLERANCE)
     for angle in (0.1, 0.2, 0.3):
         positions, frame = bent(system.mesh, angle)
-        solver.prepare(system.nonzeros(positions), frame)
+        nonzeros = system.nonzeros(positions)
+        solver.prepare(nonzeros, frame, nonzeros)
     assert solver.factorizations == 3
 
 
