@@ -10,7 +10,7 @@ from ..geometry.operators import element_pattern, killing_elements, to_complex, 
 from .cholesky import SymmetricPattern
 from .reuse import ReusedCholesky
 
-_TOLERANCE = 2e-6  # share of √area: how near in the energy norm a field comes to the exact one, if not exact
+_TOLERANCE = 3e-7  # share of √area: how near in the energy norm a field comes to the exact one, if not exact
 _SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
 
 

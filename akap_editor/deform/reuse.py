@@ -11,7 +11,7 @@ from scipy.sparse import csc_array
 from ..geometry.checks import Complexes, Floats
 from .cholesky import SparseCholesky, SymmetricPattern
 
-_MOST_ITERATIONS = 15
+_MOST_ITERATIONS = 80
 _SIMPLICIAL_BELOW = 10_000  # unknowns: solves are what counts there, factorizations are few and fast enough
 
 
