@@ -181,7 +181,10 @@ class Program:
 
     def without_pins(self):
         """The screen with pins hidden; they are shown again."""
-        hidden = self.key("shift+p", "pins are hidden")
+        self.key("shift+p", "pins are hidden")
+        hidden, before = self.grab(), None
+        while before is None or (hidden != before).any():  # a picture may be taken while a frame is shown
+            hidden, before = self.grab(), hidden
         self.key("shift+p", "pins are shown")
         return hidden
 
