@@ -13,6 +13,7 @@ from PIL import Image
 
 import akap_editor
 from akap_editor import cli
+from akap_editor.cli import replay as replaying
 from akap_editor.io.documents import open_document
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.project_file import save
@@ -254,8 +255,8 @@ def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path
         wanted.update(options)
         replay(*arguments, fps=6.0, size=96)
 
-    replay = cli._replay
-    monkeypatch.setattr(cli, "_replay", smaller)
+    replay = replaying.replay_recording
+    monkeypatch.setattr(replaying, "replay_recording", smaller)
     code, output, errors = run()
     assert (code, errors) == (0, "")
     assert "there is no display" in output.splitlines()[0]

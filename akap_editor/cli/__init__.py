@@ -1,0 +1,43 @@
+"""The command line: the same session, with or without a window. One module for each command."""
+
+import sys
+
+import click
+
+from .. import __version__
+from ..errors import AkapError
+from .edit import edit
+from .render import render
+from .replay import replay_command
+
+
+class _Main(click.Group):
+    """A file in place of a command is opened in the editor."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        options = {"-h", "--help", "--version"}
+        if not args or (args[0] not in self.commands and args[0] not in options):
+            args = ["edit", *args]
+        return super().parse_args(ctx, args)
+
+
+@click.group(cls=_Main, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="akap-editor")
+def cli() -> None:
+    """Bend cartoons. `akap-editor FILE` opens a picture with a transparent background, or a saved drawing."""
+
+
+for command in (edit, render, replay_command):
+    cli.add_command(command)
+
+
+def main() -> None:
+    """Run the command line; what goes wrong on purpose is one line on stderr and exit code 2."""
+    try:
+        cli(prog_name="akap-editor", standalone_mode=False)
+    except (AkapError, click.ClickException) as error:
+        message = error.format_message() if isinstance(error, click.ClickException) else str(error)
+        click.echo(f"akap-editor: {message}", err=True)
+        sys.exit(2)
+    except click.Abort:
+        sys.exit(130)  # as shells say of a program that Ctrl+C ended

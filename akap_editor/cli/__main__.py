@@ -1,0 +1,5 @@
+"""`python -m akap_editor.cli`."""
+
+from . import main
+
+main()

@@ -1,0 +1,48 @@
+"""Opens the window."""
+
+import os
+import sys
+from pathlib import Path
+
+import click
+
+from ..editor.document import Document
+from ..errors import DisplayError
+from ..io.documents import open_document
+from ..resources import resource
+from . import replay
+from .common import FILE, bundled
+
+FIRST_DRAWING = "elephant"
+OUTPUT_FOLDER = Path("out")
+
+
+@click.command(epilog="Example: akap-editor edit cat.png")
+@click.argument("file", type=FILE, required=False)
+def edit(file: Path | None) -> None:
+    """Open FILE in the window: a picture, or a drawing saved as .akap. Without FILE, a bundled cartoon.
+
+    Where there is no display, the bundled recording is replayed without a window instead.
+    """
+    document = open_document(file if file is not None else bundled(FIRST_DRAWING))
+    try:
+        _edit(document)
+    except DisplayError as error:
+        if file is not None:
+            raise
+        click.echo(f"No window: {error}. Replaying the bundled recording without one.")
+        recording = resource("assets", "recordings", f"{FIRST_DRAWING}.akaprec")
+        animation = OUTPUT_FOLDER / f"{FIRST_DRAWING}.webp"
+        replay.replay_recording(recording, None, animation, animation.with_suffix(".png"), fps=24.0, size=480)
+
+
+def _edit(document: Document) -> None:
+    x11 = sys.platform.startswith("linux")
+    if x11 and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise DisplayError("there is no display")
+    try:
+        from ..app.window import Window
+    except ImportError as error:
+        raise DisplayError(f"a library that windows need is missing ({error})") from error
+    with Window() as window:
+        window.run(document)
