@@ -13,9 +13,10 @@ from ..geometry.checks import Complexes, Floats, as_indices, as_number, as_point
 from ..geometry.mesh import MeshPoints, TriMesh, signed_areas
 from ..geometry.operators import to_complex, to_points
 from .akvf import KillingSystem
+from .cholesky import SparseCholesky
 from .deformer import StepReport, StepResult
 from .log_spiral import LogSpirals, linear_flow
-from .rest_memory import SymmetricDirichlet, descend, newton_direction
+from .rest_memory import SymmetricDirichlet, descend
 
 Trajectory = Literal["spiral", "linear"]
 Constraints = Literal["soft", "hard"]
@@ -25,7 +26,13 @@ _ARRIVED = 1e-4  # share of √area: pins nearer than this to their targets are 
 _CORRECTIONS = 2  # most of them in one step
 _LONGEST = 4.0  # times its field: as far as a correction may go
 _LEVER = 10.0  # times the velocity of a pin: as far as others may go where that is more than √area
-_THINNEST = 1e-3  # a face may not shrink below this share of its rest area in one move
+_THINNEST = 1e-2  # a face may not shrink below this share of its rest area in one move
+# Longest way of a pin in one substep and how near a field comes to the exact one (in the energy norm), as
+# shares of √area. Errors of the method without memory add up along the way, with memory they are forgotten.
+_MAX_STEP, _MAX_STEP_WITH_MEMORY = 0.01, 0.05
+_TOLERANCE, _TOLERANCE_WITH_MEMORY = 3e-7, 4e-6
+_SAFE = 0.9  # share of the way to the first flip that memory may go
+_CUT = 0.05  # a step of memory shorter than this share of its length was in the wrong metric
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,10 +57,11 @@ class AkapDeformer:
     the variants of Fig. 8.
     pin_weight: λ on the row as in eq. 5; with area-weighted energies 10 to 1000 behave alike.
     max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer
-    way is cut, because following one field too far distorts (Fig. 2).
+    way is cut, because following one field too far distorts (Fig. 2). By default 0.01, and 0.05 with memory,
+    under which the pose does not depend on the way.
     constraints: "soft" pins pull with λ as in eq. 3, "hard" ones give U° exactly their velocities (Fig. 3).
-    exact: factorize both systems in every substep, as the paper does; otherwise the factorizations of the
-    rest pose serve for all poses, for fields that are the same within less than a hundredth of a pixel.
+    exact: factorize both systems in every substep, as the paper does; otherwise a factorization serves for
+    many poses, for poses that are the same within less than a hundredth of a pixel (at 1000 × 1000).
     Raises InputError on settings out of range.
     """
 
@@ -64,7 +72,7 @@ class AkapDeformer:
         dirichlet: bool = True,
         trajectory: Trajectory = "spiral",
         pin_weight: float = 100.0,
-        max_step: float = 0.01,
+        max_step: float | None = None,
         constraints: Constraints = "soft",
         exact: bool = False,
     ) -> None:
@@ -74,6 +82,8 @@ class AkapDeformer:
         if constraints not in ("soft", "hard"):
             raise InputError(f"constraints: expected 'soft' or 'hard', got {constraints!r}")
         as_number(pin_weight, "pin_weight", 1e-3, 1e6)
+        if max_step is None:
+            max_step = _MAX_STEP_WITH_MEMORY if memory else _MAX_STEP
         as_number(max_step, "max_step", 1e-4, math.inf)
         self._mesh = mesh
         self._dirichlet = bool(dirichlet)
@@ -86,7 +96,9 @@ class AkapDeformer:
         self._arrived = self._near if memory else 0.0
         self._pin_weight = pin_weight
         self._hard = constraints == "hard"
-        self._system = KillingSystem(mesh, pin_weight, bool(exact), self._hard)
+        tolerance = length * (_TOLERANCE_WITH_MEMORY if memory else _TOLERANCE)
+        self._system = KillingSystem(mesh, pin_weight, bool(exact), self._hard, tolerance)
+        self._newton: SparseCholesky | None = None
         self._exact_system: KillingSystem | None = None
         self._flow = LogSpirals(mesh).flow if trajectory == "spiral" else linear_flow
         self._rest = SymmetricDirichlet(mesh)
@@ -141,7 +153,7 @@ class AkapDeformer:
             StepReport(
                 seconds=time.perf_counter() - started,
                 substeps=len(way) if len(goals) else 0,
-                energy=self._system.energy(field) if len(goals) else 0.0,
+                energy=self._system.energy(field) if field.any() else 0.0,
                 flipped=int((signed_areas(result, self._mesh.faces) <= 0).sum()),
                 pin_error=float(np.abs(goals - self._pin_positions(way[-1].end)).max(initial=0.0)),
                 blocked=any(part.share < 1 for part in way),
@@ -163,16 +175,17 @@ class AkapDeformer:
 
     def _substep(self, pose: Complexes, aims: Complexes) -> _Substep:
         """One field and one move: section 2.4, with velocities towards ``aims`` from where the pins are."""
-        self._system.prepare(to_points(pose))
         velocities = aims - self._pin_positions(pose)
         moved, field, share = pose, np.zeros_like(pose), 1.0
-        if np.abs(velocities).max() > self._arrived:
-            field, _ = self._system.field(velocities, self._dirichlet)
+        moving = bool(np.abs(velocities).max() > self._arrived)
+        if moving:
+            self._system.prepare(to_points(pose))
+            field, _ = self._system.field(velocities, self._dirichlet, "motion")
             moved, share = self._move(pose, field, velocities)
         if share < 1:  # faces at their limit open again, or the pins could not even go back
-            moved = self._remember(moved, self._pin_positions(moved), 1.0)
+            moved = self._remember(moved, self._pin_positions(moved), 1.0, False)
         if self._memory:
-            moved = self._remember(moved, aims, self._memory)
+            moved = self._remember(moved, aims, self._memory, moving)
         if not np.isfinite(moved).all():
             raise SolverError("the step has no finite result")
         return _Substep(pose, field, share, moved)
@@ -190,7 +203,7 @@ class AkapDeformer:
             if miss <= self._near or share < 1:
                 break
             off *= 1 - self._near / miss
-            field, _ = self._system.field(off, self._dirichlet)
+            field, _ = self._system.field(off, self._dirichlet, "correction")
             reached = self._pin_positions(field)
             size = float(np.vdot(reached, reached).real)
             if size == 0:
@@ -207,7 +220,7 @@ class AkapDeformer:
         """
         mesh = self._mesh
         areas = signed_areas(to_points(pose), mesh.faces)
-        least = np.where(areas > 0, np.minimum(_THINNEST * mesh.rest_areas, 0.5 * areas), -np.inf)
+        least = np.where(areas > 0, np.minimum(_THINNEST * mesh.rest_areas, 0.9 * areas), -np.inf)
         farthest = max(self._length, _LEVER * float(np.abs(velocities).max()))
         t = 1.0
         while t >= _SHORTEST:
@@ -218,22 +231,53 @@ class AkapDeformer:
             t /= 2
         return pose, 0.0
 
-    def _remember(self, pose: Complexes, aims: Complexes, length: float) -> Complexes:
-        """One step of Newton's method towards the rest shape, pins held softly at ``aims``.
+    def _remember(self, pose: Complexes, aims: Complexes, length: float, moving: bool) -> Complexes:
+        """One step towards the rest shape, pins held softly at ``aims``.
 
-        Near an isometry the Hessian of the energy is 2 (K + λ² WᵀW), so that one iteration finds the
-        direction; the few more that bent faces need save hundreds of steps.
+        Near an isometry the Hessian of the energy is 2 (K + λ² WᵀW), and while pins are moving that matrix is
+        at hand. Where that is no good model, and where the drawing only settles, it is Newton's step.
         """
 
-        def value(candidate: Complexes) -> float:
-            off = self._pin_positions(candidate) - aims
-            return self._rest.value(candidate) + self._pin_weight**2 * float((np.abs(off) ** 2).sum())
-
-        def curvature(change: Complexes) -> Complexes:
-            return bend(change) + 2 * self._system.pull(self._pin_positions(change))
-
-        bend = self._rest.curvature(pose)
-        gradient = self._rest.gradient(pose) + 2 * self._system.pull(self._pin_positions(pose) - aims)
+        rest, columns = self._rest, self._rest.columns(pose)
+        before, off = rest.value(columns), self._pin_positions(pose) - aims
+        if before == np.inf:  # faces that are flipped already, by another method
+            return pose
+        before += self._misfit(off)
+        gradient = rest.gradient(columns) + 2 * self._system.pull(off)
         gradient[self._held] = 0.0
-        direction = newton_direction(gradient, curvature, self._system.precondition)
-        return descend(pose, value, gradient, direction, length)
+
+        def descended(direction: Complexes) -> tuple[Complexes, float]:
+            change, pins = rest.columns(direction), self._pin_positions(direction)
+
+            def value(far: float) -> float:
+                return rest.value(columns + far * change) + self._misfit(off + far * pins)
+
+            slope = float(np.vdot(gradient, direction).real)
+            far = descend(value, before, slope, min(length, _SAFE * rest.longest(columns, change)))
+            return pose + far * direction, far
+
+        if moving:
+            near, far = descended(-0.5 * self._system.solve(gradient, "memory"))
+            if far >= _CUT * length:
+                return near
+        return descended(self._newton_direction(pose, columns, gradient))[0]
+
+    def _misfit(self, off: Complexes) -> float:
+        return self._pin_weight**2 * float(np.vdot(off, off).real)
+
+    def _newton_direction(self, pose: Complexes, columns: Complexes, gradient: Complexes) -> Complexes:
+        """The direction of Newton's method for a gradient (n,) of energy and misfit at a pose (n,)."""
+        if not gradient.any():
+            return gradient
+        if self._newton is None:
+            self._newton = SparseCholesky(self._system.pattern)
+        for convex in (False, True):  # far from a minimum the Hessian has negative eigenvalues
+            nonzeros = self._system.pattern.summed(self._rest.half_hessian(columns, convex))
+            self._system.add_pins(nonzeros, to_points(pose))
+            try:
+                self._newton.factorize(nonzeros)
+                break
+            except SolverError:
+                if convex:
+                    raise
+        return -0.5 * to_complex(self._newton.solve(gradient.view(np.float64)).reshape(-1, 2))

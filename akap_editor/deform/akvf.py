@@ -6,11 +6,10 @@ from scipy.sparse import csr_array
 
 from ..geometry.checks import Complexes, Floats, Ints
 from ..geometry.mesh import MeshPoints, TriMesh
-from ..geometry.operators import element_pattern, killing_elements, to_complex, to_points
+from ..geometry.operators import KillingMatrix, element_pattern, to_complex, to_points
 from .cholesky import SymmetricPattern
 from .reuse import ReusedCholesky
 
-_TOLERANCE = 3e-7  # share of √area: how near in the energy norm a field comes to the exact one, if not exact
 _SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
 
 
@@ -25,33 +24,39 @@ class KillingSystem:
     has none, could turn freely and make (7) singular: the vertices of one of its faces are then held to the
     mean velocity of its pins, or to zero, which moves it without turning.
 
-    With ``exact`` both matrices are factorized at every pose; otherwise those of the rest pose serve for all
-    (see `ReusedCholesky`) and fields are near the exact ones: for velocities of a substep, by less than
-    a hundredth of a pixel on a drawing of 1000 × 1000. With ``hard`` U° has exactly the pins' velocities, and
-    (7) is always factorized, since many solves go into one field.
+    With ``exact`` both matrices are factorized at every pose; otherwise now and then (see `ReusedCholesky`),
+    and fields are as near as ``tolerance`` in the energy norm, in pixels. With ``hard`` U° has exactly the
+    pins' velocities, and (7) is always factorized, since many solves go into one field.
     """
 
-    def __init__(self, mesh: TriMesh, pin_weight: float, exact: bool = True, hard: bool = False) -> None:
+    def __init__(
+        self,
+        mesh: TriMesh,
+        pin_weight: float,
+        exact: bool = True,
+        hard: bool = False,
+        tolerance: float = 0.0,
+    ) -> None:
         self._mesh = mesh
         self._hard = hard
         length = float(np.sqrt(mesh.rest_areas.sum()))
         self._weight = pin_weight**2
         size = 2 * len(mesh.vertices)
-        rows, columns = element_pattern(mesh.faces)
-        self._pattern = SymmetricPattern(rows, columns, size)
-        self._pinned = ReusedCholesky(self._pattern, exact or hard, _TOLERANCE * length)
+        self._tolerance = tolerance
+        self.pattern = SymmetricPattern(*element_pattern(mesh.faces), size)
+        self._killing = KillingMatrix(mesh)
+        self._pinned = ReusedCholesky(self.pattern, exact or hard)
         on_boundary = np.zeros(len(mesh.vertices), dtype=bool)
         on_boundary[mesh.boundary_vertices] = True
         self._interior = np.flatnonzero(~on_boundary).astype(np.int32)
         self._inner: ReusedCholesky | None = None
         if len(self._interior):
             kept = (2 * self._interior[:, None] + np.arange(2)).ravel()
-            inner, self._inner_nonzeros = self._pattern.restricted(kept)
-            self._inner = ReusedCholesky(inner, exact, _TOLERANCE * length)
+            inner, self._inner_nonzeros = self.pattern.restricted(kept)
+            self._inner = ReusedCholesky(inner, exact)
         self._first_faces = np.unique(mesh.component[mesh.faces[:, 0]], return_index=True)[1]
         self._same_place = _SAME_PLACE * length
         self._frames = _VertexFrames(mesh)
-        self._rest = self._pattern.summed(killing_elements(mesh.vertices, mesh.faces))
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
     def set_pins(self, points: MeshPoints) -> None:
@@ -96,32 +101,39 @@ class KillingSystem:
         interior_vertex = np.zeros(len(mesh.vertices), dtype=bool)
         interior_vertex[self._interior] = True
         self._needs_interior = bool((interior_vertex[self._corners] & (weights != 0)).any())
-        self._pinned_rest = self._rest.copy()
-        np.add.at(self._pinned_rest, self._pin_slots, self._pin_entries)
         self._pinned.forget()
 
     def prepare(self, positions: Floats) -> None:
         """Prepare both systems at the pose ``positions`` (n, 2). Raises SolverError."""
+        self._anchor(positions)
+        nonzeros = self._killing.nonzeros(positions)
+        frames = self._frames(to_complex(positions))
+        if self._inner is not None and self._needs_interior:
+            self._inner.prepare(nonzeros[self._inner_nonzeros], frames[self._interior])
+        np.add.at(nonzeros, self._pin_slots, self._pin_entries)
+        self._pinned.prepare(nonzeros, frames)
+
+    def add_pins(self, nonzeros: Floats, positions: Floats) -> None:
+        """Add λ² WᵀW, with the anchors that a pose (n, 2) needs, to the nonzeros of a matrix."""
+        self._anchor(positions)
+        np.add.at(nonzeros, self._pin_slots, self._pin_entries)
+
+    def _anchor(self, positions: Floats) -> None:
         free = self._free_components(positions)
         if (free != self._free).any():
             self._constrain(free)
-        nonzeros = self._pattern.summed(killing_elements(positions, self._mesh.faces))
-        frames = self._frames(to_complex(positions))
-        if self._inner is not None and self._needs_interior:
-            inner = self._inner_nonzeros
-            self._inner.prepare(nonzeros[inner], frames[self._interior], self._rest[inner])
-        np.add.at(nonzeros, self._pin_slots, self._pin_entries)
-        self._pinned.prepare(nonzeros, frames, self._pinned_rest)
 
-    def precondition(self, gradient: Complexes) -> Complexes:
-        """(K + λ² WᵀW)⁻¹ applied to a vector (n,) at the pose last prepared, nearly unless ``exact``."""
-        return self._pinned.precondition(gradient)
+    def solve(self, right: Complexes, like: str) -> Complexes:
+        """(K + λ² WᵀW)⁻¹ applied to a vector (n,), at the pose last prepared; see `ReusedCholesky.solve`."""
+        return self._pinned.solve(right, self._tolerance, like)
 
     def pull(self, offsets: Complexes) -> Complexes:
         """λ² Wᵀ applied to offsets (k,) of the pins: half the gradient of λ² ‖W p − targets‖², (n,)."""
         return self._spread(np.append(self._weight * offsets, np.zeros(len(self._weights) - len(offsets))))
 
-    def field(self, velocities: Complexes, dirichlet: bool = True) -> tuple[Complexes, Complexes]:
+    def field(
+        self, velocities: Complexes, dirichlet: bool = True, like: str = ""
+    ) -> tuple[Complexes, Complexes]:
         """U_opt of (8) and U° of (7), (n,) each, for pin velocities (k,), at the pose last prepared.
 
         Hard pins are the limit of (7) for λ → ∞: U° = A⁻¹ Wᵀ (W A⁻¹ Wᵀ)⁻¹ ũ, one solve for each pin.
@@ -130,12 +142,12 @@ class KillingSystem:
         """
         wanted = self._constraints(velocities)
         pull = self._reactions(wanted) if self._hard else self._weight * wanted
-        smooth = self._pinned.solve(self._spread(pull))
+        smooth = self._pinned.solve(self._spread(pull), self._tolerance, like)
         if not dirichlet or self._inner is None or not self._needs_interior:
             return smooth, smooth
         force = self._spread(self._weight * self._at_constraints(smooth)) - self._pinned.multiply(smooth)
         optimal = smooth.copy()
-        optimal[self._interior] += self._inner.solve(force[self._interior])
+        optimal[self._interior] += self._inner.solve(force[self._interior], self._tolerance, like)
         return optimal, smooth
 
     def energy(self, field: Complexes) -> float:
@@ -159,7 +171,9 @@ class KillingSystem:
         count = len(wanted)
         compliance = np.empty((2 * count, 2 * count))
         for column, unit in enumerate(np.eye(2 * count)):
-            answer = self._at_constraints(self._pinned.solve(self._spread(to_complex(unit.reshape(-1, 2)))))
+            answer = self._at_constraints(
+                self._pinned.solve(self._spread(to_complex(unit.reshape(-1, 2))), 0.0)
+            )
             compliance[:, column] = to_points(answer).ravel()
         reactions = np.linalg.lstsq(compliance, to_points(wanted).ravel(), rcond=1e-12)[0]
         return to_complex(np.asarray(reactions, dtype=np.float64).reshape(-1, 2))
@@ -172,24 +186,27 @@ class KillingSystem:
         return result
 
     def _slots(self, rows: Ints, columns: Ints) -> Ints:
-        keys = self._pattern.columns * self._pattern.size + self._pattern.rows
-        return np.searchsorted(keys, columns.astype(np.int64) * self._pattern.size + rows)
+        keys = self.pattern.columns * self.pattern.size + self.pattern.rows
+        return np.searchsorted(keys, columns.astype(np.int64) * self.pattern.size + rows)
 
 
 class _VertexFrames:
     """How far each vertex is turned from rest: the rotation that fits its edges best."""
 
     def __init__(self, mesh: TriMesh) -> None:
-        self._start, self._end = mesh.edges.T
+        start, end = mesh.edges.T
         rest = to_complex(mesh.vertices)
-        self._rest = (rest[self._start] - rest[self._end]).conj()
-        e, n = len(self._start), len(rest)
-        ends, edges = mesh.edges.T.ravel(), np.tile(np.arange(e), 2)
-        self._sum = csr_array((np.ones(2 * e), (ends, edges)), shape=(n, e))
+        edges = (rest[start] - rest[end]).conj()
+        n = len(rest)
+        ends, others = mesh.edges.T.ravel(), mesh.edges.T[::-1].ravel()
+        # Σ over the edges of vertex i of (pᵢ − pⱼ) conj(rᵢ − rⱼ)
+        entries, rows = np.concatenate([edges, -edges]), np.concatenate([ends, ends])
+        self._sums = csr_array(
+            (np.concatenate([entries, -entries]), (rows, np.concatenate([ends, others]))), shape=(n, n)
+        )
 
     def __call__(self, positions: Complexes) -> Complexes:
         """Complex numbers of unit size, (n,), for a pose (n,)."""
-        turns = (positions[self._start] - positions[self._end]) * self._rest
-        sums = to_complex(self._sum @ to_points(turns))
+        sums = self._sums @ positions
         sizes = np.abs(sums)
         return np.where(sizes > 0, sums / np.where(sizes > 0, sizes, 1.0), 1.0)

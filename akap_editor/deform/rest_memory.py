@@ -1,7 +1,7 @@
 """Descent towards the rest shape, so that stretching does not accumulate and no face inverts.
 
-The energy is the symmetric Dirichlet energy of Smith and Schaefer 2015; the search direction comes from the
-Killing operator as preconditioner (Claici, Bessmeltsev, Schaefer and Solomon 2017).
+The energy is the symmetric Dirichlet energy of Smith and Schaefer 2015; its Hessian comes from what is known
+of its eigenvectors (Smith, De Goes and Kim 2019, section 4).
 """
 
 from collections.abc import Callable
@@ -11,12 +11,11 @@ from scipy.sparse import vstack
 
 from ..geometry.checks import Complexes, Floats
 from ..geometry.mesh import TriMesh
-from ..geometry.operators import gradient_matrices, to_complex, to_points
+from ..geometry.operators import element_entries, gradient_matrices, hat_gradients
 
 _SUFFICIENT = 1e-4  # Armijo's share of the decrease that the slope promises
 _TRIES = 12
-_ITERATIONS = 12
-_SOLVED = 0.01  # share of the gradient that Newton's direction may leave
+_LEAST_STRETCH = 0.03  # singular values below are taken to be this: Hessians beyond cannot be factorized
 _NEAR = 0.8  # a try within this share of the parabola's minimum is near enough
 
 
@@ -24,109 +23,109 @@ class SymmetricDirichlet:
     """Σ A_f (‖J‖² + ‖J⁻¹‖²) over the faces, J the Jacobian of the map from rest; infinite at flips."""
 
     def __init__(self, mesh: TriMesh) -> None:
-        self._gradient = vstack(gradient_matrices(mesh), format="csr")
+        # Of complex numbers, as the points are: a mixed product would convert them every time.
+        self._gradient = vstack(gradient_matrices(mesh), format="csr").astype(np.complex128)
         self._divergence = self._gradient.T.tocsr()
-        self._areas = mesh.rest_areas
+        dx, dy, self._areas = hat_gradients(mesh.vertices, mesh.faces)
+        self._hats: Complexes = np.asarray(dx.T + 1j * dy.T, dtype=np.complex128, order="C")
 
-    def _terms(self, positions: Complexes) -> tuple[Complexes, Complexes, Floats, Floats]:
-        """The columns of J as complex numbers, det J = Im(conj(jx) jy) and ‖J‖², (m,) each."""
-        columns = to_complex(self._gradient @ to_points(positions))
+    def columns(self, positions: Complexes) -> Complexes:
+        """The columns of J, those of x before those of y, (2m,); linear in the positions (n,)."""
+        return np.asarray(self._gradient @ positions, dtype=np.complex128)
+
+    def _terms(self, columns: Complexes) -> tuple[Complexes, Complexes, Floats, Floats]:
+        """The columns of J apart, det J = Im(conj(jx) jy) and ‖J‖², (m,) each."""
         jx, jy = columns[: len(self._areas)], columns[len(self._areas) :]
-        determinant = jx.real * jy.imag - jx.imag * jy.real
-        return jx, jy, determinant, jx.real**2 + jx.imag**2 + jy.real**2 + jy.imag**2
+        return jx, jy, _cross(jx, jy), jx.real**2 + jx.imag**2 + jy.real**2 + jy.imag**2
 
-    def value(self, positions: Complexes) -> float:
-        """The energy of a pose (n,), in square pixels; 4 Σ A_f at rest."""
-        _, _, determinant, squares = self._terms(positions)
+    def value(self, columns: Complexes) -> float:
+        """The energy, in square pixels, of a pose whose J has these columns (2m,); 4 Σ A_f at rest."""
+        _, _, determinant, squares = self._terms(columns)
         if determinant.min() <= 0:
             return np.inf
         return float(self._areas @ (squares + squares / determinant**2))
 
-    def gradient(self, positions: Complexes) -> Complexes:
-        """Derivative with respect to the vertices, (n,)."""
-        jx, jy, determinant, squares = self._terms(positions)
+    def gradient(self, columns: Complexes) -> Complexes:
+        """The derivative of the energy with respect to the vertices, (n,)."""
+        jx, jy, determinant, squares = self._terms(columns)
         inverse = 1.0 / determinant
         along = 2 * self._areas * (1 + inverse**2)
-        across = -2j * self._areas * squares * inverse**3
-        derivatives = np.concatenate([along * jx - across * jy, along * jy + across * jx])
-        return to_complex(self._divergence @ to_points(derivatives))
+        across = 2j * self._areas * squares * inverse**3
+        derivatives = np.concatenate([along * jx + across * jy, along * jy - across * jx])
+        return np.asarray(self._divergence @ derivatives, dtype=np.complex128)
 
-    def curvature(self, positions: Complexes) -> Callable[[Complexes], Complexes]:
-        """The product of the Hessian at a pose (n,) with a change of the vertices (n,)."""
-        jx, jy, determinant, squares = self._terms(positions)
-        inverse = 1.0 / determinant
-        along = 2 * self._areas * (1 + inverse**2)
-        across = 2 * self._areas * squares * inverse**3
+    def longest(self, columns: Complexes, change: Complexes) -> float:
+        """How many times a change of the columns (2m,) fits before a face flips (Smith, Schaefer 2015).
 
-        def product(change: Complexes) -> Complexes:
-            columns = to_complex(self._gradient @ to_points(change))
-            hx, hy = columns[: len(jx)], columns[len(jx) :]
-            d = (hx.conj() * jy + jx.conj() * hy).imag
-            s = 2 * (jx.conj() * hx + jy.conj() * hy).real
-            more_along = -4 * self._areas * inverse**3 * d
-            more_across = 2 * self._areas * inverse**3 * (s - 3 * squares * inverse * d)
-            derivatives = np.concatenate(
-                [
-                    more_along * jx + along * hx + 1j * (more_across * jy + across * hy),
-                    more_along * jy + along * hy - 1j * (more_across * jx + across * hx),
-                ]
-            )
-            return to_complex(self._divergence @ to_points(derivatives))
+        det(J + t D) is a quadratic polynomial in t; this is the least of its positive roots.
+        """
+        jx, jy, start, _ = self._terms(columns)
+        dx, dy, square, _ = self._terms(change)
+        slope = _cross(dx, jy) + _cross(jx, dy)
+        # The root nearest to zero as 2 c / (−b ± √(b² − 4ac)), which needs no division by a small a.
+        inside = slope**2 - 4 * square * start
+        below = np.sqrt(np.maximum(inside, 0.0)) - slope
+        flips = (inside > 0) & (below > 0)
+        return float((2 * start[flips] / below[flips]).min(initial=np.inf))
 
-        return product
+    def half_hessian(self, columns: Complexes, convex: bool) -> Floats:
+        """Entries (21 m,) of half the Hessian, in the order of `element_pattern`; near an isometry that is K.
 
-
-def newton_direction(
-    gradient: Complexes,
-    curvature: Callable[[Complexes], Complexes],
-    precondition: Callable[[Complexes], Complexes],
-) -> Complexes:
-    """A descent direction: Newton's, by conjugate gradients that stop where the energy is not convex."""
-    solution = np.zeros_like(gradient)
-    residual = -gradient
-    step = direction = precondition(residual)
-    first = square = float(np.vdot(residual, step).real)
-    for _ in range(_ITERATIONS):
-        image = curvature(direction)
-        bend = float(np.vdot(direction, image).real)
-        if bend <= 0:
-            return solution if solution.any() else direction
-        length = square / bend
-        solution = solution + length * direction
-        residual = residual - length * image
-        step = precondition(residual)
-        previous, square = square, float(np.vdot(residual, step).real)
-        if square <= _SOLVED**2 * first:
-            break
-        direction = step + (square / previous) * direction
-    return solution
+        With σ₁ ≥ σ₂ the singular values of J, a change of J has four eigenvectors: two scalings, with
+        2 + 6 / σᵢ⁴, a flip, and a twist, whose eigenvalue is negative in compressed faces. With ``convex`` it
+        is then taken to be zero.
+        """
+        jx, jy, _, _ = self._terms(columns)
+        turning, mirroring = 0.5 * (jx - 1j * jy), 0.5 * (jx + 1j * jy)
+        size, other = np.abs(turning), np.abs(mirroring)
+        first, second = (np.maximum(values, _LEAST_STRETCH) for values in (size + other, size - other))
+        forth = turning.conj() / size
+        back = np.where(other > 0, mirroring.conj(), 1.0) / np.where(other > 0, other, 1.0)
+        a_b = 0.5 * self._hats.conj() * forth  # the change of a corner times this: scaling + i twist
+        c_d = 0.5 * self._hats * back  # anisotropic scaling + i flip
+        scale, twist = _rows(a_b)
+        stretch, flip = _rows(c_d)
+        product = first * second
+        twisting = 2.0 - 2.0 * (first**2 - product + second**2) / product**3
+        flipping = 2.0 + 2.0 * (first**2 + product + second**2) / product**3
+        weights = (
+            2 + 6 / first**4,
+            2 + 6 / second**4,
+            2 * (np.maximum(twisting, 0.0) if convex else twisting),
+            2 * flipping,
+        )
+        rows = scale + stretch, scale - stretch, twist, flip
+        return element_entries(np.array(rows), 0.5 * self._areas * np.array(weights))
 
 
-def descend(
-    positions: Complexes,
-    value: Callable[[Complexes], float],
-    gradient: Complexes,
-    direction: Complexes,
-    length: float,
-) -> Complexes:
-    """One step from ``positions`` along a descent direction, at most ``length`` times its size.
+def _cross(a: Complexes, b: Complexes) -> Floats:
+    return np.asarray(a.real * b.imag - a.imag * b.real, dtype=np.float64)
 
-    A try that goes past the minimum is followed by one at the minimum of the parabola through what is known,
-    since a pose near its minimum would otherwise swing about it. Returns ``positions`` where no try lowers
-    the energy enough, so that it never rises.
+
+def _rows(factors: Complexes) -> tuple[Floats, Floats]:
+    """Real and imaginary part of Σ factor · (x + iy) over three corners, as rows (6, m) over x0 y0 x1 ..."""
+    real, imaginary = np.empty((2, 6, factors.shape[1]))
+    real[::2], real[1::2] = factors.real, -factors.imag
+    imaginary[::2], imaginary[1::2] = factors.imag, factors.real
+    return real, imaginary
+
+
+def descend(value: Callable[[float], float], before: float, slope: float, length: float) -> float:
+    """How far to go along a descent direction, at most ``length`` times its size.
+
+    value: by the distance; before, slope: at the start. A try that goes past the minimum is followed by one
+    at the minimum of the parabola through what is known, since a pose near its minimum would otherwise swing
+    about it. 0 where no try lowers the value enough, so that it never rises.
     """
-    slope = float((gradient.conj() * direction).real.sum())
     if slope >= 0:
-        return positions
-    before = value(positions)
+        return 0.0
     for _ in range(_TRIES):
-        candidate = positions + length * direction
-        after = value(candidate)
+        after = value(length)
         curvature = after - before - length * slope
         shorter = (
             -0.5 * slope * length**2 / curvature if np.isfinite(after) and curvature > 0 else 0.5 * length
         )
         if after <= before + _SUFFICIENT * length * slope and shorter > _NEAR * length:
-            return candidate
+            return length
         length = max(min(shorter, 0.5 * length if not np.isfinite(after) else length), 0.1 * length)
-    return positions
+    return 0.0

@@ -1,8 +1,8 @@
-"""One factorization for all poses: conjugate gradients, preconditioned by the factors of the rest pose.
+"""Few factorizations for many poses: conjugate gradients, preconditioned by factors of an earlier pose.
 
-A deformation is nearly isometric, so the matrix at a pose is nearly that of the rest pose turned at each
-vertex by its rotation R since then: R A₀⁻¹ Rᵀ is an excellent preconditioner. It depends on the pose alone,
-and not on the way there, so that what is computed with it does not either.
+A deformation is nearly isometric, so the matrix at a pose is nearly that of an earlier pose turned at each
+vertex by its rotation R since then: R A₀⁻¹ Rᵀ is an excellent preconditioner. Which pose that was changes the
+cost of a solution, and the solution by no more than its tolerance.
 """
 
 import numpy as np
@@ -11,91 +11,104 @@ from scipy.sparse import csc_array
 from ..geometry.checks import Complexes, Floats
 from .cholesky import SparseCholesky, SymmetricPattern
 
-_MOST_ITERATIONS = 80
-_SIMPLICIAL_BELOW = 10_000  # unknowns: solves are what counts there, factorizations are few and fast enough
+_MOST_ITERATIONS = 60
+_KEPT = 2  # earlier solutions from which the next one begins
+# A factorization costs about as much as so many iterations; when they were spent beyond the two that each
+# solution takes with new factors, it is time for these.
+_AFFORDED = 30
 
 
 class ReusedCholesky:
     """Solves A x = b for a matrix that changes a little from pose to pose.
 
     Unknowns are complex, one for each vertex; the matrix is real, with interleaved x and y. With ``exact``
-    every matrix is factorized. Otherwise that of the rest pose is, and solutions are as near as ``tolerance``
-    in the energy norm; where iterations do not come that near, the matrix at hand is factorized after all.
+    every matrix is factorized. Otherwise one is now and then, and solutions are as near as asked for; where
+    iterations do not come that near, the matrix at hand is factorized after all.
     """
 
-    def __init__(self, pattern: SymmetricPattern, exact: bool, tolerance: float) -> None:
+    def __init__(self, pattern: SymmetricPattern, exact: bool) -> None:
         size = pattern.size
-        self._cholesky = SparseCholesky(pattern, supernodal=exact or size > _SIMPLICIAL_BELOW)
+        self._cholesky = SparseCholesky(pattern, supernodal=exact)
         starts = np.searchsorted(pattern.columns, np.arange(size + 1))
-        self._lower = csc_array((np.zeros(pattern.count), pattern.rows, starts), shape=(size, size))
+        rows = pattern.rows.astype(np.int32)
+        self._lower = csc_array((np.zeros(pattern.count), rows, starts.astype(np.int32)), shape=(size, size))
         self._upper = self._lower.T
         self._diagonal_slots = np.flatnonzero(pattern.rows == pattern.columns)
-        self._exact, self._tolerance = exact, tolerance
-        self._turn: Complexes = np.ones(size // 2, dtype=np.complex128)
-        self._last = np.zeros_like(self._turn)
-        self._at_rest = self._fresh = False
+        self._exact = exact
+        self._frame = self._turn = np.ones(size // 2, dtype=np.complex128)
+        self._then = self._frame  # the frame of the factorized pose
+        self._earlier: dict[str, list[Complexes]] = {}
+        self._usable = self._fresh = False
+        self._spent = 0
         self.iterations = self.factorizations = 0
 
     def forget(self) -> None:
-        """The matrix of the rest pose has changed."""
-        self._at_rest = False
+        """What was factorized is no longer near the matrices to come."""
+        self._usable = False
 
-    def prepare(self, nonzeros: Floats, frame: Complexes, rest: Floats) -> None:
-        """Set the matrix by its nonzeros at the pose and at rest. Raises SolverError.
+    def prepare(self, nonzeros: Floats, frame: Complexes) -> None:
+        """Set the matrix by its nonzeros. Raises SolverError.
 
         frame: (n,) of unit size, how each vertex is turned from rest.
         """
-        self._lower.data = self._upper.data = nonzeros
-        self._diagonal = nonzeros[self._diagonal_slots]
-        if self._exact:
+        self._nonzeros = nonzeros
+        halved = nonzeros.copy()  # half of the diagonal for each triangle
+        halved[self._diagonal_slots] *= 0.5
+        self._lower.data = self._upper.data = halved
+        self._frame, self._fresh = frame, False
+        if self._exact or not self._usable or self._spent >= _AFFORDED:
             self._factorize()
-            return
-        if not self._at_rest:
-            self._cholesky.factorize(rest)
-            self.factorizations += 1
-            self._at_rest = True
-        self._fresh, self._turn = False, frame
+        else:
+            self._turn = frame * self._then.conj()
 
-    def precondition(self, right: Complexes) -> Complexes:
-        """An approximation of A⁻¹ b by one solve; exact where the matrix was just factorized."""
-        turned = np.ascontiguousarray(self._turn.conj() * right)
-        return self._turn * self._cholesky.solve(turned.view(np.float64)).view(np.complex128)
+    def solve(self, right: Complexes, tolerance: float, like: str = "") -> Complexes:
+        """A⁻¹ b, as near as ``tolerance`` in the energy norm, or exact where the matrix was just factorized.
 
-    def solve(self, right: Complexes) -> Complexes:
-        """A⁻¹ b; where the factors are those of the rest pose, iterated from the last solution."""
-        if not self._fresh:
-            solution = self._iterate(right)
-            if solution is None:  # too far from an isometry
+        like: a name for solutions that are alike from pose to pose: each begins with the last ones.
+        """
+        solution = None if self._fresh else self._iterate(right, tolerance, self._earlier.get(like, []))
+        if solution is None:
+            if not self._fresh:  # too far from an isometry
                 self._factorize()
-        if self._fresh:
-            solution = self.precondition(right)
-        assert solution is not None
-        self._last = solution
+            solution = self._precondition(right)
+        if like and not self._exact:
+            unturned = self._frame.conj() * solution
+            self._earlier[like] = [unturned, *self._earlier.get(like, [])][:_KEPT]
         return solution
 
     def energy(self, values: Complexes) -> float:
         """xᵀ A x with the matrix last set."""
         return _dot(values, self.multiply(values))
 
+    def multiply(self, values: Complexes) -> Complexes:
+        """A x with the matrix last set."""
+        flat = values.view(np.float64)
+        product = self._lower @ flat
+        product += self._upper @ flat
+        return product.view(np.complex128)
+
     def _factorize(self) -> None:
-        self._at_rest = False
-        self._cholesky.factorize(self._lower.data)
-        self._fresh, self._turn = True, np.ones_like(self._turn)
+        self._usable = False
+        self._cholesky.factorize(self._nonzeros)
+        self._usable = self._fresh = True
+        self._then, self._turn = self._frame, np.ones_like(self._frame)
+        self._spent = 0
         self.factorizations += 1
 
-    def _iterate(self, right: Complexes) -> Complexes | None:
-        image = self.multiply(self._last)  # of which the best multiple is where to start
-        size = _dot(self._last, image)
-        share = _dot(self._last, right) / size if size > 0 else 0.0
-        solution, residual = share * self._last, right - share * image
+    def _precondition(self, right: Complexes) -> Complexes:
+        turned = self._turn.conj() * right
+        return self._turn * self._cholesky.solve(turned.view(np.float64)).view(np.complex128)
+
+    def _iterate(self, right: Complexes, tolerance: float, earlier: list[Complexes]) -> Complexes | None:
+        solution, residual = self._best_of(right, earlier)
         direction = np.zeros_like(residual)
-        previous, count = np.inf, 0
-        while count < _MOST_ITERATIONS:
-            count += 1
-            step = self.precondition(residual)
+        previous = np.inf
+        for count in range(_MOST_ITERATIONS):
+            step = self._precondition(residual)
             square = _dot(residual, step)
-            if square <= self._tolerance**2:
-                self.iterations += count
+            if square <= tolerance**2:
+                self.iterations += count + 1
+                self._spent += max(count - 1, 0)
                 return solution + step
             direction = step + (square / previous) * direction
             image = self.multiply(direction)
@@ -105,13 +118,23 @@ class ReusedCholesky:
             previous = square
         return None
 
-    def multiply(self, values: Complexes) -> Complexes:
-        """A x with the matrix last set."""
-        flat = values.view(np.float64)
-        product = self._lower @ flat
-        product += self._upper @ flat
-        product -= self._diagonal * flat
-        return product.view(np.complex128)
+    def _best_of(self, right: Complexes, earlier: list[Complexes]) -> tuple[Complexes, Complexes]:
+        """The combination of earlier solutions, turned with the drawing, with the least error; its residual.
+
+        (Fischer 1998, "Projection techniques for iterative solution of Ax = b with successive right-hand
+        sides".)
+        """
+        if not earlier:
+            return np.zeros_like(right), right
+        basis = [self._frame * values for values in earlier]
+        images = [self.multiply(values) for values in basis]
+        products = np.array([[_dot(a, b) for b in images] for a in basis])
+        shares = np.linalg.lstsq(products, np.array([_dot(a, right) for a in basis]), rcond=1e-12)[0]
+        solution, residual = np.zeros_like(right), right
+        for share, values, image in zip(shares.tolist(), basis, images, strict=True):
+            solution = solution + share * values
+            residual = residual - share * image
+        return solution, residual
 
 
 def _dot(a: Complexes, b: Complexes) -> float:

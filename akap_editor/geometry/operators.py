@@ -68,35 +68,100 @@ _LOWER_ROWS, _LOWER_COLUMNS = np.tril_indices(6)
 
 
 def element_pattern(faces: Ints) -> tuple[Ints, Ints]:
-    """Rows and columns, (21 m,) each, of the entries that `killing_elements` returns, as 2n × 2n indices.
+    """Rows and columns, (21 m,) each, of all entries of the faces' matrices, as 2n × 2n indices.
 
-    Degrees of freedom are interleaved: 2 i and 2 i + 1 are x and y of vertex i. An entry may lie above the
-    diagonal; its mirror image is the one meant.
+    First entry of all faces, then the second, ... Degrees of freedom are interleaved: 2 i and 2 i + 1 are x
+    and y of vertex i. An entry may lie above the diagonal; its mirror image is the one meant.
     """
     dofs = (2 * faces.T[:, None, :] + np.arange(2)[:, None]).reshape(6, -1)
     return dofs[_LOWER_ROWS].ravel(), dofs[_LOWER_COLUMNS].ravel()
 
 
-def killing_elements(positions: Floats, faces: Ints) -> Floats:
-    """Entries (21 m,) of K = Pᵀ P, the first of all faces, then the second, ... (paper, eqs. 5-7, App. A).
+def element_entries(rows: Floats, weights: Floats) -> Floats:
+    """Entries (21 m,) of the faces' matrices Σ w r rᵀ, in the order of the pattern.
+
+    rows: (q, 6, m), over the degrees of freedom of each face; weights: (q, m).
+    """
+    entries = np.zeros((21, rows.shape[2]))
+    weighted = weights[:, None] * rows
+    for entry, i, j in zip(entries, _LOWER_ROWS.tolist(), _LOWER_COLUMNS.tolist(), strict=True):
+        for row, other in zip(rows, weighted, strict=True):
+            entry += row[i] * other[j]
+    return entries.ravel()
+
+
+class KillingMatrix:
+    """K = Pᵀ P of a mesh at any pose (paper, eqs. 5-7, App. A); symmetric, 2n × 2n, x and y interleaved.
 
     Rows of P per face, each weighted by the root of its area: 2 ∂x U1, √2 (∂y U1 + ∂x U2), 2 ∂y U2. Unlike in
     the printed eq. 6, the gradient is split into ∂x and ∂y: the whole stacked G would penalize rotations.
     Written out, the entry of component a at corner i and b at corner j is 2 A (∂b hᵢ ∂a hⱼ + δ_ab ∇hᵢ·∇hⱼ).
+    Translations have no energy, so that the blocks of a row of blocks sum to zero: only those of the edges
+    are computed.
+
+    rows, columns: (z,) where the nonzeros of the lower triangle are, column by column.
     """
-    x, y = positions[:, 0][faces.T], positions[:, 1][faces.T]
-    turned_x, turned_y = y[_NEXT] - y[_AFTER], x[_AFTER] - x[_NEXT]
-    root = np.sqrt(np.abs(turned_y[2] * turned_x[1] - turned_y[1] * turned_x[2]))  # of twice the area
-    gradient = turned_x / root, turned_y / root
-    dots = {
-        (i, j): gradient[0][i] * gradient[0][j] + gradient[1][i] * gradient[1][j]
-        for i in range(3)
-        for j in range(i + 1)
-    }
-    entries = np.empty((21, len(faces)))
-    for entry, row, column in zip(entries, _LOWER_ROWS.tolist(), _LOWER_COLUMNS.tolist(), strict=True):
-        (i, a), (j, b) = divmod(row, 2), divmod(column, 2)
-        np.multiply(gradient[b][i], gradient[a][j], out=entry)
-        if a == b:
-            entry += dots[i, j]
-    return entries.ravel()
+
+    def __init__(self, mesh: TriMesh) -> None:
+        n, e, m = len(mesh.vertices), len(mesh.edges), len(mesh.faces)
+        self._faces = np.ascontiguousarray(mesh.faces.T).astype(np.intp)
+        low, high = mesh.edges.T.astype(np.int64)
+        vertices = np.arange(n)
+        # By edge the four entries of the block of its higher and lower vertex, by vertex those of its own.
+        rows = np.concatenate([2 * high + a for a, _ in _BLOCK] + [2 * vertices + a for a, _ in _DIAGONAL])
+        columns = np.concatenate([2 * low + b for _, b in _BLOCK] + [2 * vertices + b for _, b in _DIAGONAL])
+        order = np.argsort(columns * 2 * n + rows)
+        self.rows, self.columns = rows[order], columns[order]
+        self._slots = np.argsort(order)
+        # What the faces on both sides of an edge add; an edge of the boundary adds a zero behind the last.
+        start, end = self._faces, self._faces[_NEXT]
+        half_edges = np.searchsorted(
+            low * n + high, (np.minimum(start, end) * n + np.maximum(start, end)).ravel()
+        )
+        by_edge = np.argsort(half_edges, kind="stable")
+        first, second = (
+            np.searchsorted(half_edges[by_edge], np.arange(e), side) for side in ("left", "right")
+        )
+        sides = by_edge[first], by_edge[second - 1]
+        is_inner = second - first > 1
+        downwards = (start > end).ravel()
+        entry = np.arange(4)[:, None]
+        self._sides = []
+        for side in sides:  # the block is transposed where a face goes along the edge upwards
+            transposed = np.array([0, 2, 1, 3])[:, None]
+            self._sides.append((np.where(downwards[side], entry, transposed) * 3 * m + side).ravel())
+        self._sides[1] = np.where(np.tile(is_inner, 4), self._sides[1], 12 * m)
+        # Translations have no energy: a vertex's block is minus the sum of those of its edges.
+        at, ones = np.arange(e), np.ones(2 * e)
+        parts = [(0, low, 0), (0, high, 0), (1, low, 1), (1, high, 2), (2, low, 3), (2, high, 3)]
+        summed = np.concatenate([k * n + ends for k, ends, _ in parts]).astype(np.int32)
+        of = np.concatenate([block * e + at for *_, block in parts]).astype(np.int32)
+        self._to_vertices = csr_array((-np.tile(ones, 3), (summed, of)), shape=(3 * n, 4 * e))
+
+    def nonzeros(self, positions: Floats) -> Floats:
+        """The nonzeros (z,) at a pose (n, 2); not finite where a face has collapsed."""
+        x, y = positions[:, 0][self._faces], positions[:, 1][self._faces]
+        turned_x, turned_y = y[_NEXT] - y[_AFTER], x[_AFTER] - x[_NEXT]
+        root = np.sqrt(np.abs(turned_y[2] * turned_x[1] - turned_y[1] * turned_x[2]))  # of twice the area
+        turned_x /= root
+        turned_y /= root
+        # Entry (a, b) of the block of a half-edge's start and end: ∂b h_start ∂a h_end, and more where a = b.
+        next_x, next_y = turned_x[_NEXT], turned_y[_NEXT]
+        faces = np.zeros(12 * x.shape[1] + 1)
+        xx, yx, xy, yy = faces[:-1].reshape(4, *x.shape)
+        np.multiply(turned_x, next_x, out=xx)
+        np.multiply(turned_y, next_x, out=yx)
+        np.multiply(turned_x, next_y, out=xy)
+        np.multiply(turned_y, next_y, out=yy)
+        both = xx + yy
+        xx += both
+        yy += both
+        edges = faces.take(self._sides[0]) + faces.take(self._sides[1])
+        result = np.empty(len(self._slots))
+        result[self._slots[: len(edges)]] = edges
+        result[self._slots[len(edges) :]] = self._to_vertices @ edges
+        return result
+
+
+_BLOCK = ((0, 0), (0, 1), (1, 0), (1, 1))
+_DIAGONAL = ((0, 0), (1, 0), (1, 1))

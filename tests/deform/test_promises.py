@@ -316,7 +316,7 @@ def test_absurd_jump_flips_nothing_and_says_where_it_is_cut(mesh, shapes, memory
     assert results[0].report.blocked or results[0].report.pin_error < 1
 
 
-@pytest.mark.parametrize(("memory", "far"), [(0.0, 1.0), (1.0, 1.0)])
+@pytest.mark.parametrize(("memory", "far"), [(0.0, 1.0), (1.0, 1.0), (0.0, 3.0), (1.0, 3.0)])
 def test_going_back_frees_a_blocked_drag(mesh, shapes, memory, far):
     way = far * np.sqrt(mesh.rest_areas.sum()) * np.array([1.0, -0.06])
     results = pulled_away_and_back(mesh, shapes, memory, way, 80)

@@ -2,9 +2,25 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import coo_array
 
-from akap_editor.deform.rest_memory import SymmetricDirichlet, descend, newton_direction
-from akap_editor.geometry.operators import to_complex, to_points
+from akap_editor.deform.cholesky import SymmetricPattern
+from akap_editor.deform.rest_memory import SymmetricDirichlet, descend
+from akap_editor.geometry.mesh import signed_areas
+from akap_editor.geometry.operators import KillingMatrix, element_pattern, to_complex, to_points
+
+
+class Energy:
+    """The energy by positions of the vertices instead of columns of J."""
+
+    def __init__(self, mesh):
+        self.of = SymmetricDirichlet(mesh)
+
+    def value(self, pose):
+        return self.of.value(self.of.columns(pose))
+
+    def gradient(self, pose):
+        return self.of.gradient(self.of.columns(pose))
 
 
 def noisy(mesh, seed, size=0.03):
@@ -17,7 +33,7 @@ def noisy(mesh, seed, size=0.03):
 
 @pytest.mark.parametrize("turn", [0.0, 2.0])
 def test_value_is_four_areas_at_rest_and_under_rigid_motion(mesh, turn):
-    energy = SymmetricDirichlet(mesh)
+    energy = Energy(mesh)
     pose = np.exp(1j * turn) * to_complex(mesh.vertices) + 30 - 5j
     assert energy.value(pose) == pytest.approx(4 * mesh.rest_areas.sum(), rel=1e-12)
 
@@ -26,24 +42,24 @@ def test_value_is_four_areas_at_rest_and_under_rigid_motion(mesh, turn):
 def test_value_of_stretches(mesh, a, b):
     pose = to_complex(mesh.vertices * [a, b])
     density = a**2 + b**2 + a**-2 + b**-2
-    assert SymmetricDirichlet(mesh).value(pose) == pytest.approx(density * mesh.rest_areas.sum(), rel=1e-12)
+    assert Energy(mesh).value(pose) == pytest.approx(density * mesh.rest_areas.sum(), rel=1e-12)
 
 
 def test_rest_is_the_minimum(mesh):
-    energy = SymmetricDirichlet(mesh)
+    energy = Energy(mesh)
     assert np.abs(energy.gradient(to_complex(mesh.vertices))).max() < 1e-9
     for seed in range(5):
         assert energy.value(noisy(mesh, seed)) > 4 * mesh.rest_areas.sum()
 
 
 def test_flipped_or_collapsed_faces_are_infinitely_bad(mesh):
-    energy = SymmetricDirichlet(mesh)
+    energy = Energy(mesh)
     assert energy.value(to_complex(mesh.vertices * [-1, 1])) == np.inf
     assert energy.value(to_complex(mesh.vertices * [0, 1])) == np.inf
 
 
 def test_gradient_is_that_of_finite_differences(mesh):
-    energy = SymmetricDirichlet(mesh)
+    energy = Energy(mesh)
     pose = noisy(mesh, 1) * (1.2 - 0.4j)
     gradient = energy.gradient(pose)
     rng = np.random.default_rng(2)
@@ -54,80 +70,105 @@ def test_gradient_is_that_of_finite_differences(mesh):
         assert slope == pytest.approx((gradient.conj() * direction).real.sum(), rel=1e-5, abs=1e-4)
 
 
-def test_curvature_is_that_of_finite_differences(mesh):
+def hessian(mesh, pose, convex=False):
+    """Twice what `half_hessian` gives, as a matrix (2n, 2n)."""
+    pattern = SymmetricPattern(*element_pattern(mesh.faces), 2 * len(mesh.vertices))
     energy = SymmetricDirichlet(mesh)
-    pose = noisy(mesh, 1) * (1.2 - 0.4j)
-    curvature = energy.curvature(pose)
+    nonzeros = 2 * pattern.summed(energy.half_hessian(energy.columns(pose), convex))
+    lower = coo_array((nonzeros, (pattern.rows, pattern.columns)), shape=(pattern.size,) * 2).toarray()
+    return lower + np.tril(lower, -1).T
+
+
+# In faces that are larger than at rest the energy is convex anyway.
+@pytest.mark.parametrize(("size", "convex"), [(1.4, True), (1.4, False), (0.7, False)])
+def test_hessian_is_that_of_finite_differences(mesh, size, convex):
+    energy, pose = Energy(mesh), size * np.exp(0.5j) * noisy(mesh, 1)
+    matrix = hessian(mesh, pose, convex)
     rng = np.random.default_rng(3)
     for _ in range(3):
         change = to_complex(rng.normal(size=mesh.vertices.shape))
         step = 1e-5
-        difference = energy.gradient(pose + step * change) - energy.gradient(pose - step * change)
-        product = curvature(change)
-        assert np.abs(product - difference / (2 * step)).max() < 1e-5 * np.abs(product).max()
+        ahead, behind = (energy.gradient(pose + s * change) for s in (step, -step))
+        product = to_complex((matrix @ to_points(change).ravel()).reshape(-1, 2))
+        assert np.abs(product - (ahead - behind) / (2 * step)).max() < 1e-5 * np.abs(product).max()
 
 
-def real_product(matrix):
-    """The product with a real symmetric matrix, of complex numbers with interleaved x and y."""
-    return lambda values: to_complex((matrix @ to_points(values).ravel()).reshape(-1, 2))
+def test_convex_hessian_is_nowhere_negative(mesh):
+    squeezed = to_complex(to_points(noisy(mesh, 2)) * [0.3, 0.6])
+    for pose in (squeezed, 1j * squeezed, to_complex(mesh.vertices)):
+        spectrum = np.linalg.eigvalsh(hessian(mesh, pose, convex=True))
+        assert spectrum[0] > -1e-9 * spectrum[-1]
+    assert np.linalg.eigvalsh(hessian(mesh, squeezed))[0] < 0
 
 
-def test_newton_direction_solves_where_the_energy_is_convex():
-    rng = np.random.default_rng(4)
-    root = rng.normal(size=(12, 12))
-    matrix, gradient = root @ root.T + np.eye(12), rng.normal(size=6) + 1j * rng.normal(size=6)
-    expected = -real_product(np.linalg.inv(matrix))(gradient)
-    off = newton_direction(gradient, real_product(matrix), real_product(np.eye(12))) - expected
-    assert np.abs(off).max() < 1e-2 * np.abs(expected).max()
-    exactly = newton_direction(gradient, real_product(matrix), real_product(np.linalg.inv(matrix)))
-    assert np.abs(exactly - expected).max() < 1e-12 * np.abs(expected).max()
+def test_hessian_at_rest_is_twice_the_killing_matrix(mesh):
+    for turn in (1.0, np.exp(2j)):
+        pose = turn * to_complex(mesh.vertices)
+        killing = KillingMatrix(mesh)
+        lower = np.tril(hessian(mesh, pose))[killing.rows, killing.columns]
+        nonzeros = killing.nonzeros(to_points(pose))
+        assert np.abs(lower - 2 * nonzeros).max() < 1e-9 * np.abs(nonzeros).max()
 
 
-@pytest.mark.parametrize("lowest", [-3.0, 0.0])
-def test_newton_direction_descends_where_the_energy_is_not_convex(lowest):
-    rng = np.random.default_rng(5)
-    axes, _ = np.linalg.qr(rng.normal(size=(12, 12)))
-    matrix = axes @ np.diag([lowest, lowest, *range(1, 11)]) @ axes.T
-    for gradient in to_complex(rng.normal(size=(60, 2))).reshape(10, 6):
-        direction = newton_direction(gradient, real_product(matrix), real_product(np.eye(12)))
-        assert np.vdot(gradient, direction).real < 0
+@pytest.mark.parametrize("seed", range(3))
+def test_longest_change_is_that_to_the_first_flip(mesh, seed):
+    energy, pose = SymmetricDirichlet(mesh), noisy(mesh, seed, 0.1)
+    change = to_complex(np.random.default_rng(seed).normal(size=mesh.vertices.shape))
+    far = energy.longest(energy.columns(pose), energy.columns(change))
+    if far == np.inf:  # a single face may grow for ever
+        assert signed_areas(to_points(pose + 1e6 * change), mesh.faces).min() > 0
+        return
+    areas = [signed_areas(to_points(pose + t * far * change), mesh.faces) for t in (0.2, 0.6, 0.999, 1.001)]
+    assert [bool((area > 0).all()) for area in areas] == [True, True, True, False]
 
 
-def test_newton_direction_at_a_minimum_is_none():
-    assert not newton_direction(np.zeros(3, dtype=complex), lambda x: x, lambda x: x).any()
+def test_change_that_flips_nothing_may_go_on_for_ever(mesh):
+    energy, rest = SymmetricDirichlet(mesh), to_complex(mesh.vertices)
+    for change in (rest, 0 * rest, np.full_like(rest, 3 - 1j)):
+        assert energy.longest(energy.columns(rest), energy.columns(change)) > 1e12
+
+
+def parabola(start, least):
+    """A function of the distance from ``start`` towards 0, and its slope there."""
+    return lambda far: (start - far - least) ** 2, -2 * (start - least)
 
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("length", [1.0, 0.3])
 def test_descent_never_raises_the_energy(mesh, seed, length):
-    energy = SymmetricDirichlet(mesh)
+    energy = Energy(mesh)
     pose = noisy(mesh, seed, 0.1)
     before, gradient = energy.value(pose), energy.gradient(pose)
     rng = np.random.default_rng(seed)
     random = to_complex(rng.normal(size=mesh.vertices.shape))
     for direction in (-gradient, -1e-9 * gradient, -1e9 * gradient, random, gradient, 0 * gradient):
-        after = energy.value(descend(pose, energy.value, gradient, direction, length))
-        assert after <= before
-    assert energy.value(descend(pose, energy.value, gradient, -1e-3 * gradient, length)) < before
+        slope = float(np.vdot(gradient, direction).real)
+        far = descend(lambda t, along=direction: energy.value(pose + t * along), before, slope, length)
+        assert 0 <= far <= length
+        assert energy.value(pose + far * direction) <= before
+    step = -1e-3 * gradient
+    far = descend(
+        lambda t: energy.value(pose + t * step), before, float(np.vdot(gradient, step).real), length
+    )
+    assert far > 0
+    assert energy.value(pose + far * step) < before
 
 
-def test_descent_goes_to_the_minimum_of_a_parabola():
-    start, least = np.array([3.0 + 1.0j]), 1.0 - 2.0j
-
-    def value(p):
-        return float(np.abs(p[0] - least) ** 2)
-
-    gradient = 2 * (start - least)
-    for far in (0.5, 0.7, 3.0):  # shares of the gradient; 0.5 is Newton's step
-        reached = descend(start, value, gradient, -far * gradient, 1.0)
-        assert reached[0] == pytest.approx(least, abs=1e-12)
+@pytest.mark.parametrize("length", [2.5, 3.5, 15.0, 1e6])
+def test_descent_goes_to_the_minimum_of_a_parabola(length):
+    value, slope = parabola(3.0, 0.5)
+    assert descend(value, value(0.0), slope, length) == pytest.approx(2.5, rel=1e-9)
 
 
-def test_direction_upwards_moves_nothing():
-    start = np.array([3.0 + 1.0j])
-    assert descend(start, lambda p: float(np.abs(p[0]) ** 2), 2 * start, start, 1.0) is start
+def test_descent_goes_no_farther_than_it_may():
+    value, slope = parabola(3.0, 0.5)
+    assert descend(value, value(0.0), slope, 1.25) == 1.25
+
+
+def test_direction_upwards_goes_nowhere():
+    assert descend(lambda far: (3 + far) ** 2, 9.0, 6.0, 1.0) == 0.0
+    assert descend(lambda _: 9.0, 9.0, 0.0, 1.0) == 0.0
 
 
 def test_result_has_one_point_for_each_vertex(mesh):
-    energy = SymmetricDirichlet(mesh)
-    assert to_points(energy.gradient(to_complex(mesh.vertices))).shape == mesh.vertices.shape
+    assert to_points(Energy(mesh).gradient(to_complex(mesh.vertices))).shape == mesh.vertices.shape

@@ -4,24 +4,22 @@ import numpy as np
 import pytest
 
 from akap_editor.geometry.operators import (
+    KillingMatrix,
     element_pattern,
     gradient_matrices,
     hat_gradients,
     jacobians,
-    killing_elements,
     killing_energy,
     to_complex,
     to_points,
 )
 
 
-def assembled(positions, faces):
-    """The matrix whose entries `killing_elements` gives, from the lower triangle."""
-    rows, columns = element_pattern(faces)
+def assembled(mesh, positions):
+    """The Killing matrix at a pose as a dense one."""
+    killing = KillingMatrix(mesh)
     matrix = np.zeros((2 * len(positions),) * 2)
-    np.add.at(
-        matrix, (np.maximum(rows, columns), np.minimum(rows, columns)), killing_elements(positions, faces)
-    )
+    matrix[killing.rows, killing.columns] = killing.nonzeros(positions)
     return matrix + np.tril(matrix, -1).T
 
 
@@ -54,19 +52,34 @@ def test_jacobians_of_affine_maps(mesh):
 
 def test_killing_matrix_is_that_of_the_stacked_rows(mesh, dense):
     rows = dense.killing_rows(mesh.vertices, mesh.faces)
-    assert np.abs(assembled(mesh.vertices, mesh.faces) - rows.T @ rows).max() < 1e-11
+    assert np.abs(assembled(mesh, mesh.vertices) - rows.T @ rows).max() < 1e-11
+
+
+def test_killing_matrix_at_a_pose(mesh, dense):
+    pose = mesh.vertices @ [[1.1, 0.3], [-0.2, 0.8]] + 2 * np.sin(mesh.vertices[:, ::-1] / 20)
+    rows = dense.killing_rows(pose, mesh.faces)
+    assert np.abs(assembled(mesh, pose) - rows.T @ rows).max() < 1e-11
+
+
+def test_nonzeros_are_in_the_order_of_columns_and_within_the_pattern(mesh):
+    killing = KillingMatrix(mesh)
+    keys = killing.columns * 2 * len(mesh.vertices) + killing.rows
+    assert (np.diff(keys) > 0).all()
+    rows, columns = element_pattern(mesh.faces)
+    known = np.minimum(rows, columns) * 2 * len(mesh.vertices) + np.maximum(rows, columns)
+    assert np.unique(known).tolist() == keys.tolist()
 
 
 def test_killing_energy_is_the_quadratic_form(mesh):
     field = np.random.default_rng(6).normal(size=mesh.vertices.shape)
-    matrix = assembled(mesh.vertices, mesh.faces)
+    matrix = assembled(mesh, mesh.vertices)
     energy = killing_energy(mesh.vertices, mesh.faces, field)
     assert energy == pytest.approx(field.ravel() @ matrix @ field.ravel(), rel=1e-12)
 
 
 def test_null_space_is_the_rigid_motions_of_each_part(mesh):
     parts = mesh.component.max() + 1
-    spectrum = np.linalg.eigvalsh(assembled(mesh.vertices, mesh.faces))
+    spectrum = np.linalg.eigvalsh(assembled(mesh, mesh.vertices))
     assert (spectrum < 1e-10 * spectrum[-1]).sum() == 3 * parts
     assert spectrum[3 * parts] > 1e-6 * spectrum[-1]
 
@@ -99,4 +112,4 @@ def test_flipped_faces_count_by_their_size(mesh, dense):
     energy = killing_energy(mesh.vertices, mesh.faces, field)
     assert killing_energy(mirrored, mesh.faces, field * [-1.0, 1.0]) == pytest.approx(energy, rel=1e-12)
     rows = dense.killing_rows(mirrored, mesh.faces)
-    assert np.abs(assembled(mirrored, mesh.faces) - rows.T @ rows).max() < 1e-11
+    assert np.abs(assembled(mesh, mirrored) - rows.T @ rows).max() < 1e-11
