@@ -6,22 +6,24 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError, SolverError
 from ..geometry.checks import Complexes, Floats, as_indices, as_number, as_points
 from ..geometry.mesh import MeshPoints, TriMesh, signed_areas
-from ..geometry.operators import to_complex, to_points
+from ..geometry.operators import element_pattern, to_complex, to_points
 from .akvf import KillingSystem
-from .cholesky import SparseCholesky
+from .cholesky import SparseCholesky, SymmetricPattern
 from .deformer import StepReport, StepResult
 from .log_spiral import LogSpirals, linear_flow
 from .rest_memory import SymmetricDirichlet, descend
+from .turning import Turning
 
 Trajectory = Literal["spiral", "linear"]
 Constraints = Literal["soft", "hard"]
 
 _SHORTEST = 2.0**-10  # share of a substep below which a move that would flip a face is given up
+_MAX_TURN = 0.1  # radians that a pin turns in one substep, at most
 _ARRIVED = 1e-4  # share of √area: pins nearer than this to their targets are left to the rest memory alone
 _CORRECTIONS = 2  # most of them in one step
 _LONGEST = 4.0  # times its field: as far as a correction may go
@@ -31,8 +33,18 @@ _THINNEST = 1e-2  # a face may not shrink below this share of its rest area in o
 # shares of √area. Errors of the method without memory add up along the way, with memory they are forgotten.
 _MAX_STEP, _MAX_STEP_WITH_MEMORY = 0.01, 0.05
 _TOLERANCE, _TOLERANCE_WITH_MEMORY = 3e-7, 4e-6
+_TURNED = 1e-4  # radians: a pin turned so nearly is left to the rest memory alone
+_SOFTEST, _STIFFEST = 1e-3, 1e6
 _SAFE = 0.9  # share of the way to the first flip that memory may go
 _CUT = 0.05  # a step of memory shorter than this share of its length was in the wrong metric
+
+
+@dataclass(frozen=True, eq=False)
+class _Aims:
+    """Where pins should be, (k,), and how far they should be turned, (k,) radians or NaN."""
+
+    places: Complexes
+    angles: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +74,7 @@ class AkapDeformer:
     constraints: "soft" pins pull with λ as in eq. 3, "hard" ones give U° exactly their velocities (Fig. 3).
     exact: factorize both systems in every substep, as the paper does; otherwise a factorization serves for
     many poses, for poses that are the same within less than a hundredth of a pixel (at 1000 × 1000).
+    stiffness: (m,) factors from 1e-3 to 1e6 of the faces' energies, by which parts bend less or more.
     Raises InputError on settings out of range.
     """
 
@@ -75,6 +88,7 @@ class AkapDeformer:
         max_step: float | None = None,
         constraints: Constraints = "soft",
         exact: bool = False,
+        stiffness: ArrayLike | None = None,
     ) -> None:
         self._memory = as_number(memory, "memory", 0, 1)
         if trajectory not in ("spiral", "linear"):
@@ -85,6 +99,7 @@ class AkapDeformer:
         if max_step is None:
             max_step = _MAX_STEP_WITH_MEMORY if memory else _MAX_STEP
         as_number(max_step, "max_step", 1e-4, math.inf)
+        stiff = None if stiffness is None else _as_stiffness(stiffness, len(mesh.faces))
         self._mesh = mesh
         self._dirichlet = bool(dirichlet)
         length = math.sqrt(mesh.rest_areas.sum())
@@ -97,11 +112,12 @@ class AkapDeformer:
         self._pin_weight = pin_weight
         self._hard = constraints == "hard"
         tolerance = length * (_TOLERANCE_WITH_MEMORY if memory else _TOLERANCE)
-        self._system = KillingSystem(mesh, pin_weight, bool(exact), self._hard, tolerance)
-        self._newton: SparseCholesky | None = None
+        self._system = KillingSystem(mesh, pin_weight, bool(exact), self._hard, tolerance, stiff)
+        self._newton: tuple[SymmetricPattern, SparseCholesky] | None = None
+        self._stiffness = stiff
         self._exact_system: KillingSystem | None = None
         self._flow = LogSpirals(mesh).flow if trajectory == "spiral" else linear_flow
-        self._rest = SymmetricDirichlet(mesh)
+        self._rest = SymmetricDirichlet(mesh, stiff)
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
     def set_pins(self, points: MeshPoints) -> None:
@@ -111,8 +127,20 @@ class AkapDeformer:
         self._corners = self._mesh.faces[points.faces]
         pinned = np.unique(self._mesh.component[self._corners[:, :1]])
         self._held = ~np.isin(self._mesh.component, pinned)
-        self._system.set_pins(points)
+        self._hold(np.zeros(len(points), dtype=bool))
+
+    def _hold(self, holding: NDArray[np.bool_]) -> None:
+        """Choose which pins (k,) hold an angle."""
+        self._holding = holding
+        self._turning = Turning(self._mesh, self._points, holding) if holding.any() else None
+        self._system.set_pins(self._points, self._turning)
         self._exact_system = None
+
+    def angles(self, positions: ArrayLike) -> Floats:
+        """How far the surroundings of each pin are turned from rest at a pose (n, 2), (k,), in (−π, π]."""
+        pose = to_complex(as_points(positions, "positions", len(self._mesh.vertices)))
+        every = Turning(self._mesh, self._points, np.ones(len(self._points), dtype=bool))
+        return every.angles(pose)
 
     def vector_field(self, positions: ArrayLike, velocities: ArrayLike) -> Floats:
         """U_opt of eq. 4, (n, 2), at a pose (n, 2) for pin velocities (k, 2), pixels per unit of time.
@@ -126,24 +154,40 @@ class AkapDeformer:
         pose = as_points(positions, "positions", len(self._mesh.vertices))
         wanted = as_points(velocities, "velocities", len(self._points))
         if self._exact_system is None:
-            self._exact_system = KillingSystem(self._mesh, self._pin_weight, True, self._hard)
+            self._exact_system = KillingSystem(
+                self._mesh, self._pin_weight, True, self._hard, stiffness=self._stiffness
+            )
             self._exact_system.set_pins(self._points)
         self._exact_system.prepare(pose)
         optimal, smooth = self._exact_system.field(to_complex(wanted), self._dirichlet)
         return to_points(optimal), to_points(smooth)
 
-    def step(self, positions: ArrayLike, targets: ArrayLike) -> StepResult:
-        """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2); see `Deformer.step`."""
+    def step(self, positions: ArrayLike, targets: ArrayLike, angles: ArrayLike | None = None) -> StepResult:
+        """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2); see `Deformer.step`.
+
+        angles: (k,) radians by which the surroundings of pins are to be turned from rest; NaN where a pin
+        lets them turn as they will. The shorter way round is taken.
+        """
         started = time.perf_counter()
         pose = to_complex(as_points(positions, "positions", len(self._mesh.vertices)))
         goals = to_complex(as_points(targets, "targets", len(self._points)))
+        wanted = _as_angles(angles, len(goals))
+        if (np.isfinite(wanted) != self._holding).any():
+            self._hold(np.isfinite(wanted))
         way = [_Substep(pose, np.zeros_like(pose), 1.0, pose)]
         if len(goals):
             starts = self._pin_positions(pose)
-            count = max(1, math.ceil(np.abs(goals - starts).max() / self._max_length))
+            turns = self._still_to_turn(pose, wanted)
+            largest = float(np.nan_to_num(np.abs(turns)).max())
+            count = max(
+                1,
+                math.ceil(np.abs(goals - starts).max() / self._max_length),
+                math.ceil(largest / _MAX_TURN),
+            )
             for index in range(1, count + 1):
-                aims = goals if index == count else starts + (index / count) * (goals - starts)
-                way.append(self._substep(way[-1].end, aims))
+                share = index / count
+                places = goals if index == count else starts + share * (goals - starts)
+                way.append(self._substep(way[-1].end, _Aims(places, wanted - (1 - share) * turns)))
             del way[0]
         way[-1] = replace(way[-1], end=self._corrected(way[-1], goals))
         result, field = to_points(way[-1].end.copy()), way[-1].field
@@ -173,17 +217,29 @@ class AkapDeformer:
     def _pin_positions(self, pose: Complexes) -> Complexes:
         return (self._points.weights * pose[self._corners]).sum(axis=1)
 
-    def _substep(self, pose: Complexes, aims: Complexes) -> _Substep:
+    def _still_to_turn(self, pose: Complexes, angles: Floats) -> Floats:
+        """By how much pins (k,) differ from ``angles``, in (−π, π]; NaN for those that hold none."""
+        if self._turning is None:
+            return angles
+        off = angles - self._turning.angles(pose)
+        return np.asarray(np.angle(np.exp(1j * off)), dtype=np.float64)
+
+    def _substep(self, pose: Complexes, aims: _Aims) -> _Substep:
         """One field and one move: section 2.4, with velocities towards ``aims`` from where the pins are."""
-        velocities = aims - self._pin_positions(pose)
+        velocities = aims.places - self._pin_positions(pose)
+        rates = None
         moved, field, share = pose, np.zeros_like(pose), 1.0
         moving = bool(np.abs(velocities).max() > self._arrived)
+        if self._turning is not None:
+            rates = self._still_to_turn(pose, aims.angles)[self._turning.pins]
+            moving = moving or bool(np.abs(rates).max() > _TURNED)
         if moving:
             self._system.prepare(to_points(pose))
-            field, _ = self._system.field(velocities, self._dirichlet, "motion")
+            field, _ = self._system.field(velocities, self._dirichlet, "motion", rates)
             moved, share = self._move(pose, field, velocities)
         if share < 1:  # faces at their limit open again, or the pins could not even go back
-            moved = self._remember(moved, self._pin_positions(moved), 1.0, False)
+            here = _Aims(self._pin_positions(moved), aims.angles - self._still_to_turn(moved, aims.angles))
+            moved = self._remember(moved, here, 1.0, False)
         if self._memory:
             moved = self._remember(moved, aims, self._memory, moving)
         if not np.isfinite(moved).all():
@@ -202,6 +258,8 @@ class AkapDeformer:
             miss = float(np.abs(off).max(initial=0.0))
             if miss <= self._near or share < 1:
                 break
+            if not last.field.any():
+                self._system.prepare(to_points(pose))
             off *= 1 - self._near / miss
             field, _ = self._system.field(off, self._dirichlet, "correction")
             reached = self._pin_positions(field)
@@ -231,7 +289,7 @@ class AkapDeformer:
             t /= 2
         return pose, 0.0
 
-    def _remember(self, pose: Complexes, aims: Complexes, length: float, moving: bool) -> Complexes:
+    def _remember(self, pose: Complexes, aims: _Aims, length: float, moving: bool) -> Complexes:
         """One step towards the rest shape, pins held softly at ``aims``.
 
         Near an isometry the Hessian of the energy is 2 (K + λ² WᵀW), and while pins are moving that matrix is
@@ -239,21 +297,26 @@ class AkapDeformer:
         """
 
         rest, columns = self._rest, self._rest.columns(pose)
-        before, off = rest.value(columns), self._pin_positions(pose) - aims
-        if before == np.inf:  # faces that are flipped already, by another method
+        off = self._pin_positions(pose) - aims.places
+        if rest.value(columns) == np.inf:  # faces that are flipped already, by another method
             return pose
-        before += self._misfit(off)
         gradient = rest.gradient(columns) + 2 * self._system.pull(off)
+        turning = self._turning
+        if turning is not None:
+            twisted = turning.turns(pose) - np.exp(1j * aims.angles[turning.pins])
+            gradient += 2 * turning.misfit_gradient(twisted)
         gradient[self._held] = 0.0
 
         def descended(direction: Complexes) -> tuple[Complexes, float]:
             change, pins = rest.columns(direction), self._pin_positions(direction)
+            turns = turning.turns(direction) if turning is not None else 0.0
 
             def value(far: float) -> float:
-                return rest.value(columns + far * change) + self._misfit(off + far * pins)
+                total = rest.value(columns + far * change) + self._misfit(off + far * pins)
+                return total if turning is None else total + turning.misfit(twisted + far * turns)
 
             slope = float(np.vdot(gradient, direction).real)
-            far = descend(value, before, slope, min(length, _SAFE * rest.longest(columns, change)))
+            far = descend(value, value(0.0), slope, min(length, _SAFE * rest.longest(columns, change)))
             return pose + far * direction, far
 
         if moving:
@@ -270,14 +333,41 @@ class AkapDeformer:
         if not gradient.any():
             return gradient
         if self._newton is None:
-            self._newton = SparseCholesky(self._system.pattern)
+            pattern = SymmetricPattern(*element_pattern(self._mesh.faces), self._system.pattern.size)
+            self._newton = pattern, SparseCholesky(pattern)
+        pattern, cholesky = self._newton
+        spin = None if self._turning is None else self._turning.spin
         for convex in (False, True):  # far from a minimum the Hessian has negative eigenvalues
-            nonzeros = self._system.pattern.summed(self._rest.half_hessian(columns, convex))
+            nonzeros = pattern.summed(self._rest.half_hessian(columns, convex, spin))
             self._system.add_pins(nonzeros, to_points(pose))
             try:
-                self._newton.factorize(nonzeros)
+                cholesky.factorize(nonzeros)
                 break
             except SolverError:
                 if convex:
                     raise
-        return -0.5 * to_complex(self._newton.solve(gradient.view(np.float64)).reshape(-1, 2))
+        return -0.5 * to_complex(cholesky.solve(gradient.view(np.float64)).reshape(-1, 2))
+
+
+def _as_angles(angles: ArrayLike | None, count: int) -> Floats:
+    if angles is None:
+        return np.full(count, np.nan)
+    try:
+        values = np.asarray(angles, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"angles: expected {count} numbers or NaN, got {angles!r}") from error
+    if values.shape != (count,) or np.isinf(values).any():
+        raise InputError(f"angles: expected {count} finite numbers or NaN, got shape {values.shape}")
+    return values
+
+
+def _as_stiffness(stiffness: ArrayLike, count: int) -> Floats:
+    try:
+        values = np.asarray(stiffness, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"stiffness: expected {count} numbers, got {stiffness!r}") from error
+    if values.shape != (count,) or not ((values >= _SOFTEST) & (values <= _STIFFEST)).all():
+        raise InputError(
+            f"stiffness: expected {count} numbers from {_SOFTEST:g} to {_STIFFEST:g}, got {values}"
+        )
+    return values

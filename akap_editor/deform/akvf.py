@@ -6,9 +6,10 @@ from scipy.sparse import csr_array
 
 from ..geometry.checks import Complexes, Floats, Ints
 from ..geometry.mesh import MeshPoints, TriMesh
-from ..geometry.operators import KillingMatrix, element_pattern, to_complex, to_points
+from ..geometry.operators import KillingMatrix, to_complex, to_points
 from .cholesky import SymmetricPattern
 from .reuse import ReusedCholesky
+from .turning import Turning
 
 _SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
 
@@ -25,7 +26,8 @@ class KillingSystem:
     mean velocity of its pins, or to zero, which moves it without turning.
 
     With ``exact`` both matrices are factorized at every pose; otherwise now and then (see `ReusedCholesky`),
-    and fields are as near as ``tolerance`` in the energy norm, in pixels. With ``hard`` U° has exactly the
+    and fields are as near as ``tolerance`` in the energy norm, in pixels. ``stiffness`` (m,) multiplies the
+    energies of faces. With ``hard`` U° has exactly the
     pins' velocities, and (7) is always factorized, since many solves go into one field.
     """
 
@@ -36,15 +38,17 @@ class KillingSystem:
         exact: bool = True,
         hard: bool = False,
         tolerance: float = 0.0,
+        stiffness: Floats | None = None,
     ) -> None:
         self._mesh = mesh
         self._hard = hard
         length = float(np.sqrt(mesh.rest_areas.sum()))
         self._weight = pin_weight**2
         size = 2 * len(mesh.vertices)
-        self._tolerance = tolerance
-        self.pattern = SymmetricPattern(*element_pattern(mesh.faces), size)
+        self._tolerance, self._stiffness = tolerance, stiffness
+        self._turning: Turning | None = None
         self._killing = KillingMatrix(mesh)
+        self.pattern = SymmetricPattern(self._killing.rows, self._killing.columns, size)
         self._pinned = ReusedCholesky(self.pattern, exact or hard)
         on_boundary = np.zeros(len(mesh.vertices), dtype=bool)
         on_boundary[mesh.boundary_vertices] = True
@@ -59,9 +63,9 @@ class KillingSystem:
         self._frames = _VertexFrames(mesh)
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
-    def set_pins(self, points: MeshPoints) -> None:
-        """Choose the constraints C of eq. 3."""
-        self._points = points
+    def set_pins(self, points: MeshPoints, turning: Turning | None = None) -> None:
+        """Choose the constraints C of eq. 3, and faces whose turning is constrained."""
+        self._points, self._turning = points, turning
         self._pin_components = self._mesh.component[self._mesh.faces[points.faces, 0]]
         self._constrain(self._free_components(self._mesh.vertices))
 
@@ -72,6 +76,8 @@ class KillingSystem:
         apart = ((places - places[first][group]) ** 2).sum(axis=1) > self._same_place**2
         free = np.ones(len(self._first_faces), dtype=bool)
         free[self._pin_components[apart]] = False
+        if self._turning is not None:
+            free[self._pin_components[self._turning.pins]] = False
         return free
 
     def _constrain(self, free: NDArray[np.bool_]) -> None:
@@ -100,13 +106,20 @@ class KillingSystem:
         # Where all pins sit on boundary vertices, (8) returns what (7) gave.
         interior_vertex = np.zeros(len(mesh.vertices), dtype=bool)
         interior_vertex[self._interior] = True
-        self._needs_interior = bool((interior_vertex[self._corners] & (weights != 0)).any())
+        inside = interior_vertex[self._corners] & (weights != 0)
+        self._needs_interior = bool(inside.any()) or self._turning is not None
         self._pinned.forget()
+        if self._inner is not None:
+            self._inner.forget()
 
     def prepare(self, positions: Floats) -> None:
         """Prepare both systems at the pose ``positions`` (n, 2). Raises SolverError."""
         self._anchor(positions)
-        nonzeros = self._killing.nonzeros(positions)
+        spin = None
+        if self._turning is not None:
+            self._turning.place(positions)
+            spin = self._turning.spin
+        nonzeros = self._killing.nonzeros(positions, self._stiffness, spin)
         frames = self._frames(to_complex(positions))
         if self._inner is not None and self._needs_interior:
             self._inner.prepare(nonzeros[self._inner_nonzeros], frames[self._interior])
@@ -132,9 +145,11 @@ class KillingSystem:
         return self._spread(np.append(self._weight * offsets, np.zeros(len(self._weights) - len(offsets))))
 
     def field(
-        self, velocities: Complexes, dirichlet: bool = True, like: str = ""
+        self, velocities: Complexes, dirichlet: bool = True, like: str = "", rates: Floats | None = None
     ) -> tuple[Complexes, Complexes]:
         """U_opt of (8) and U° of (7), (n,) each, for pin velocities (k,), at the pose last prepared.
+
+        rates: (q,) how fast the faces of the `Turning` are to turn, radians per unit of time; 0 without it.
 
         Hard pins are the limit of (7) for λ → ∞: U° = A⁻¹ Wᵀ (W A⁻¹ Wᵀ)⁻¹ ũ, one solve for each pin.
         (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = −K U°: by (7) λ² Wᵀ(W U° − ũ),
@@ -142,18 +157,24 @@ class KillingSystem:
         """
         wanted = self._constraints(velocities)
         pull = self._reactions(wanted) if self._hard else self._weight * wanted
-        smooth = self._pinned.solve(self._spread(pull), self._tolerance, like)
+        turn: Complexes | float = 0.0
+        if self._turning is not None and rates is not None:
+            turn = self._turning.pull(rates)
+        smooth = self._pinned.solve(self._spread(pull) + turn, self._tolerance, like)
         if not dirichlet or self._inner is None or not self._needs_interior:
             return smooth, smooth
-        force = self._spread(self._weight * self._at_constraints(smooth)) - self._pinned.multiply(smooth)
+        pins = self._spread(self._weight * self._at_constraints(smooth))
+        force = pins + turn - self._pinned.multiply(smooth)
         optimal = smooth.copy()
         optimal[self._interior] += self._inner.solve(force[self._interior], self._tolerance, like)
         return optimal, smooth
 
     def energy(self, field: Complexes) -> float:
         """The Killing energy of a field (n,), eq. 2, at the pose last prepared."""
-        at_pins = float((np.abs(self._at_constraints(field)) ** 2).sum())
-        return max(self._pinned.energy(field) - self._weight * at_pins, 0.0)
+        other = self._weight * float((np.abs(self._at_constraints(field)) ** 2).sum())
+        if self._turning is not None:
+            other += self._turning.energy(field)
+        return max(self._pinned.energy(field) - other, 0.0)
 
     def _constraints(self, velocities: Complexes) -> Complexes:
         """Velocities of pins and anchors; an anchor follows the pins of its component, or holds still."""

@@ -20,13 +20,18 @@ _NEAR = 0.8  # a try within this share of the parabola's minimum is near enough
 
 
 class SymmetricDirichlet:
-    """Σ A_f (‖J‖² + ‖J⁻¹‖²) over the faces, J the Jacobian of the map from rest; infinite at flips."""
+    """Σ A_f (‖J‖² + ‖J⁻¹‖²) over the faces, J the Jacobian of the map from rest; infinite at flips.
 
-    def __init__(self, mesh: TriMesh) -> None:
+    stiffness: (m,) factors of the faces' energies.
+    """
+
+    def __init__(self, mesh: TriMesh, stiffness: Floats | None = None) -> None:
         # Of complex numbers, as the points are: a mixed product would convert them every time.
         self._gradient = vstack(gradient_matrices(mesh), format="csr").astype(np.complex128)
         self._divergence = self._gradient.T.tocsr()
-        dx, dy, self._areas = hat_gradients(mesh.vertices, mesh.faces)
+        dx, dy, areas = hat_gradients(mesh.vertices, mesh.faces)
+        self._areas = areas if stiffness is None else areas * stiffness
+        self._true_areas = areas
         self._hats: Complexes = np.asarray(dx.T + 1j * dy.T, dtype=np.complex128, order="C")
 
     def columns(self, positions: Complexes) -> Complexes:
@@ -68,12 +73,12 @@ class SymmetricDirichlet:
         flips = (inside > 0) & (below > 0)
         return float((2 * start[flips] / below[flips]).min(initial=np.inf))
 
-    def half_hessian(self, columns: Complexes, convex: bool) -> Floats:
+    def half_hessian(self, columns: Complexes, convex: bool, spin: Floats | None = None) -> Floats:
         """Entries (21 m,) of half the Hessian, in the order of `element_pattern`; near an isometry that is K.
 
         With σ₁ ≥ σ₂ the singular values of J, a change of J has four eigenvectors: two scalings, with
         2 + 6 / σᵢ⁴, a flip, and a twist, whose eigenvalue is negative in compressed faces. With ``convex`` it
-        is then taken to be zero.
+        is then taken to be zero. spin: (m,) c of further energies c A |z − e^{iθ}|², see `Turning`.
         """
         jx, jy, _, _ = self._terms(columns)
         turning, mirroring = 0.5 * (jx - 1j * jy), 0.5 * (jx + 1j * jy)
@@ -94,8 +99,12 @@ class SymmetricDirichlet:
             2 * (np.maximum(twisting, 0.0) if convex else twisting),
             2 * flipping,
         )
-        rows = scale + stretch, scale - stretch, twist, flip
-        return element_entries(np.array(rows), 0.5 * self._areas * np.array(weights))
+        rows = [scale + stretch, scale - stretch, twist, flip]
+        factors = [0.5 * self._areas * weight for weight in weights]
+        if spin is not None:
+            rows += [scale, twist]
+            factors += [self._true_areas * spin] * 2
+        return element_entries(np.array(rows), np.array(factors))
 
 
 def _cross(a: Complexes, b: Complexes) -> Floats:

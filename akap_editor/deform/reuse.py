@@ -12,6 +12,8 @@ from ..geometry.checks import Complexes, Floats
 from .cholesky import SparseCholesky, SymmetricPattern
 
 _MOST_ITERATIONS = 60
+# Unknowns below which factorizations are simplicial: three times as slow to make, solves twice as fast.
+_SIMPLICIAL_BELOW = 40_000
 _KEPT = 2  # earlier solutions from which the next one begins
 # A factorization costs about as much as so many iterations; when they were spent beyond the two that each
 # solution takes with new factors, it is time for these.
@@ -28,7 +30,7 @@ class ReusedCholesky:
 
     def __init__(self, pattern: SymmetricPattern, exact: bool) -> None:
         size = pattern.size
-        self._cholesky = SparseCholesky(pattern, supernodal=exact)
+        self._cholesky = SparseCholesky(pattern, supernodal=exact or size > _SIMPLICIAL_BELOW)
         starts = np.searchsorted(pattern.columns, np.arange(size + 1))
         rows = pattern.rows.astype(np.int32)
         self._lower = csc_array((np.zeros(pattern.count), rows, starts.astype(np.int32)), shape=(size, size))

@@ -138,11 +138,19 @@ class KillingMatrix:
         of = np.concatenate([block * e + at for *_, block in parts]).astype(np.int32)
         self._to_vertices = csr_array((-np.tile(ones, 3), (summed, of)), shape=(3 * n, 4 * e))
 
-    def nonzeros(self, positions: Floats) -> Floats:
-        """The nonzeros (z,) at a pose (n, 2); not finite where a face has collapsed."""
+    def nonzeros(
+        self, positions: Floats, stiffness: Floats | None = None, spin: Floats | None = None
+    ) -> Floats:
+        """The nonzeros (z,) at a pose (n, 2); not finite where a face has collapsed.
+
+        stiffness: (m,) factors of the faces' energies; spin: (m,) weights c of further energies c A ω², where
+        ω = (∂x U2 − ∂y U1) / 2 is how fast a field turns on a face.
+        """
         x, y = positions[:, 0][self._faces], positions[:, 1][self._faces]
         turned_x, turned_y = y[_NEXT] - y[_AFTER], x[_AFTER] - x[_NEXT]
         root = np.sqrt(np.abs(turned_y[2] * turned_x[1] - turned_y[1] * turned_x[2]))  # of twice the area
+        if stiffness is not None:
+            root /= np.sqrt(stiffness)
         turned_x /= root
         turned_y /= root
         # Entry (a, b) of the block of a half-edge's start and end: ∂b h_start ∂a h_end, and more where a = b.
@@ -154,8 +162,14 @@ class KillingMatrix:
         np.multiply(turned_x, next_y, out=xy)
         np.multiply(turned_y, next_y, out=yy)
         both = xx + yy
-        xx += both
-        yy += both
+        if spin is None:
+            xx += both
+            yy += both
+        else:
+            share = 0.125 * spin
+            xx[:], yy[:] = both + xx + share * yy, both + yy + share * xx
+            xy *= 1 - share
+            yx *= 1 - share
         edges = faces.take(self._sides[0]) + faces.take(self._sides[1])
         result = np.empty(len(self._slots))
         result[self._slots[: len(edges)]] = edges
