@@ -13,6 +13,7 @@ The engine as a library, without a window::
 """
 
 from .deform.deformer import Deformer, StepReport, StepResult, make_deformer, method_names
+from .editor.bake import bake
 from .editor.document import Document, Drawing, EditState, Pin, Settings, make_drawing, new_document
 from .errors import AkapError, DisplayError, GraphicsError, InputError, SolverError
 from .geometry.distortion import Distortion, distortion
@@ -20,6 +21,7 @@ from .geometry.mesh import MeshPoints, TriMesh
 from .geometry.outline import Outline, outlines
 from .geometry.triangulate import triangulate
 from .io.documents import open_document
+from .io.export import ExportOptions, export
 from .io.images import read_image, write_png
 from .io.project_file import load, save
 
@@ -33,6 +35,7 @@ __all__ = [
     "Document",
     "Drawing",
     "EditState",
+    "ExportOptions",
     "GraphicsError",
     "InputError",
     "MeshPoints",
@@ -44,7 +47,9 @@ __all__ = [
     "StepResult",
     "TriMesh",
     "__version__",
+    "bake",
     "distortion",
+    "export",
     "load",
     "make_deformer",
     "make_drawing",

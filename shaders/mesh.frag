@@ -2,11 +2,12 @@
 // The textured mesh; the picture is premultiplied.
 
 uniform sampler2D picture;
+uniform float opacity;
 
 in vec2 uv;
 
 out vec4 color;
 
 void main() {
-    color = texture(picture, uv);
+    color = texture(picture, uv) * opacity;
 }

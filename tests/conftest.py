@@ -5,6 +5,7 @@ import os
 # Before numpy is loaded: threads of BLAS wait for one another on small machines, longer than the work takes.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import json
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,15 @@ settings.load_profile("reproducible")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests that open a real window are slow, so everything else reports first."""
     items.sort(key=lambda item: item.get_closest_marker("window") is not None)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def preferences_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Nobody's own preferences are read or written; the hints for newcomers have been seen."""
+    folder = tmp_path_factory.mktemp("preferences")
+    (folder / "preferences.json").write_text(json.dumps({"first steps done": True}))
+    os.environ["AKAP_EDITOR_CONFIG"] = os.environ["AKAP_EDITOR_STATE"] = str(folder)
+    return folder
 
 
 @pytest.fixture(scope="session")

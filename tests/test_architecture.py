@@ -20,7 +20,7 @@ OPENGL = WINDOW | {"moderngl"}
 
 BASE = frozenset({"errors", "resources"})
 EDITOR = BASE | {"geometry", "deform", "editor"}
-ALL = EDITOR | {"io", "render", "app", "cli", "__init__"}
+ALL = EDITOR | {"io", "render", "compare", "app", "cli", "__init__"}
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,7 @@ RULES = {
     "editor": Rule(BASE | {"geometry", "deform"}, never=OPENGL),
     "io": Rule(EDITOR),
     "render": Rule(EDITOR, never=WINDOW),
+    "compare": Rule(EDITOR | {"io", "render", "__init__"}, never=OPENGL),
     "app": Rule(ALL),
     "cli": Rule(ALL, not_at_import=OPENGL),
     "__init__": Rule(ALL, not_at_import=OPENGL),
@@ -144,6 +145,8 @@ def test_no_module_imports_what_its_layer_must_not() -> None:
         ("render/renderer.py", "from imgui_bundle import imgui"),
         ("render/renderer.py", "from ..io import images"),
         ("render/renderer.py", "from ..app import theme"),
+        ("compare/report.py", "from ..cli import main"),
+        ("compare/report.py", "import moderngl"),
         ("app/window.py", "import triangle"),
         ("cli/edit.py", "import moderngl"),
         ("cli/edit.py", "try:\n    from imgui_bundle import imgui\nfinally:\n    pass"),

@@ -14,6 +14,7 @@ from PIL import Image
 import akap_editor
 from akap_editor import cli
 from akap_editor.cli import replay as replaying
+from akap_editor.errors import InputError
 from akap_editor.io.documents import open_document
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.project_file import save
@@ -321,3 +322,19 @@ def test_a_picture_is_written_as_png_only(run, picture, tmp_path):
     assert errors.count("\n") == 1
     assert "expected a name that ends in .png, got .jpg" in errors
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_mask_is_put_on_the_picture_that_is_opened(run, picture, tmp_path, monkeypatch):
+    opened = []
+    module = importlib.import_module("akap_editor.cli.edit")  # the name in the package is the command
+    monkeypatch.setattr(module, "_edit", lambda document, *_: opened.append(document))
+    mask = np.zeros((60, 90), np.uint8)
+    mask[20:40, 20:60] = 255
+    write_png(tmp_path / "mask.png", np.dstack([mask, mask, mask, np.full_like(mask, 255)]))
+    assert run("edit", picture, "--mask", tmp_path / "mask.png") == (0, "", "")
+    alpha = opened[0].drawing.image[..., 3]
+    assert (alpha[20:40, 20:60] == 255).all()
+    assert (alpha[mask == 0] == 0).all()
+    write_png(tmp_path / "small.png", np.full((5, 5, 4), 255, np.uint8))
+    with pytest.raises(InputError, match="mask: expected the size of the picture, 90 x 60 pixels, got 5 x 5"):
+        open_document(picture, tmp_path / "small.png")

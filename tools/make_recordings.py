@@ -56,6 +56,18 @@ class Hand:
         self.editor.handle_event(PointerEvent("release", to_screen((x + dx, y + dy))))
         self.pause(0.2)
 
+    def move(self, way: Callable[[float], dict[int, tuple[float, float]]], seconds: float) -> None:
+        """Drag several pins at once, each on its own way of 0..1."""
+        session = self.editor.session
+        assert session is not None
+        session.begin("Move Pins")
+        steps = round(seconds * MOVES_PER_SECOND)
+        for step in range(1, steps + 1):
+            session.set_targets(way(step / steps))
+            self.pause(1 / MOVES_PER_SECOND)
+        session.commit()
+        self.pause(0.2)
+
     def save(self, path: Path) -> None:
         """Write what was recorded."""
         assert self.editor.session is not None
@@ -99,7 +111,67 @@ def elephant() -> Hand:
     return hand
 
 
+def bar() -> Hand:
+    """Bends the bar as in Fig. 9: both ends, two pins each, along the arc on which its middle line keeps its
+    length. 207° is where conformal coordinates give the figure of Table 1, see docs/methods.md.
+    """
+    hand, middle, height, reach, bend = Hand("bar"), 560.0, 150.0, 485.0, np.radians(207)
+    places = [(middle + side * reach, height + up) for side in (-1, 1) for up in (-70.0, 70.0)]
+    pins = {hand.pin(*place): place for place in places}
+
+    def bent(t: float) -> dict[int, tuple[float, float]]:
+        radius = 2 * reach / (bend * ease(t)) if t else np.inf
+        ways = {}
+        for pin, (x, y) in pins.items():
+            turn, arm = (x - middle) / radius, radius - (y - height)
+            ways[pin] = (
+                round(middle + arm * np.sin(turn), 2),
+                round(height + radius - arm * np.cos(turn), 2),
+            )
+        return ways
+
+    hand.move(bent, 3.0)
+    return hand
+
+
+def rearing() -> Hand:
+    """The elephant rears up on its hind legs, trumpeting."""
+    hand = Hand("elephant")
+    for foot in ((135, 800), (285, 795)):
+        hand.pin(*foot)
+    ways = (
+        ((445, 795), (275, -155)),
+        ((625, 800), (275, -240)),
+        ((915, 180), (-155, -330)),
+        ((560, 150), (-130, -90)),
+    )
+    pins = {hand.pin(*place): (place, way) for place, way in ways}
+    hand.move(
+        lambda t: {
+            pin: (round(x + dx * ease(t), 2), round(y + dy * ease(t), 2))
+            for pin, ((x, y), (dx, dy)) in pins.items()
+        },
+        2.0,
+    )
+    return hand
+
+
+def alien() -> Hand:
+    """Stands on its feet, throws up its hands, leans its head and bends an antenna."""
+    hand = Hand("alien")
+    for place in ((390, 925), (670, 925), (515, 700)):
+        hand.pin(*place)
+    left, right = hand.pin(110, 660), hand.pin(880, 430)
+    head, antenna = hand.pin(500, 260), hand.pin(655, 60)
+    hand.drag(left, lambda t: (-60 * np.sin(np.pi * t) + 20 * t, -330 * ease(t)), 1.2)
+    hand.drag(right, lambda t: (70 * np.sin(np.pi * t) - 20 * t, 330 * ease(t)), 1.2)
+    hand.drag(head, line(-60, 25), 0.8)
+    hand.drag(antenna, line(120, 120), 1.0)
+    return hand
+
+
 if __name__ == "__main__":
-    target = resource("assets", "recordings") / "elephant.akaprec"
-    elephant().save(target)
-    print(target)
+    for make in (elephant, rearing, bar, alien):
+        target = resource("assets", "recordings") / f"{make.__name__}.akaprec"
+        make().save(target)
+        print(target)

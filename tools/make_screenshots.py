@@ -1,48 +1,185 @@
 """Makes the pictures in README and docs from the running program, so that they never go stale.
 
-Run from the project's root: python tools/make_screenshots.py
-Needs no display: the window opens on GLFW's null platform.
+Run from the project's root, all pictures or those that are named:
+
+    python tools/make_screenshots.py [NAME ...] [--scale 2] [--folder docs/images]
+
+Needs no display: the window opens on GLFW's null platform. A new picture is one function with @shot here.
 """
 
+from imgui_bundle import imgui  # isort: skip
+import argparse
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from akap_editor.app.window import Window
-from akap_editor.editor.document import make_drawing, new_document
+from akap_editor.app.preferences import Preferences
+from akap_editor.app.window import SIZE, Window
+from akap_editor.app.workspace import Palette, Workspace
+from akap_editor.editor.document import Document, make_drawing, new_document
+from akap_editor.editor.editor import PinRequest
+from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.replay import replay
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.recordings import read_recording
 from akap_editor.resources import resource
 
 FOLDER = Path("docs/images")
+SETTLE = 12  # frames in which dialogs have their size and numbers their values
+RECENT = ("dragon.akap", "walk cycle/goose 03.png", "sketches/robot.webp")
+
+SHOTS: dict[str, Callable[[Window], None]] = {}
 
 
-def shoot(window: Window, path: Path) -> None:
-    """Write what the window shows once everything has settled."""
-    for _ in range(4):
+def shot(name: str) -> Callable[[Callable[[Window], None]], Callable[[Window], None]]:
+    """Register what brings the window from the posed elephant to what NAME.png shows."""
+
+    def register(prepare: Callable[[Window], None]) -> Callable[[Window], None]:
+        SHOTS[name] = prepare
+        return prepare
+
+    return register
+
+
+@cache
+def posed_elephant() -> Document:
+    """The elephant as the bundled recording leaves it."""
+    recording = read_recording(resource("assets", "recordings", "elephant.akaprec"))
+    image = read_image(resource("assets", "drawings", "elephant.png"))
+    document = new_document(make_drawing(image, name="elephant"))
+    *_, last = replay(recording, document.drawing)
+    return document.with_state(last.state)
+
+
+def rest(window: Window) -> None:
+    """The elephant without pins instead."""
+    window.space.show(new_document(posed_elephant().drawing))
+
+
+@shot("editor")
+def editor(window: Window) -> None:
+    """The editor, and nothing else."""
+
+
+@shot("mesh")
+def mesh(window: Window) -> None:
+    """The mesh over the drawing."""
+    window.space.show_mesh = True
+
+
+@shot("start")
+def start(window: Window) -> None:
+    """The start page, with recent files."""
+    window.space.editor.close()
+    home = Path("/home/ada/Pictures")
+    for name in reversed(RECENT):
+        window.space.preferences.opened(home / name)
+
+
+@shot("first-steps")
+def first_steps(window: Window) -> None:
+    """What a newcomer sees."""
+    rest(window)
+    window.space.first_steps = True
+
+
+@shot("palette")
+def palette(window: Window) -> None:
+    """The command palette while something is searched."""
+    window.space.palette = Palette("sho")
+
+
+@shot("keys")
+def keys(window: Window) -> None:
+    """The page of keys."""
+    window.space.keys = True
+
+
+@shot("pins")
+def pins(window: Window) -> None:
+    """Two pins selected, and the values of one of them."""
+    space = window.space
+    chosen = [pin.id for pin in posed_elephant().state.pins][-2:]
+    space.editor.select(chosen)
+    space.editor.request = PinRequest("values", chosen[-1])
+
+
+@shot("field")
+def field(window: Window) -> None:
+    """The vector fields in the middle of a drag."""
+    space, camera = window.space, window.space.editor.camera
+    space.view.vectors = True
+    pin = posed_elephant().state.pins[-1]
+    x, y = camera.to_screen((pin.target[0], pin.target[1]))
+    space.editor.handle_event(PointerEvent("press", (x, y)))
+    for way in (10.0, 40.0):
+        space.editor.handle_event(PointerEvent("move", (x - way, y)))
+
+
+@shot("heat")
+def heat(window: Window) -> None:
+    """The map of distortion, with its scale."""
+    window.space.view.heat = "angle"
+    window.space.show_pins = False
+
+
+@shot("ghost")
+def ghost(window: Window) -> None:
+    """The rest pose behind the pose."""
+    window.space.view.ghost = True
+
+
+@shot("split")
+def split(window: Window) -> None:
+    """Two methods side by side."""
+    window.space.split = True
+
+
+@shot("export")
+def export(window: Window) -> None:
+    """The export dialog."""
+    window.space.ask_export()
+
+
+def take(window: Window, name: str, folder: Path) -> None:
+    """Write one picture, starting from the posed elephant."""
+    if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
+        imgui.internal.close_popup_to_level(0, False)
+    imgui.set_window_focus(None)
+    imgui.set_nav_cursor_visible(False)
+    space = window.space = Workspace(exporter=window.space.exporter, preferences=Preferences())
+    space.editor.ui_scale = window.scale
+    space.show(posed_elephant())
+    space.editor.mark_saved(Path("elephant.akap"))
+    window.frame()
+    SHOTS[name](window)
+    for _ in range(SETTLE):
         window.frame()
     shots: list[np.ndarray] = []
     window.after_draw.append(lambda: shots.append(window.screenshot()))
     window.frame()
     window.after_draw.clear()
-    picture = np.dstack([shots[0], np.full(shots[0].shape[:2], 255, dtype=np.uint8)])
-    write_png(path, picture)
-    print(path)
+    assert not space.error, space.error
+    write_png(folder / f"{name}.png", np.dstack([shots[0], np.full(shots[0].shape[:2], 255, np.uint8)]))
+    print(folder / f"{name}.png")
 
 
 def main() -> None:
-    """The editor with the elephant posed as the bundled recording leaves it."""
-    recording = read_recording(resource("assets", "recordings", "elephant.akaprec"))
-    image = read_image(resource("assets", "drawings", "elephant.png"))
-    document = new_document(make_drawing(image, name="elephant"))
-    *_, (_, state) = replay(recording, document.drawing)
-    with Window(null=True) as window:
-        window.space.show(document.with_state(state))
-        window.space.editor.mark_saved(Path("elephant.akap"))
-        shoot(window, FOLDER / "editor.png")
-        window.space.show_mesh = True
-        shoot(window, FOLDER / "mesh.png")
+    """All pictures, or those that are named."""
+    parser = argparse.ArgumentParser(description="Makes the pictures in README and docs.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(SHOTS))
+    parser.add_argument("--scale", type=float, default=1.0)
+    parser.add_argument("--folder", type=Path, default=FOLDER)
+    options = parser.parse_args()
+    if unknown := set(options.names) - set(SHOTS):
+        parser.error(f"expected names among {', '.join(SHOTS)}, got {', '.join(sorted(unknown))}")
+    options.folder.mkdir(parents=True, exist_ok=True)
+    size = round(SIZE[0] * options.scale), round(SIZE[1] * options.scale)
+    with Window(null=True, scale=options.scale, size=size) as window:
+        for name in options.names or SHOTS:
+            take(window, name, options.folder)
 
 
 if __name__ == "__main__":

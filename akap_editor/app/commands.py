@@ -1,12 +1,18 @@
 """Every command once, with its name, key and icon; menus, tool bar and keyboard all read this table."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from .workspace import Workspace
+from ..editor.tool_turning import toggle_hold
+from ..resources import bundled_drawings
+from . import poses
+from .overlays import Measure
+from .workspace import Palette, Workspace
 
 CTRL, SHIFT = imgui.Key.mod_ctrl, imgui.Key.mod_shift
 Key = imgui.Key
@@ -16,13 +22,17 @@ def _always(_: Workspace) -> bool:
     return True
 
 
-def _has_drawing(space: Workspace) -> bool:
+def has_drawing(space: Workspace) -> bool:
+    """Whether there is something to work on."""
     return space.document is not None
 
 
 @dataclass(frozen=True)
 class Command:
-    """label: as in menus; chords: keys, the first one is shown; checked: of a switch, whether it is on."""
+    """label: as in menus; chords: keys, the first one is shown; checked: of a switch, whether it is on.
+
+    typed: a character in place of a key, since where it is on the keyboard differs between countries.
+    """
 
     label: str
     run: Callable[[Workspace], None]
@@ -30,14 +40,36 @@ class Command:
     icon: str = ""
     enabled: Callable[[Workspace], bool] = _always
     checked: Callable[[Workspace], bool] | None = None
+    typed: str = ""
 
     @property
     def key_name(self) -> str:
         """The first key in words, e.g. "Ctrl+Shift+S"."""
-        return chord_name(self.chords[0]) if self.chords else ""
+        return self.typed or (chord_name(self.chords[0]) if self.chords else "")
+
+    def is_pressed(self) -> bool:
+        """Whether one of its keys was pressed in this frame."""
+        if self.typed and ord(self.typed) in imgui.get_io().input_queue_characters:
+            return True
+        return any(imgui.is_key_chord_pressed(int(chord)) for chord in self.chords)
 
 
-_KEY_NAMES = {"_1": "1", "delete": "Del", "equal": "+", "minus": "-"}
+@dataclass(frozen=True)
+class Submenu:
+    """A menu of files to open; files: what each is called, and its path."""
+
+    label: str
+    files: Callable[[Workspace], list[tuple[str, Path]]]
+
+
+_KEY_NAMES = {
+    "_1": "1",
+    "delete": "Del",
+    "equal": "+",
+    "minus": "-",
+    "left_bracket": "[",
+    "right_bracket": "]",
+}
 
 
 def chord_name(chord: int) -> str:
@@ -58,11 +90,42 @@ def _toggle(name: str) -> tuple[Callable[[Workspace], None], Callable[[Workspace
     return flip, lambda space: bool(getattr(space, name))
 
 
-def _set_hand(on: bool) -> Callable[[Workspace], None]:
+def _tool(name: Literal["pins", "hand", "brush"], label: str, key: Key, icon: str) -> Command:
     def choose(space: Workspace) -> None:
-        space.editor.hand_tool = on
+        space.editor.chosen_tool = name
 
-    return choose
+    return Command(label, choose, (key,), icon, _always, lambda space: space.editor.chosen_tool == name)
+
+
+def _has_brush(space: Workspace) -> bool:
+    return has_drawing(space) and space.editor.chosen_tool == "brush"
+
+
+def _resize(up: bool) -> Callable[[Workspace], None]:
+    def resize(space: Workspace) -> None:
+        space.editor.brush = space.editor.brush.resized(up)
+
+    return resize
+
+
+def _erase(space: Workspace) -> None:
+    brush = space.editor.brush
+    space.editor.brush = replace(brush, erasing=not brush.erasing)
+
+
+def _can_hold(space: Workspace) -> bool:
+    session = space.editor.session
+    return session is not None and session.turns and bool(space.editor.selection)
+
+
+def _holds(space: Workspace) -> bool:
+    session, chosen = space.editor.session, space.editor.selection
+    held = [pin.angle is not None for pin in session.state.pins if pin.id in chosen] if session else []
+    return bool(held) and all(held)
+
+
+def _find(space: Workspace) -> None:
+    space.palette = Palette()
 
 
 def _actual_size(space: Workspace) -> None:
@@ -73,7 +136,7 @@ def _remember(space: Workspace) -> None:
     session = space.editor.session
     if session is not None:
         settings = session.state.settings
-        space.editor.set_settings(settings.with_parameter("memory", 0.0 if remembers(space) else 1.0))
+        space.change_settings(settings.with_parameter("memory", 0.0 if remembers(space) else 1.0))
 
 
 def _can_undo(space: Workspace) -> bool:
@@ -93,16 +156,44 @@ def remembers(space: Workspace) -> bool:
     return session is not None and bool(session.state.settings.get("memory", 0.0))
 
 
+def _view_toggle(name: str) -> tuple[Callable[[Workspace], None], Callable[[Workspace], bool]]:
+    def flip(space: Workspace) -> None:
+        setattr(space.view, name, not getattr(space.view, name))
+
+    return flip, lambda space: bool(getattr(space.view, name))
+
+
+def _heat_toggle(measure: Measure) -> tuple[Callable[[Workspace], None], Callable[[Workspace], bool]]:
+    """One map at a time: choosing one switches the other off."""
+
+    def flip(space: Workspace) -> None:
+        space.view.heat = None if space.view.heat == measure else measure
+
+    return flip, lambda space: space.view.heat == measure
+
+
+_field, _field_on = _view_toggle("vectors")
+_ghost, _ghost_on = _view_toggle("ghost")
+_trails, _trails_on = _view_toggle("trails")
+_reference, _reference_on = _view_toggle("show_reference")
+_area, _area_on = _heat_toggle("area")
+_angle, _angle_on = _heat_toggle("angle")
 _mesh, _mesh_on = _toggle("show_mesh")
 _pins, _pins_on = _toggle("show_pins")
 _checker, _checker_on = _toggle("checker")
+_split, _split_on = _toggle("split")
+_timeline, _timeline_on = _toggle("show_timeline")
 _about, _ = _toggle("about")
 _keys, _ = _toggle("keys")
 
 OPEN = Command("Open...", Workspace.ask_open, (CTRL | Key.o,), icons.ICON_FA_FOLDER_OPEN)
-SAVE = Command("Save", Workspace.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, _has_drawing)
-SAVE_AS = Command("Save As...", Workspace.save_as, (CTRL | SHIFT | Key.s,), "", _has_drawing)
-EXPORT = Command("Export PNG...", Workspace.ask_export, (CTRL | Key.e,), icons.ICON_FA_IMAGE, _has_drawing)
+SAVE = Command("Save", Workspace.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, has_drawing)
+SAVE_AS = Command("Save As...", Workspace.save_as, (CTRL | SHIFT | Key.s,), "", has_drawing)
+EXPORT = Command("Export...", Workspace.ask_export, (CTRL | Key.e,), icons.ICON_FA_FILE_EXPORT, has_drawing)
+SAVE_POSE = Command("Save Pose...", poses.ask_save, (), "", has_drawing)
+APPLY_POSE = Command("Apply Pose...", poses.ask_apply, (), "", has_drawing)
+SAVE_RECORDING = Command("Save Recording...", Workspace.ask_save_recording, (), "", has_drawing)
+CLOSE = Command("Close", Workspace.close, (CTRL | Key.w,), "", has_drawing)
 QUIT = Command("Quit", Workspace.quit, (CTRL | Key.q,))
 
 UNDO = Command(
@@ -126,8 +217,29 @@ REMOVE = Command(
     icons.ICON_FA_TRASH_CAN,
     lambda space: bool(space.editor.selection),
 )
+FORWARD = Command(
+    "Bring Forward",
+    lambda space: space.editor.shift_depth(1),
+    (CTRL | Key.right_bracket,),
+    "",
+    lambda space: bool(space.editor.selection),
+)
+BACK = Command(
+    "Send Back",
+    lambda space: space.editor.shift_depth(-1),
+    (CTRL | Key.left_bracket,),
+    "",
+    lambda space: bool(space.editor.selection),
+)
+REMOVE_LAST = Command(
+    "Remove Last Pin",
+    lambda space: space.editor.remove_last(),
+    (Key.backspace,),
+    "",
+    lambda space: space.editor.session is not None and bool(space.editor.session.state.pins),
+)
 SELECT_ALL = Command(
-    "Select All Pins", lambda space: space.editor.select_all(), (CTRL | Key.a,), "", _has_drawing
+    "Select All Pins", lambda space: space.editor.select_all(), (CTRL | Key.a,), "", has_drawing
 )
 DESELECT = Command(
     "Deselect",
@@ -143,45 +255,133 @@ RESET = Command(
     icons.ICON_FA_PERSON,
     lambda space: space.editor.session is not None and space.editor.session.posed,
 )
+BAKE = Command(
+    "Make Pose the Rest Pose",
+    lambda space: space.editor.bake_pose(),
+    (),
+    "",
+    lambda space: space.editor.session is not None and space.editor.session.posed,
+)
 REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _is_akap, remembers)
 
-PIN_TOOL = Command(
-    "Pins", _set_hand(False), (Key.p,), icons.ICON_FA_THUMBTACK, _always, lambda s: not s.editor.hand_tool
+HOLD_ANGLE = Command("Hold Angle", lambda space: toggle_hold(space.editor), (), "", _can_hold, _holds)
+
+PIN_TOOL = _tool("pins", "Pins", Key.p, icons.ICON_FA_THUMBTACK)
+HAND_TOOL = _tool("hand", "Move Canvas", Key.n, icons.ICON_FA_HAND)
+BRUSH_TOOL = _tool("brush", "Stiffness Brush", Key.s, icons.ICON_FA_PAINTBRUSH)
+ERASE = Command("Erase Stiffness", _erase, (Key.e,), "", _has_brush, lambda space: space.editor.brush.erasing)
+SMALLER = Command("Smaller Brush", _resize(False), (Key.left_bracket,), "", _has_brush)
+LARGER = Command("Larger Brush", _resize(True), (Key.right_bracket,), "", _has_brush)
+SOFTEN_ALL = Command(
+    "Remove All Stiffness",
+    lambda space: space.editor.edit("Remove stiffness", lambda session: session.set_stiffness(None)),
+    (),
+    "",
+    lambda space: space.editor.session is not None and space.editor.session.state.stiffness is not None,
 )
-HAND_TOOL = Command(
-    "Move Canvas", _set_hand(True), (Key.n,), icons.ICON_FA_HAND, _always, lambda s: s.editor.hand_tool
-)
-FIT = Command("Fit in Window", lambda space: space.editor.fit(), (Key.f,), icons.ICON_FA_EXPAND, _has_drawing)
-ACTUAL = Command("100 %", _actual_size, (Key._1,), "", _has_drawing)
+FIT = Command("Fit in Window", lambda space: space.editor.fit(), (Key.f,), icons.ICON_FA_EXPAND, has_drawing)
+ACTUAL = Command("100 %", _actual_size, (Key._1,), "", has_drawing)
 ZOOM_IN = Command(
-    "Zoom In", lambda space: space.editor.zoom(1.25), (Key.equal, CTRL | Key.equal), "", _has_drawing
+    "Zoom In", lambda space: space.editor.zoom(1.25), (Key.equal, CTRL | Key.equal), "", has_drawing
 )
 ZOOM_OUT = Command(
-    "Zoom Out", lambda space: space.editor.zoom(0.8), (Key.minus, CTRL | Key.minus), "", _has_drawing
+    "Zoom Out", lambda space: space.editor.zoom(0.8), (Key.minus, CTRL | Key.minus), "", has_drawing
 )
 SHOW_MESH = Command("Show Mesh", _mesh, (Key.m,), icons.ICON_FA_DRAW_POLYGON, _always, _mesh_on)
 SHOW_PINS = Command("Show Pins", _pins, (SHIFT | Key.p,), "", _always, _pins_on)
+SHOW_TIMELINE = Command("Timeline", _timeline, (SHIFT | Key.t,), "", has_drawing, _timeline_on)
+SPLIT = Command("Two Methods Side by Side", _split, (), icons.ICON_FA_TABLE_COLUMNS, has_drawing, _split_on)
 CHECKER = Command("Checkerboard", _checker, (Key.b,), "", _always, _checker_on)
+SHOW_FIELD = Command("Vector Field of the Drag", _field, (Key.v,), "", has_drawing, _field_on)
+SHOW_AREA = Command("Distortion of Areas", _area, (Key.d,), "", has_drawing, _area_on)
+SHOW_ANGLE = Command("Distortion of Angles", _angle, (SHIFT | Key.d,), "", has_drawing, _angle_on)
+SHOW_GHOST = Command("Rest Pose", _ghost, (Key.g,), "", has_drawing, _ghost_on)
+SHOW_TRAILS = Command("Pin Trails", _trails, (Key.t,), "", has_drawing, _trails_on)
+CHOOSE_REFERENCE = Command("Reference Picture...", Workspace.ask_reference, (), "", has_drawing)
+SHOW_REFERENCE = Command(
+    "Show Reference Picture",
+    _reference,
+    (SHIFT | Key.b,),
+    "",
+    lambda space: space.view.reference is not None,
+    _reference_on,
+)
+OVERLAYS = (SHOW_FIELD, SHOW_AREA, SHOW_ANGLE, SHOW_GHOST, SHOW_TRAILS)
 
-KEYS = Command("Keys and Mouse", _keys, (Key.f1,))
+PALETTE = Command("Find Command...", _find, (CTRL | Key.k, Key.f3))
+KEYS = Command("Keys and Mouse", _keys, (Key.f1,), typed="?")
 ABOUT = Command("About akap-editor", _about)
 
-MENUS: tuple[tuple[str, tuple[Command | None, ...]], ...] = (
-    ("File", (OPEN, None, SAVE, SAVE_AS, None, EXPORT, None, QUIT)),
-    ("Edit", (UNDO, REDO, None, REMOVE, SELECT_ALL, DESELECT, None, RESET, REMEMBER)),
-    ("View", (FIT, ACTUAL, ZOOM_IN, ZOOM_OUT, None, SHOW_MESH, SHOW_PINS, CHECKER)),
-    ("Help", (KEYS, ABOUT)),
+OPEN_BUNDLED = Submenu(
+    "Open Bundled Drawing", lambda space: [(path.stem.capitalize(), path) for path in bundled_drawings()]
+)
+OPEN_RECENT = Submenu("Open Recent", lambda space: [(path.name, path) for path in space.preferences.recent])
+
+_EXPORTS = (EXPORT, SAVE_RECORDING)
+
+# None is a line between groups.
+MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
+    (
+        "File",
+        (
+            OPEN,
+            OPEN_RECENT,
+            OPEN_BUNDLED,
+            CLOSE,
+            None,
+            SAVE,
+            SAVE_AS,
+            None,
+            SAVE_POSE,
+            APPLY_POSE,
+            None,
+            EXPORT,
+            SAVE_RECORDING,
+            None,
+            QUIT,
+        ),
+    ),
+    (
+        "Edit",
+        (
+            UNDO,
+            REDO,
+            None,
+            REMOVE,
+            REMOVE_LAST,
+            SELECT_ALL,
+            DESELECT,
+            None,
+            FORWARD,
+            BACK,
+            HOLD_ANGLE,
+            None,
+            RESET,
+            BAKE,
+            REMEMBER,
+            SOFTEN_ALL,
+        ),
+    ),
+    (
+        "View",
+        (
+            *(FIT, ACTUAL, ZOOM_IN, ZOOM_OUT, None),
+            *(SHOW_MESH, SHOW_PINS, *OVERLAYS, None),
+            *(CHECKER, CHOOSE_REFERENCE, SHOW_REFERENCE),
+            *(None, SHOW_TIMELINE, SPLIT),
+        ),
+    ),
+    ("Help", (PALETTE, KEYS, ABOUT)),
 )
 COMMANDS = (
-    *(command for _, group in MENUS for command in group if command is not None),
-    PIN_TOOL,
-    HAND_TOOL,
+    *(command for _, group in MENUS for command in group if isinstance(command, Command)),
+    *(PIN_TOOL, HAND_TOOL, BRUSH_TOOL),
+    *(ERASE, SMALLER, LARGER),
 )
 
 
 def run_pressed(space: Workspace) -> None:
     """Run the commands whose keys were pressed in this frame."""
     for command in COMMANDS:
-        pressed = any(imgui.is_key_chord_pressed(int(chord)) for chord in command.chords)
-        if pressed and command.enabled(space):
+        if command.is_pressed() and command.enabled(space):
             space.attempt(lambda command=command: command.run(space))  # type: ignore[misc]

@@ -11,20 +11,10 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import portable_file_dialogs as native
 
 from .. import __version__
-from .commands import MENUS
+from . import export_dialog, keys_overlay, widgets
+from .recovery import Recovery
 from .theme import ACCENT, QUIET
 from .workspace import FileRequest, Workspace
-
-_FLAGS = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
-_MOUSE = (
-    ("Click on the drawing", "add a pin"),
-    ("Drag a pin", "bend the drawing"),
-    ("Press on the drawing and drag", "add a pin and bend"),
-    ("Shift-click, or drag a box", "select several pins"),
-    ("Middle-drag, or Space and drag", "move the canvas"),
-    ("Wheel", "zoom at the pointer"),
-    ("Esc while dragging", "go back to before the drag"),
-)
 
 
 def has_native_dialogs() -> bool:
@@ -35,7 +25,8 @@ def has_native_dialogs() -> bool:
 class Dialogs:
     """Draws the dialog that the workspace asks for, if any."""
 
-    def __init__(self, use_native: bool) -> None:
+    def __init__(self, use_native: bool, recovery: Recovery) -> None:
+        self._recovery = recovery
         self._use_native = use_native
         self._native: Any = None
         self._asked: FileRequest | None = None
@@ -51,10 +42,14 @@ class Dialogs:
             _message(space, scale)
         elif space.question is not None:
             _unsaved(space)
+        elif space.lost:
+            self._recovery.draw(space, scale)
         elif space.request is not None:
             self._file(space, space.request, scale)
+        elif space.export.shown:
+            export_dialog.draw(space, scale)
         elif space.keys:
-            _keys(space, scale)
+            keys_overlay.draw(space, scale)
         elif space.about:
             _about(space, scale)
 
@@ -81,46 +76,6 @@ def _open_native(request: FileRequest) -> Any:
     return native.open_file(request.title, str(request.folder), [patterns, patterns])
 
 
-def _begin(title: str) -> bool:
-    """A dialog in the middle of the window, the rest dimmed."""
-    name = f"{title}###dialog {title}"
-    if not imgui.is_popup_open(name):
-        imgui.open_popup(name)
-    imgui.set_next_window_pos(imgui.get_main_viewport().get_center(), imgui.Cond_.always, ImVec2(0.5, 0.5))
-    return bool(imgui.begin_popup_modal(name, None, _FLAGS)[0])
-
-
-def _end() -> None:
-    imgui.end_popup()
-
-
-def _button(label: str, primary: bool = False) -> bool:
-    width = max(imgui.calc_text_size(label).x + 2.5 * imgui.get_font_size(), 6 * imgui.get_font_size())
-    if primary:
-        imgui.push_style_color(imgui.Col_.button, imgui.ImVec4(*ACCENT))
-        imgui.push_style_color(imgui.Col_.button_hovered, imgui.ImVec4(1.0, 0.77, 0.38, 1.0))
-        imgui.push_style_color(imgui.Col_.button_active, imgui.ImVec4(0.9, 0.62, 0.2, 1.0))
-        imgui.push_style_color(imgui.Col_.text, imgui.ImVec4(0.09, 0.1, 0.11, 1.0))
-    pressed = bool(imgui.button(label, ImVec2(width, 0)))
-    if primary:
-        imgui.pop_style_color(4)
-    return pressed
-
-
-def _escape() -> bool:
-    return bool(imgui.is_key_pressed(imgui.Key.escape, False))
-
-
-def _enter() -> bool:
-    keys = (imgui.Key.enter, imgui.Key.keypad_enter)
-    return any(imgui.is_key_pressed(key, False) for key in keys)
-
-
-def _close(space: Workspace, field: str, value: object) -> None:
-    imgui.close_current_popup()
-    setattr(space, field, value)
-
-
 def _text(text: str, width: float) -> None:
     imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width)
     imgui.text_unformatted(text)
@@ -128,12 +83,12 @@ def _text(text: str, width: float) -> None:
 
 
 def _message(space: Workspace, scale: float) -> None:
-    if _begin("That did not work"):
+    if widgets.begin_dialog("That did not work"):
         _text(space.error, 420 * scale)
         imgui.spacing()
-        if _button("OK", primary=True) or _escape() or _enter():
-            _close(space, "error", "")
-        _end()
+        if widgets.button("OK", primary=True) or widgets.escape() or widgets.enter():
+            widgets.close(space, "error", "")
+        imgui.end_popup()
 
 
 def _unsaved(space: Workspace) -> None:
@@ -141,26 +96,26 @@ def _unsaved(space: Workspace) -> None:
     if question is None or document is None:
         space.question = None
         return
-    if _begin("Unsaved changes"):
+    if widgets.begin_dialog("Unsaved changes"):
         name = document.path.name if document.path is not None else document.drawing.name
         imgui.text(f"Save the changes to {name} before it is closed?")
         imgui.spacing()
-        if _button("Save", primary=True) or _enter():
-            _close(space, "question", None)
+        if widgets.button("Save", primary=True) or widgets.enter():
+            widgets.close(space, "question", None)
             space.save(question.go_on)
         imgui.same_line()
-        if _button("Discard"):
-            _close(space, "question", None)
+        if widgets.button("Discard"):
+            widgets.close(space, "question", None)
             question.go_on()
         imgui.same_line()
-        if _button("Cancel") or _escape():
-            _close(space, "question", None)
-        _end()
+        if widgets.button("Cancel") or widgets.escape():
+            widgets.close(space, "question", None)
+        imgui.end_popup()
 
 
 def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: float) -> None:
     """An own file dialog, for systems that have none to offer."""
-    if not _begin(request.title):
+    if not widgets.begin_dialog(request.title):
         return
     if imgui.button(icons.ICON_FA_ARROW_UP + "##up"):
         request.folder = request.folder.parent
@@ -181,14 +136,14 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
     accept = ("Replace" if replaces else "Save") if request.saving else "Open"
     imgui.spacing()
     imgui.begin_disabled(not request.name.strip())
-    accepted = _button(accept, primary=True)
+    accepted = widgets.button(accept, primary=True)
     imgui.end_disabled()
     imgui.same_line()
-    if _button("Cancel") or _escape():
-        _close(space, "request", None)
-    elif (accepted or chosen or _enter()) and request.name.strip():
+    if widgets.button("Cancel") or widgets.escape():
+        widgets.close(space, "request", None)
+    elif (accepted or chosen or widgets.enter()) and request.name.strip():
         _accept(space, request)
-    _end()
+    imgui.end_popup()
 
 
 def _list_entries(request: FileRequest, scale: float) -> bool:
@@ -214,34 +169,12 @@ def _accept(space: Workspace, request: FileRequest) -> None:
     if os.path.isdir(path):
         request.folder, request.name = path, ""
         return
-    _close(space, "request", None)
+    widgets.close(space, "request", None)
     request.use(Path(path))
 
 
-def _keys(space: Workspace, scale: float) -> None:
-    if not _begin("Keys and mouse"):
-        return
-    if imgui.begin_table("##keys", 2):
-        imgui.table_setup_column("what", imgui.TableColumnFlags_.width_fixed, 250 * scale)
-        imgui.table_setup_column("key", imgui.TableColumnFlags_.width_fixed, 210 * scale)
-        rows = [*_MOUSE]
-        for _, commands in MENUS:
-            rows += [(c.label.rstrip("."), c.key_name) for c in commands if c is not None and c.chords]
-        for left, right in rows:
-            imgui.table_next_row()
-            imgui.table_next_column()
-            imgui.text(left)
-            imgui.table_next_column()
-            imgui.text_colored(imgui.ImVec4(*QUIET), right)
-        imgui.end_table()
-    imgui.spacing()
-    if _button("Close", primary=True) or _escape() or _enter():
-        _close(space, "keys", False)
-    _end()
-
-
 def _about(space: Workspace, scale: float) -> None:
-    if not _begin("About akap-editor"):
+    if not widgets.begin_dialog("About akap-editor"):
         return
     imgui.text(f"akap-editor {__version__}")
     _text(
@@ -257,6 +190,6 @@ def _about(space: Workspace, scale: float) -> None:
     )
     imgui.pop_style_color()
     imgui.spacing()
-    if _button("Close", primary=True) or _escape() or _enter():
-        _close(space, "about", False)
-    _end()
+    if widgets.button("Close", primary=True) or widgets.escape() or widgets.enter():
+        widgets.close(space, "about", False)
+    imgui.end_popup()

@@ -16,8 +16,10 @@ def _hex(color: str, alpha: float = 1.0) -> Rgba:
 
 
 ACCENT = _hex("#FFB43A")
+ACCENT_HOVER = _hex("#FFC461")
+ACCENT_ACTIVE = _hex("#E69E33")
 TEXT = _hex("#E8E9EC")
-QUIET = _hex("#A3A7B0")
+QUIET = _hex("#B4B8C0")
 PANEL = _hex("#212328")
 DARK = _hex("#18191C")
 POPUP = _hex("#26282E")
@@ -25,10 +27,11 @@ FRAME = _hex("#2E3138")
 HOVER = _hex("#3A3E47")
 ACTIVE = _hex("#464B56")
 LINE = _hex("#34373E")
+STRONG_LINE = _hex("#767B86")  # where the line is all that shows what can be used
 
 _COLORS: dict[imgui.Col_, Rgba] = {
     imgui.Col_.text: TEXT,
-    imgui.Col_.text_disabled: _hex("#7B7F88"),
+    imgui.Col_.text_disabled: _hex("#969AA3"),
     imgui.Col_.window_bg: PANEL,
     imgui.Col_.child_bg: (0, 0, 0, 0),
     imgui.Col_.popup_bg: POPUP,
@@ -41,9 +44,9 @@ _COLORS: dict[imgui.Col_, Rgba] = {
     imgui.Col_.title_bg_collapsed: POPUP,
     imgui.Col_.menu_bar_bg: PANEL,
     imgui.Col_.scrollbar_bg: (0, 0, 0, 0),
-    imgui.Col_.scrollbar_grab: FRAME,
-    imgui.Col_.scrollbar_grab_hovered: HOVER,
-    imgui.Col_.scrollbar_grab_active: ACTIVE,
+    imgui.Col_.scrollbar_grab: STRONG_LINE,
+    imgui.Col_.scrollbar_grab_hovered: QUIET,
+    imgui.Col_.scrollbar_grab_active: QUIET,
     imgui.Col_.check_mark: DARK,
     imgui.Col_.checkbox_selected_bg: ACCENT,
     imgui.Col_.slider_grab: ACCENT,
@@ -92,6 +95,7 @@ def apply(scale: float) -> None:
     style.grab_rounding = 5
     style.scrollbar_rounding = 6
     style.scrollbar_size = 11
+    style.grab_min_size = 9
     style.window_border_size = 1
     style.popup_border_size = 1
     style.frame_border_size = 0

@@ -17,14 +17,20 @@ from numpy.typing import NDArray
 
 from ..editor.document import Document
 from ..errors import AkapError, DisplayError, GraphicsError
+from ..io.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from ..render.renderer import CANVAS, Background, Renderer
-from . import commands, panels, theme
+from . import commands, palette, panels, split_view, theme
 from .canvas import Canvas
 from .dialogs import Dialogs, has_native_dialogs
+from .overlays import draw_legend
+from .preferences import Preferences
+from .recovery import Recovery
+from .welcome import Welcome
 from .workspace import Workspace
 
 SIZE = (1280, 800)
+SMALLEST = (640, 400)
 PLAIN = Background(color=CANVAS.color)
 SETTLE_FRAMES = 3  # ImGui needs so many frames after an event until everything stands where it belongs
 IDLE_SECONDS = 1.0
@@ -39,7 +45,9 @@ class Window:
     """The editor on the screen. Use as a context manager, or call `close` in the end.
 
     null: GLFW's null platform with EGL, which needs no display server; hidden: no visible window;
-    scale: points per design point, by default what the monitor says; size: of the window, in points.
+    scale: points per design point, by default what the monitor says; size: of the window, in points, by
+    default as the preferences remember it; preferences: by default nothing is remembered;
+    autosave: by default unsaved work is not protected.
     Raises DisplayError where there is no display, GraphicsError where there is no OpenGL 3.3.
     """
 
@@ -48,16 +56,23 @@ class Window:
         null: bool = False,
         hidden: bool = False,
         scale: float | None = None,
-        size: tuple[int, int] = SIZE,
+        size: tuple[int, int] | None = None,
+        preferences: Preferences | None = None,
+        autosave: Autosave | None = None,
     ) -> None:
-        self.space = Workspace()
+        self.space = Workspace.remembering(preferences or Preferences())
+        self.space.autosave = autosave
+        if autosave is not None:
+            self.space.lost = autosave.lost()
         self.frames = 0
         self.after_draw: list[Callable[[], None]] = []
         self._scale_wanted, self._in_frame, self._focused = scale, False, False
         self._awake = SETTLE_FRAMES
-        self._dropped: list[Path] = []
+        self._dropped: list[list[Path]] = []
         self._title = ""
-        self._handle = _create_window(null, hidden, size)
+        self._handle = _create_window(null, hidden, size or _remembered_size(self.space.preferences))
+        if self.space.preferences.get("maximized", False):
+            glfw.maximize_window(self._handle)
         self.ctx = moderngl.create_context(require=330)
         self.renderer = Renderer(self.ctx)
         self.space.exporter = OffscreenRenderer(self.ctx)
@@ -77,7 +92,9 @@ class Window:
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
         self._canvas = Canvas()
-        self._dialogs = Dialogs(has_native_dialogs() and not null)
+        self._welcome = Welcome(self.ctx)
+        self._recovery = Recovery(self.ctx)
+        self._dialogs = Dialogs(has_native_dialogs() and not null, self._recovery)
 
     def __enter__(self) -> "Window":
         return self
@@ -86,8 +103,11 @@ class Window:
         self.close()
 
     def close(self) -> None:
-        """Free everything."""
+        """Free everything; what is remembered is written."""
+        self._remember()
         self.space.exporter.__exit__()
+        self._welcome.release()
+        self._recovery.release()
         self.renderer.release()
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
@@ -102,33 +122,51 @@ class Window:
         """Show a document and stay until the window is closed."""
         if document is not None:
             self.space.show(document)
-        while not self.space.closing:
-            if self._busy:
-                glfw.poll_events()
-            else:
-                self._sleep()
-            # ImGui takes some events one per frame, and panels show the pose of the frame before
-            if imgui.get_current_context().input_events_queue.size() or self.space.editor.moving:
-                self.wake()
-            if self._busy:
-                self._awake -= 1
-                if not self.frame():
-                    glfw.wait_events_timeout(0.25)  # minimised
+        try:
+            while not self.space.closing:
+                self._turn()
+        except BaseException:
+            self.space.rescue()
+            raise
+        if self.space.autosave is not None:
+            self.space.autosave.close()
+
+    def _turn(self) -> None:
+        """Once around the loop: sleep or draw a frame."""
+        self.space.protect()
+        if self._busy:
+            glfw.poll_events()
+        else:
+            self._remember()
+            self._sleep()
+        # ImGui takes some events one per frame, and panels show the pose of the frame before
+        if imgui.get_current_context().input_events_queue.size() or self.space.moving:
+            self.wake()
+        if self._busy:
+            self._awake -= 1
+            if not self.frame():
+                glfw.wait_events_timeout(0.25)  # minimised
 
     @property
     def _busy(self) -> bool:
         space = self.space
         return (
-            self._awake > 0
-            or space.editor.moving
-            or space.waiting
-            or self._dialogs.waiting
-            or bool(self._dropped)
+            self._awake > 0 or space.moving or space.waiting or self._dialogs.waiting or bool(self._dropped)
         )
 
     def wake(self) -> None:
         """Draw the next few frames, whatever happens."""
         self._awake = SETTLE_FRAMES
+
+    def _remember(self) -> None:
+        """Write the preferences where something has changed; a moment when nothing else happens will do."""
+        maximized = bool(glfw.get_window_attrib(self._handle, glfw.MAXIMIZED))
+        width, height = glfw.get_window_size(self._handle)
+        preferences = self.space.preferences
+        preferences.put("maximized", maximized)
+        if not maximized and not glfw.get_window_attrib(self._handle, glfw.ICONIFIED):
+            preferences.put("window", [round(width / self.scale), round(height / self.scale)])
+        self.space.remember()
 
     def _sleep(self) -> None:
         """Wait in the operating system until something happens."""
@@ -183,10 +221,15 @@ class Window:
         space = self.space
         self._watch_focus()
         while self._dropped:
-            space.open_path(self._dropped.pop(0))
-        space.editor.canvas = panels.draw(space, self.scale)
+            space.open_dropped(self._dropped.pop(0))
+        modal = _popup_is_open()  # before as well as after: the key that closes one must not do more
+        space.editor.canvas = split_view.draw(space, panels.draw(space, self.scale), self.scale)
+        if space.document is None:
+            self._welcome.draw(space, self.scale, self._density)
+        palette.draw(space, self.scale)
         self._dialogs.draw(space, self.scale)
-        modal = imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
+        self._canvas.draw_popup(space, self.scale)
+        modal = modal or _popup_is_open()
         if not imgui.get_io().want_text_input and not modal:
             commands.run_pressed(space)
         if modal:
@@ -196,6 +239,7 @@ class Window:
             self._canvas.choose_cursor(space)
         space.editor.advance()
         self._canvas.draw_overlay(space, self.scale)
+        draw_legend(space.view, space.editor, self.scale)
 
     def _recover(self, state: Any, message: str) -> None:
         """Repair ImGui's stacks after an exception; the next frame would fail otherwise."""
@@ -210,16 +254,19 @@ class Window:
         space = self.space
         background = replace(CANVAS, cell=CANVAS.cell * self.scale) if space.checker else PLAIN
         document = space.document
-        if document is not None:
-            self.renderer.show(document.drawing, document.state.positions)
+        if document is None:
+            self.renderer.hide()
+        else:
+            self.renderer.show(document.drawing, document.state.positions, document.order)
         width, height = glfw.get_window_size(self._handle)
         self.renderer.draw(
             self.ctx.screen,
             framebuffer,
             space.editor.camera.view(width, height),
             background=background,
-            mesh_lines=space.show_mesh,
+            overlays=space.overlays(self.scale * framebuffer[0] / max(width, 1)),
         )
+        split_view.render(space, self.renderer, self.ctx.screen, framebuffer, (width, height), background)
 
     # -- the window ------------------------------------------------------------------------------------------
 
@@ -228,9 +275,13 @@ class Window:
         """Points of the window per point of the design: 2 on a 200 % monitor, 1 on a Retina display."""
         if self._scale_wanted is not None:
             return self._scale_wanted
+        return float(glfw.get_window_content_scale(self._handle)[0] / self._density) or 1.0
+
+    @property
+    def _density(self) -> float:
+        """Pixels per point of the window: 2 on a Retina display, else 1."""
         points, pixels = glfw.get_window_size(self._handle)[0], glfw.get_framebuffer_size(self._handle)[0]
-        content = glfw.get_window_content_scale(self._handle)[0]
-        return float(content * max(points, 1) / max(pixels, 1)) or 1.0
+        return max(pixels, 1) / max(points, 1)
 
     def screenshot(self) -> NDArray[np.uint8]:
         """(h, w, 3) of the frame being drawn; to be called from `after_draw`."""
@@ -256,7 +307,7 @@ class Window:
         self._focused = focused
 
     def _on_drop(self, _: Any, paths: list[str]) -> None:
-        self._dropped += [Path(path) for path in paths[:1]]
+        self._dropped.append([Path(path) for path in paths])
         self.wake()
 
     def _on_close(self, _: Any) -> None:
@@ -267,6 +318,18 @@ class Window:
         """While a window is being resized, some systems call only this."""
         self.wake()
         self.frame()
+
+
+def _popup_is_open() -> bool:
+    return bool(imgui.is_popup_open("", imgui.PopupFlags_.any_popup))
+
+
+def _remembered_size(preferences: Preferences) -> tuple[int, int]:
+    """Width and height in design points, never too small to find one's way back."""
+    match preferences.get("window", [*SIZE]):
+        case [int(width), int(height)]:
+            return min(max(width, SMALLEST[0]), 16384), min(max(height, SMALLEST[1]), 16384)
+    return SIZE
 
 
 def _create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
@@ -292,6 +355,8 @@ def _create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
     if not handle:
         glfw.terminate()
         raise GraphicsError("this computer offers no OpenGL 3.3 core profile, which the window needs")
+    if not null:  # there GLFW takes the least height for the greatest
+        glfw.set_window_size_limits(handle, *SMALLEST, glfw.DONT_CARE, glfw.DONT_CARE)
     glfw.make_context_current(handle)
     glfw.swap_interval(1)
     return handle

@@ -2,18 +2,36 @@
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
+from typing import Literal
 
-from ..editor.document import Document
+from ..editor.beside import Beside
+from ..editor.document import Document, Settings
 from ..editor.editor import Editor
-from ..errors import AkapError
+from ..editor.mixer import Mixer
+from ..editor.player import Player
+from ..editor.remesher import Remesher
+from ..errors import AkapError, InputError
 from ..geometry.checks import Floats
 from ..geometry.distortion import Distortion, distortion
 from ..io import project_file
-from ..io.documents import PICTURE_SUFFIXES, PROJECT_SUFFIX, open_document
-from ..io.images import has_transparency, write_png
+from ..io.autosave import Autosave, Copy
+from ..io.documents import MESH_SUFFIXES, PICTURE_SUFFIXES, PROJECT_SUFFIX, open_document
+from ..io.export import export, format_of
+from ..io.images import has_transparency, is_animation, read_image
+from ..io.recordings import RECORDING_SUFFIX, write_recording
 from ..render.offscreen import OffscreenRenderer
+from ..render.overlays import Overlays
+from ..resources import bundled_drawings
+from .drafts import Drafts
+from .exporting import ExportChoice
+from .meter import Meter
+from .overlays import ViewState
+from .preferences import Preferences
+
+SWITCHES = ("show_mesh", "checker", "show_timeline")  # fields that are remembered between runs
 
 
 @dataclass
@@ -21,6 +39,15 @@ class Question:
     """Unsaved changes stand in the way of ``go_on``."""
 
     go_on: Callable[[], None]
+
+
+@dataclass
+class Palette:
+    """The command palette: what is typed, which line is chosen, and whether it has been on the screen."""
+
+    query: str = ""
+    chosen: int = 0
+    shown: bool = False
 
 
 @dataclass
@@ -56,7 +83,7 @@ class FileRequest:
         shown = [
             (name, is_folder)
             for name, is_folder in found
-            if not name.startswith(".") and (is_folder or Path(name).suffix.lower() in self.suffixes)
+            if not name.startswith(".") and (is_folder or name.lower().endswith(self.suffixes))
         ]
         return sorted(shown, key=lambda entry: (not entry[1], entry[0].lower()))
 
@@ -71,7 +98,13 @@ class Workspace:
     editor: Editor = field(default_factory=Editor)
     show_mesh: bool = False
     show_pins: bool = True
+    show_timeline: bool = False
+    player: Player = field(default_factory=Player)
+    mixer: Mixer = field(default_factory=Mixer)
+    grip: Literal["start", "end", "head"] = "head"  # what the pointer holds of the timeline
     checker: bool = True
+    split: bool = False
+    beside: Beside = field(default_factory=Beside)
     notice: str = ""
     error: str = ""
     about: bool = False
@@ -79,11 +112,44 @@ class Workspace:
     closing: bool = False
     question: Question | None = None
     request: FileRequest | None = None
+    export: ExportChoice = field(default_factory=ExportChoice)
+    palette: Palette | None = None
     folder: Path = field(default_factory=Path.cwd)
     exporter: OffscreenRenderer = field(default_factory=OffscreenRenderer)
+    preferences: Preferences = field(default_factory=Preferences)
+    autosave: Autosave | None = None
+    lost: list[Copy] = field(default_factory=list)  # unsaved work of programs that crashed
+    drafts: Drafts = field(default_factory=Drafts)
+    view: ViewState = field(default_factory=ViewState)
+    meter: Meter = field(default_factory=Meter)
+    first_steps: bool = False  # whether newcomers are shown how to begin
+    remesher: Remesher = field(init=False)
     _jobs: list[Callable[[], None]] = field(default_factory=list)
     _due: list[Callable[[], None]] = field(default_factory=list)
     _measured: tuple[Floats, Distortion] | None = None
+
+    def __post_init__(self) -> None:
+        self.remesher = Remesher(self.editor)
+
+    # -- between runs ----------------------------------------------------------------------------------------
+
+    @classmethod
+    def remembering(cls, preferences: Preferences) -> "Workspace":
+        """As it was left the last time."""
+        space = cls(preferences=preferences, notice=preferences.problem)
+        space.first_steps = preferences.is_kept and not preferences.get("first steps done", False)
+        for name in SWITCHES:
+            setattr(space, name, preferences.get(name, getattr(space, name)))
+        return space
+
+    def remember(self) -> None:
+        """Write what has changed to the preferences; if that fails, a notice says so once."""
+        for name in SWITCHES:
+            self.preferences.put(name, getattr(self, name))
+        try:
+            self.preferences.write()
+        except InputError as error:
+            self.notice = f"Not remembered for the next time: {error}"
 
     # -- work that may fail ----------------------------------------------------------------------------------
 
@@ -95,14 +161,18 @@ class Workspace:
     @property
     def waiting(self) -> bool:
         """Whether there is work left."""
-        return bool(self._jobs or self._due)
+        return bool(self._jobs or self._due) or self.remesher.busy
 
     def work(self) -> bool:
         """After a frame: do what was put off before it began; whether there was anything."""
         jobs, self._due, self._jobs = self._due, self._jobs, []
         for job in jobs:
             self.attempt(job)
-        return bool(jobs)
+        try:
+            return self.remesher.advance() or bool(jobs)
+        except InputError as error:  # no dialog in the middle of a drag
+            self.notice = str(error)
+            return True
 
     def attempt(self, job: Callable[[], object]) -> bool:
         """Run ``job``; what it raises on purpose becomes a message, and everything open stays as it was."""
@@ -121,21 +191,58 @@ class Workspace:
         return self.editor.session.document if self.editor.session is not None else None
 
     def show(self, document: Document) -> None:
-        """Make a document the open one."""
-        self.editor.open(document)
+        """Make a document the open one. A new drawing bends as was chosen last."""
+        chosen = self._chosen_settings() if document.state.settings == Settings() else None
+        try:
+            preferred = replace(document.state, settings=chosen or document.state.settings)
+            self.editor.open(document if chosen is None or document.path else document.with_state(preferred))
+        except InputError:
+            self.editor.open(document)
         opaque = document.path is None and not has_transparency(document.drawing.image)
         self.notice = (
             "This picture has no transparent background, so the whole rectangle bends" if opaque else ""
         )
 
-    def open_path(self, path: Path) -> None:
-        """Open a picture or a posed drawing, after asking about unsaved changes."""
+    def change_settings(self, settings: Settings) -> None:
+        """Bend differently from now on, new drawings too. Raises InputError on what no method knows."""
+        self.editor.set_settings(settings)
+        values = {"method": settings.method, "parameters": dict(settings.parameters)}
+        self.preferences.put("settings", values)
+
+    def _chosen_settings(self) -> Settings | None:
+        """Those of the last change, of this run or one before."""
+        match self.preferences.get("settings", {}):
+            case {"method": str(method), "parameters": dict(parameters)}:
+                return Settings(method, tuple(sorted(parameters.items())))
+        return None
+
+    def open_dropped(self, paths: list[Path]) -> None:
+        """Open the first of the files that were dropped on the window."""
+        several = f"Opened {paths[0].name}, the first of {len(paths)} files" if len(paths) > 1 else ""
+        self.open_path(paths[0], several)
+
+    def open_path(self, path: Path, notice: str = "") -> None:
+        """Open a picture or a posed drawing, after asking about unsaved changes; then show ``notice``."""
 
         def read() -> None:
-            self.show(open_document(path))
-            self.folder = path.resolve().parent
+            try:
+                document = open_document(path)
+            except InputError:
+                self.preferences.forget(path)
+                raise
+            self.show(document)
+            if is_animation(path):
+                self.notice = f"{path.name} is an animation; its first frame was opened"
+            self._used(path)
+            self.notice = notice or self.notice
 
         self.unless_unsaved(lambda: self.later(read, f"Opening {path.name} ..."))
+
+    def _used(self, path: Path) -> None:
+        """A file was opened or saved: the next dialog begins there, and it can be found again."""
+        self.folder = path.resolve().parent
+        if path.resolve() not in map(Path.resolve, bundled_drawings()):
+            self.preferences.opened(path)
 
     def unless_unsaved(self, go_on: Callable[[], None]) -> None:
         """Go on at once, or after the user has said what to do with unsaved changes."""
@@ -143,6 +250,35 @@ class Workspace:
             self.question = Question(go_on)
         else:
             go_on()
+
+    def protect(self) -> None:
+        """See to it that unsaved work would survive a crash; called all the time."""
+        session = self.editor.session
+        if self.autosave is None:
+            return
+        try:
+            last = session.history.last if session is not None else None
+            self.autosave.watch(self.document, self.editor.modified, last)
+        except InputError as error:
+            self.notice = str(error)
+
+    def rescue(self) -> None:
+        """The program is about to end by mistake: keep what is not saved, if that is still possible."""
+        if self.autosave is not None and self.document is not None and self.editor.modified:
+            self.attempt(partial(self.autosave.rescue, self.document))
+
+    def recover(self, copy: Copy, document: Document) -> None:
+        """Go on with what a program that crashed has left; what else is lost is asked for another time."""
+        assert self.autosave is not None
+        self.show(document)
+        assert self.editor.session is not None
+        self.editor.session.mark_unsaved()
+        self.autosave.adopt(copy, document)
+        for other in self.lost:
+            if other is not copy:
+                other.leave()
+        self.lost = []
+        self.notice = f"Recovered {document.drawing.name}, which is not saved yet"
 
     def save(self, go_on: Callable[[], None] | None = None) -> None:
         """Write to the document's own file, or ask for one; then ``go_on``."""
@@ -172,7 +308,7 @@ class Workspace:
             assert self.document is not None
             project_file.save(self.document, path)
             self.editor.mark_saved(path)
-            self.folder = path.resolve().parent
+            self._used(path)
             self.notice = f"Saved {path.name}"
 
         if self.attempt(write) and go_on is not None:
@@ -180,27 +316,67 @@ class Workspace:
 
     def ask_open(self) -> None:
         """Ask for a picture or a posed drawing to open."""
-        suffixes = (PROJECT_SUFFIX, *PICTURE_SUFFIXES)
+        suffixes = (PROJECT_SUFFIX, *PICTURE_SUFFIXES, *MESH_SUFFIXES)
         self.request = FileRequest("Open picture or drawing", suffixes, self.folder, self.open_path)
 
+    def ask_reference(self) -> None:
+        """Ask for a picture to be seen behind the drawing."""
+
+        def use(path: Path) -> None:
+            self.attempt(lambda: self.view.set_reference(read_image(path)))
+
+        self.request = FileRequest("Choose reference picture", PICTURE_SUFFIXES, self.folder, use)
+
     def ask_export(self) -> None:
-        """Ask where the pose goes as a transparent PNG."""
+        """Ask what is to be exported."""
+        self.export.shown = self.document is not None
+
+    def choose_export_file(self) -> None:
+        """Ask where what was chosen goes."""
         if self.document is not None:
-            name = f"{self.document.drawing.name}-posed.png"
+            suffixes, name = (self.export.format.suffix,), self.export.file_name(self.document)
+            self.request = FileRequest("Export to", suffixes, self.folder, self.export_to, name, saving=True)
+
+    def export_to(self, path: Path) -> None:
+        """Write what was chosen."""
+
+        def work() -> None:
+            assert self.document is not None
+            *beside, _ = export(self.document, path, self.export.options, self.exporter)
+            self.notice = f"Exported {', '.join([path.name, *(each.name for each in beside)])}"
+            if format_of(path).framed:
+                width, height = self.export.size(self.document)
+                self.notice += f", {width} × {height} pixels"
+
+        self.later(work, f"Exporting {path.name} ...")
+
+    def ask_save_recording(self) -> None:
+        """Ask where the list of what was done goes."""
+        if self.document is not None:
+            name = f"{self.document.drawing.name}{RECORDING_SUFFIX}"
             self.request = FileRequest(
-                "Export picture", (".png",), self.folder, self.export_picture, name, saving=True
+                "Save recording", (RECORDING_SUFFIX,), self.folder, self.save_recording, name, saving=True
             )
 
-    def export_picture(self, path: Path) -> None:
-        """Write the pose as a PNG with alpha, at the picture's own resolution."""
+    def save_recording(self, path: Path) -> None:
+        """Write all that was done since the drawing was opened, and the drawing."""
 
-        def export() -> None:
-            assert self.document is not None
-            picture = self.exporter.render(self.document.drawing, self.document.state.positions)
-            write_png(path, picture)
-            self.notice = f"Exported {path.name}, {picture.shape[1]} × {picture.shape[0]} pixels"
+        def save() -> None:
+            session = self.editor.session
+            assert session is not None
+            write_recording(session.recording, path, session.drawing)
+            self.notice = f"Saved {path.name}, {session.recording.duration:.0f} seconds"
 
-        self.later(export, f"Exporting {path.name} ...")
+        self.later(save, f"Saving {path.name} ...")
+
+    def close(self) -> None:
+        """Go to the start page, after asking about unsaved changes."""
+
+        def close() -> None:
+            self.editor.close()
+            self.notice = ""
+
+        self.unless_unsaved(close)
 
     def quit(self) -> None:
         """Close the window, after asking about unsaved changes."""
@@ -209,6 +385,17 @@ class Workspace:
             self.closing = True
 
         self.unless_unsaved(close)
+
+    @property
+    def moving(self) -> bool:
+        """Whether the drawing, or the second one beside it, has not come to rest."""
+        return self.editor.moving or self.beside.moving or self.player.playing
+
+    def overlays(self, scale: float) -> Overlays:
+        """What the renderer shows besides the drawing. scale: framebuffer pixels per point of the design."""
+        distortion = self.measure() if self.view.heat is not None else None
+        mesh = self.show_mesh or self.remesher.active
+        return self.view.overlays(self.editor, distortion, mesh, scale)
 
     def measure(self) -> Distortion | None:
         """The distortion of the current pose, computed once for each pose."""

@@ -3,10 +3,16 @@
 import sys
 
 import click
+from click.shell_completion import CompletionItem
 
 from .. import __version__
 from ..errors import AkapError
+from .bench import bench
+from .compare import compare_command
 from .edit import edit
+from .export import export_command
+from .info import info
+from .mesh import mesh
 from .render import render
 from .replay import replay_command
 
@@ -16,9 +22,14 @@ class _Main(click.Group):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         options = {"-h", "--help", "--version"}
-        if not args or (args[0] not in self.commands and args[0] not in options):
+        named = args and (args[0] in self.commands or args[0] in options)
+        if not named and not ctx.resilient_parsing:  # as which the shell asks how a line may go on
             args = ["edit", *args]
         return super().parse_args(ctx, args)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Commands, and files, which need none."""
+        return [*super().shell_complete(ctx, incomplete), CompletionItem(incomplete, type="file")]
 
 
 @click.group(cls=_Main, context_settings={"help_option_names": ["-h", "--help"]})
@@ -27,7 +38,7 @@ def cli() -> None:
     """Bend cartoons. `akap-editor FILE` opens a picture with a transparent background, or a saved drawing."""
 
 
-for command in (edit, render, replay_command):
+for command in (edit, render, replay_command, compare_command, export_command, info, bench, mesh):
     cli.add_command(command)
 
 

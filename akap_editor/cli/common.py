@@ -1,15 +1,46 @@
 """What the commands share: files that are named, colors, checks of what is to be written."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
+from ..editor.framing import CROPS
 from ..errors import InputError
+from ..io.export import ExportOptions
 from ..io.images import write_png
 from ..resources import bundled_drawings
 
 FILE = click.Path(path_type=Path)
+
+
+_FRAMING = (
+    click.option(
+        "--scale", type=float, metavar="FACTOR", help="Pixels of the output per pixel of the picture."
+    ),
+    click.option("--background", metavar="#RRGGBB", help="Color behind the drawing; transparent without it."),
+    click.option(
+        "--crop",
+        type=click.Choice(CROPS),
+        help="Show the picture's frame and all of the pose (none), the frame alone, or the pose alone.",
+    ),
+)
+
+
+def framing_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Adds the options that say how large a picture is and what it shows, see `export_options`."""
+    for option in reversed(_FRAMING):
+        command = option(command)
+    return command
+
+
+def export_options(
+    scale: float | None, background: str | None, crop: str | None, rest: bool = False
+) -> ExportOptions:
+    """What the options of `framing_options` mean; None where one was not given. Raises InputError."""
+    plain = ExportOptions()
+    return ExportOptions(plain.scale if scale is None else scale, color(background), crop or plain.crop, rest)
 
 
 def bundled(name: str) -> Path:

@@ -7,7 +7,8 @@ from pathlib import Path
 import click
 
 from ..editor.document import Document
-from ..errors import DisplayError
+from ..errors import DisplayError, InputError
+from ..io.autosave import Autosave
 from ..io.documents import open_document
 from ..resources import resource
 from . import replay
@@ -19,15 +20,24 @@ OUTPUT_FOLDER = Path("out")
 
 @click.command(epilog="Example: akap-editor edit cat.png")
 @click.argument("file", type=FILE, required=False)
-def edit(file: Path | None) -> None:
-    """Open FILE in the window: a picture, or a drawing saved as .akap. Without FILE, a bundled cartoon.
+@click.option("--mask", type=FILE, help="A picture that is bright, or opaque, where FILE is to be visible.")
+def edit(file: Path | None, mask: Path | None) -> None:
+    """Open FILE in the window: a picture, a flat OBJ or OFF mesh, or a drawing saved as .akap.
+
+    Without FILE, a bundled cartoon.
 
     Where there is no display, the bundled recording is replayed without a window instead.
     """
-    document = open_document(file if file is not None else bundled(FIRST_DRAWING))
+    document, problem = None, None
     try:
-        _edit(document)
+        document = open_document(file if file is not None else bundled(FIRST_DRAWING), mask)
+    except InputError as error:
+        problem = error
+    try:
+        _edit(document, "" if problem is None else str(problem))
     except DisplayError as error:
+        if problem is not None:
+            raise problem from None
         if file is not None:
             raise
         click.echo(f"No window: {error}. Replaying the bundled recording without one.")
@@ -36,13 +46,16 @@ def edit(file: Path | None) -> None:
         replay.replay_recording(recording, None, animation, animation.with_suffix(".png"), fps=24.0, size=480)
 
 
-def _edit(document: Document) -> None:
+def _edit(document: Document | None, problem: str) -> None:
+    """Open the window; where a file could not be opened, it shows its start page and says why."""
     x11 = sys.platform.startswith("linux")
     if x11 and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise DisplayError("there is no display")
     try:
+        from ..app.preferences import Preferences, preferences_path
         from ..app.window import Window
     except ImportError as error:
         raise DisplayError(f"a library that windows need is missing ({error})") from error
-    with Window() as window:
+    with Window(preferences=Preferences(preferences_path()), autosave=Autosave()) as window:
+        window.space.error = problem
         window.run(document)

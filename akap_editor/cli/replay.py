@@ -1,82 +1,170 @@
 """Does recordings again, as animations."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import click
+import numpy as np
 
-from ..editor.document import Drawing, make_drawing
-from ..editor.recording import Recording, mesh_digest
+from ..editor.document import Drawing, Settings
+from ..editor.framing import frame_box
+from ..editor.recording import Recording
 from ..editor.replay import replay
+from ..editor.timeline import EASINGS, Frame, Motion, frame_times, shorten_pauses
 from ..errors import InputError
-from ..geometry.checks import Floats
 from ..io.documents import open_document
-from ..io.images import animation_suffix, read_image, write_animation
-from ..io.recordings import read_recording
-from .common import FILE, bundled, check_png, make_folder_of, write_picture
+from ..io.frames import export_frames, export_kind
+from ..io.recordings import read_recording, recorded_drawing
+from .common import FILE, check_png, color, make_folder_of, write_picture
+
+# What a word of --variant sets.
+VARIANTS: dict[str, tuple[str, object]] = {
+    "dirichlet": ("dirichlet", True),
+    "no-dirichlet": ("dirichlet", False),
+    "spiral": ("trajectory", "spiral"),
+    "linear": ("trajectory", "linear"),
+    "soft": ("constraints", "soft"),
+    "hard": ("constraints", "hard"),
+    "memory": ("memory", 1.0),
+    "no-memory": ("memory", 0.0),
+}
+_WORDS = ", ".join(VARIANTS)
 
 
-@click.command("replay", epilog="Example: akap-editor replay wave.akaprec --drawing cat.png -o wave.webp")
-@click.argument("recording", type=FILE)
-@click.option("--drawing", type=FILE, help="Picture to replay it on, where it is not a bundled one.")
-@click.option("-o", "--output", type=FILE, required=True, help="Animation to write: .webp, .gif or .apng.")
-@click.option("--pose", type=FILE, help="Also write the last pose as this PNG file, in full resolution.")
-@click.option("--fps", default=30.0, show_default=True, help="Frames per second.")
-@click.option(
-    "--size", default=640, show_default=True, help="Longest side of the animation in pixels, at most."
+@click.command(
+    "replay",
+    epilog="Example: akap-editor replay wave.akaprec --drawing cat.png -o wave.webp. The output's ending "
+    "decides: .png is the last pose, .gif, .webp and .apng are animations, .mp4 and .webm videos, a folder/ "
+    "gets one PNG a frame; with --sheet, .png is a sprite sheet, and .json beside it its index.",
 )
+@click.argument("recording", type=FILE)
+@click.option("-o", "--output", type=FILE, required=True, help="File or folder/ to write.")
+@click.option("--drawing", type=FILE, help="Drawing to replay it on, in place of its own.")
+@click.option("--method", metavar="METHOD", help="Bend by another: akap, arap, mls, ..., arap:converge, ...")
+@click.option("--variant", default="", metavar="WORDS", help=f"Of AKAP, divided by commas: {_WORDS}.")
+@click.option("--pose", type=FILE, help="Also write the last pose as this PNG file, in full resolution.")
+@click.option("--sheet", is_flag=True, help="Write a sprite sheet with a JSON index for games.")
+@click.option("--fps", default=30.0, show_default=True, help="Frames per second.")
+@click.option("--size", default=640, show_default=True, help="Longest side in pixels, at most.")
+@click.option("--background", metavar="#RRGGBB", help="Color behind the drawing; transparent without it.")
+@click.option("--from", "start", type=float, metavar="SECONDS", help="Leave out what was before.")
+@click.option("--to", "end", type=float, metavar="SECONDS", help="Leave out what comes after.")
+@click.option("--pause", type=float, metavar="SECONDS", help="Shorten longer pauses, before all else.")
+@click.option("--speed", default=1.0, show_default=True, help="2 is twice as fast.")
+@click.option(
+    "--ease", type=click.Choice(list(EASINGS)), default="none", show_default=True, help="Start or end slowly."
+)
+@click.option("--ping-pong", is_flag=True, help="Forwards, then backwards.")
+@click.option("--plays", default=0, show_default=True, help="How often an animation is shown; 0 for ever.")
 def replay_command(
-    recording: Path, drawing: Path | None, output: Path, pose: Path | None, fps: float, size: int
+    recording: Path, output: Path, drawing: Path | None, pose: Path | None, **options: object
 ) -> None:
-    """Do a recorded session again without a window and write it as an animation."""
-    replay_recording(recording, drawing, output, pose, fps, size)
+    """Do a recorded session again without a window and write it as an animation or a picture.
+
+    Between recorded moments the drawing moves along its trajectories, so any frame rate is smooth.
+    """
+    replay_recording(recording, drawing, output, pose, **options)  # type: ignore[arg-type]
 
 
 def replay_recording(
-    path: Path, drawing_path: Path | None, animation: Path, pose: Path | None, fps: float, size: int
+    path: Path,
+    drawing_path: Path | None,
+    output: Path,
+    pose: Path | None = None,
+    *,
+    fps: float = 30.0,
+    size: int = 640,
+    method: str | None = None,
+    variant: str = "",
+    sheet: bool = False,
+    background: str | None = None,
+    start: float | None = None,
+    end: float | None = None,
+    pause: float | None = None,
+    speed: float = 1.0,
+    ease: str = "none",
+    ping_pong: bool = False,
+    plays: int = 0,
 ) -> None:
-    from ..render.offscreen import OffscreenRenderer, frame_box
+    """As the command does. Raises InputError, and then nothing was written."""
+    from ..render.offscreen import OffscreenRenderer
 
-    if not 1 <= fps <= 120:
-        raise InputError(f"--fps: expected a number from 1 to 120, got {fps:g}")
-    if not 16 <= size <= 8192:
-        raise InputError(f"--size: expected a number from 16 to 8192, got {size}")
-    animation_suffix(animation)
+    _check_number("--fps", fps, 1, 120)
+    _check_number("--size", size, 16, 8192)
+    _check_number("--speed", speed, 0.01, 100)
+    _check_number("--plays", plays, 0, 65535)
+    behind = color(background)
+    kind = export_kind(output, sheet)
     if pose is not None:
         check_png(pose)
+    change = settings_change(method, variant)
     recording = read_recording(path)
-    drawing = _drawing_of(recording, drawing_path)
-    poses = _sampled(recording, drawing, fps)
-    box = frame_box(drawing, poses)
+    if pause is not None:
+        _check_number("--pause", pause, 0, 1e9)
+        recording = shorten_pauses(recording, pause)
+    first, last = _range(recording, start, end)
+    drawing = open_document(drawing_path).drawing if drawing_path is not None else recorded_drawing(recording)
+    times = [last] if kind == "picture" else frame_times(first, last, fps, speed, ease)
+    frames = _bend(recording, drawing, change, times)
+    if ping_pong:
+        frames += frames[-2:0:-1]
+    boxes = [frame_box(bent, [pose]) for bent, pose in frames]
+    box = (*np.min(boxes, axis=0)[:2].tolist(), *np.max(boxes, axis=0)[2:].tolist())
     scale = min(1.0, size / max(box[2] - box[0], box[3] - box[1]))
-    make_folder_of(animation)
+    make_folder_of(output)
     with OffscreenRenderer() as renderer:
-        with click.progressbar(poses, label="Drawing") as bar:
-            write_animation(animation, (renderer.render(drawing, p, box, scale) for p in bar), fps)
+        with click.progressbar(frames, label="Drawing") as bar:
+            pictures = (renderer.render(bent, each, box, scale, behind) for bent, each in bar)
+            written = export_frames(output, pictures, fps, plays, sheet)
         if pose is not None:
-            write_picture(pose, renderer.render(drawing, poses[-1]))
+            write_picture(pose, renderer.render(*frames[-1], background=behind))
             click.echo(f"Wrote {pose}, the last pose")
-    click.echo(f"Wrote {animation}, {len(poses)} frames at {fps:g} per second")
+    click.echo(f"Wrote {output}, {len(frames)} frames, {written}")
 
 
-def _sampled(recording: Recording, drawing: Drawing, fps: float) -> list[Floats]:
-    """The pose at each frame's time."""
-    poses: list[Floats] = [drawing.mesh.vertices]
-    with click.progressbar(replay(recording, drawing), length=len(recording.events), label="Bending") as bar:
-        for time, state in bar:
-            while len(poses) <= time * fps:
-                poses.append(poses[-1])
-            poses[-1] = state.positions
-    return poses
+def _check_number(option: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:
+        raise InputError(f"{option}: expected a number from {low:g} to {high:g}, got {value:g}")
 
 
-def _drawing_of(recording: Recording, path: Path | None) -> Drawing:
-    """The drawing that a recording was made on: the file given, or the bundled one that it names."""
-    if path is not None:
-        return open_document(path).drawing
-    name = str(recording.header.get("name"))
-    picture = bundled(name)
-    drawing = make_drawing(read_image(picture), name=name)
-    count = recording.header.get("vertices")
-    if recording.header.get("mesh") != mesh_digest(drawing.mesh) and isinstance(count, int):
-        drawing = make_drawing(read_image(picture), vertices=count, name=name)
-    return drawing
+def _range(recording: Recording, start: float | None, end: float | None) -> tuple[float, float]:
+    first = 0.0 if start is None else start
+    last = recording.duration if end is None else end
+    if not 0 <= first <= recording.duration:
+        raise InputError(
+            f"--from: expected a time from 0 to the end at {recording.duration:g} s, got {first:g}"
+        )
+    if not first <= last:
+        raise InputError(f"--to: expected a time of {first:g} s or later, got {last:g}")
+    return first, min(last, recording.duration)
+
+
+def settings_change(method: str | None, variant: str) -> Callable[[Settings], Settings] | None:
+    """What to make of recorded settings. Raises InputError on unknown words."""
+    words = [word.strip() for word in variant.split(",") if word.strip()]
+    for word in words:
+        if word not in VARIANTS:
+            raise InputError(f"--variant: expected words among {_WORDS}, got {word!r}")
+    if method is None and not words:
+        return None
+    chosen = None if method is None else Settings.of(method)
+
+    def change(settings: Settings) -> Settings:
+        settings = chosen or settings
+        for word in words:
+            settings = settings.with_parameter(*VARIANTS[word])
+        return settings
+
+    return change
+
+
+def _bend(
+    recording: Recording,
+    drawing: Drawing,
+    change: Callable[[Settings], Settings] | None,
+    times: list[float],
+) -> list[Frame]:
+    """Drawing and pose at each of ``times``."""
+    moments = replay(recording, drawing, change)
+    with click.progressbar(Motion(drawing, moments).frames(times), length=len(times), label="Bending") as bar:
+        return list(bar)

@@ -25,13 +25,14 @@ Constraints = Literal["soft", "hard"]
 _SHORTEST = 2.0**-10  # share of a substep below which a move that would flip a face is given up
 _MAX_TURN = 0.1  # radians that a pin turns in one substep, at most
 _ARRIVED = 1e-4  # share of √area: pins nearer than this to their targets are left to the rest memory alone
+_RETRIES = 3  # of a substep that was blocked
 _CORRECTIONS = 2  # most of them in one step
 _LONGEST = 4.0  # times its field: as far as a correction may go
 _LEVER = 10.0  # times the velocity of a pin: as far as others may go where that is more than √area
 _THINNEST = 1e-2  # a face may not shrink below this share of its rest area in one move
 # Longest way of a pin in one substep and how near a field comes to the exact one (in the energy norm), as
 # shares of √area. Errors of the method without memory add up along the way, with memory they are forgotten.
-_MAX_STEP, _MAX_STEP_WITH_MEMORY = 0.01, 0.05
+_MAX_STEP, _MAX_STEP_WITH_MEMORY = 0.007, 0.05
 _TOLERANCE, _TOLERANCE_WITH_MEMORY = 3e-7, 4e-6
 _TURNED = 1e-4  # radians: a pin turned so nearly is left to the rest memory alone
 _SOFTEST, _STIFFEST = 1e-3, 1e6
@@ -69,7 +70,7 @@ class AkapDeformer:
     the variants of Fig. 8.
     pin_weight: λ on the row as in eq. 5; with area-weighted energies 10 to 1000 behave alike.
     max_step: longest way of a pin in one substep, as a share of the square root of the mesh's area; a longer
-    way is cut, because following one field too far distorts (Fig. 2). By default 0.01, and 0.05 with memory,
+    way is cut, because following one field too far distorts (Fig. 2). By default 0.007, and 0.05 with memory,
     under which the pose does not depend on the way.
     constraints: "soft" pins pull with λ as in eq. 3, "hard" ones give U° exactly their velocities (Fig. 3).
     exact: factorize both systems in every substep, as the paper does; otherwise a factorization serves for
@@ -174,7 +175,7 @@ class AkapDeformer:
         wanted = _as_angles(angles, len(goals))
         if (np.isfinite(wanted) != self._holding).any():
             self._hold(np.isfinite(wanted))
-        way = [_Substep(pose, np.zeros_like(pose), 1.0, pose)]
+        way, blocked = [_Substep(pose, np.zeros_like(pose), 1.0, pose)], False
         if len(goals):
             starts = self._pin_positions(pose)
             turns = self._still_to_turn(pose, wanted)
@@ -187,9 +188,15 @@ class AkapDeformer:
             for index in range(1, count + 1):
                 share = index / count
                 places = goals if index == count else starts + share * (goals - starts)
-                way.append(self._substep(way[-1].end, _Aims(places, wanted - (1 - share) * turns)))
+                aims = _Aims(places, wanted - (1 - share) * turns)
+                for _ in range(1 + _RETRIES):  # where faces stood in the way, they were opened
+                    way.append(self._substep(way[-1].end, aims))
+                    if way[-1].share == 1:
+                        break
+                else:
+                    blocked = True
             del way[0]
-        way[-1] = replace(way[-1], end=self._corrected(way[-1], goals))
+        way[-1] = replace(way[-1], end=self._corrected(way[-1], pose, goals))
         result, field = to_points(way[-1].end.copy()), way[-1].field
         return StepResult(
             result,
@@ -200,7 +207,7 @@ class AkapDeformer:
                 energy=self._system.energy(field) if field.any() else 0.0,
                 flipped=int((signed_areas(result, self._mesh.faces) <= 0).sum()),
                 pin_error=float(np.abs(goals - self._pin_positions(way[-1].end)).max(initial=0.0)),
-                blocked=any(part.share < 1 for part in way),
+                blocked=blocked,
             ),
             flow=lambda t: to_points(self._along(way, t)),
         )
@@ -246,15 +253,19 @@ class AkapDeformer:
             raise SolverError("the step has no finite result")
         return _Substep(pose, field, share, moved)
 
-    def _corrected(self, last: _Substep, goals: Complexes) -> Complexes:
+    def _corrected(self, last: _Substep, before: Complexes, goals: Complexes) -> Complexes:
         """The pose after a step once its pins were brought back to ``goals``.
 
         The second solve is blind to pins in the interior: without this, one that holds still would drift with
         whatever is dragged fast. What is below the tolerance stays, so that nothing jumps where it is passed.
+        Where the way was blocked, only pins that were at their goals ``before`` the step are brought back.
         """
-        pose, share = last.end, last.share
+        pose, share = last.end, 1.0
+        on_the_way = np.abs(goals - self._pin_positions(before)) > 2 * self._near
         for _ in range(_CORRECTIONS):
             off = goals - self._pin_positions(pose)
+            if last.share < 1:
+                off[on_the_way] = 0.0
             miss = float(np.abs(off).max(initial=0.0))
             if miss <= self._near or share < 1:
                 break

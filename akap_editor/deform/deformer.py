@@ -59,6 +59,9 @@ class Deformer(Protocol):
     the rest in `step`. Arguments are never modified. The result depends only on constructor, `set_pins` and
     arguments. It is finite, or SolverError is raised. Moving, turning or scaling rest pose, positions and
     targets together does the same to the result; renumbering the vertices renumbers it.
+
+    A method may have more: `step` with ``angles`` that pins hold (see `holds_angles`), and a constructor with
+    the ``stiffness`` of faces (see `takes_stiffness`).
     """
 
     def set_pins(self, points: MeshPoints) -> None:
@@ -75,11 +78,13 @@ def _methods() -> dict[str, Any]:
     from .akap import AkapDeformer
     from .arap import ArapDeformer
     from .cauchy_green import CauchyGreenDeformer
+    from .igarashi import IgarashiDeformer
     from .moving_least_squares import MovingLeastSquaresDeformer
 
     return {
         "akap": AkapDeformer,
         "arap": ArapDeformer,
+        "igarashi": IgarashiDeformer,
         "cauchy-green": CauchyGreenDeformer,
         "mls": MovingLeastSquaresDeformer,
     }
@@ -90,14 +95,41 @@ def method_names() -> list[str]:
     return list(_methods())
 
 
-def make_deformer(method: str, mesh: TriMesh, /, **settings: Any) -> Deformer:
-    """A deformation method by name, its settings by keyword. Raises InputError on unknown ones."""
+def method_class(method: str) -> Any:
+    """The class behind a method's name. Raises InputError on an unknown one."""
     methods = _methods()
     if method not in list(methods):
         raise InputError(f"method: expected one of {', '.join(methods)}, got {method!r}")
-    known = list(inspect.signature(methods[method]).parameters)[1:]
+    return methods[method]
+
+
+def holds_angles(method: str) -> bool:
+    """Whether pins of a method can hold angles: `step` then takes ``angles``, (k,) radians from rest or NaN.
+
+    Raises InputError on an unknown method.
+    """
+    return "angles" in inspect.signature(method_class(method).step).parameters
+
+
+def takes_stiffness(method: str) -> bool:
+    """Whether a method takes ``stiffness``, (m,) factors by which faces bend less, as one of its settings.
+
+    Raises InputError on an unknown method.
+    """
+    return "stiffness" in inspect.signature(method_class(method)).parameters
+
+
+def make_deformer(method: str, mesh: TriMesh, /, **settings: Any) -> Deformer:
+    """A deformation method by name, its settings by keyword. Raises InputError on unknown ones.
+
+    Of a mesh whose parts are tied, those without a pin ride with the others.
+    """
+    from .riding import RidingDeformer
+
+    chosen = method_class(method)
+    known = list(inspect.signature(chosen).parameters)[1:]
     for name in settings:
         if name not in known:
             raise InputError(f"method {method}: expected settings among {', '.join(known)}, got {name!r}")
-    deformer: Deformer = methods[method](mesh, **settings)
-    return deformer
+    deformer: Deformer = chosen(mesh, **settings)
+    return RidingDeformer(mesh, deformer) if mesh.tied and mesh.component.any() else deformer

@@ -124,17 +124,22 @@ def descend(value: Callable[[float], float], before: float, slope: float, length
 
     value: by the distance; before, slope: at the start. A try that goes past the minimum is followed by one
     at the minimum of the parabola through what is known, since a pose near its minimum would otherwise swing
-    about it. 0 where no try lowers the value enough, so that it never rises.
+    about it; the best one counts. 0 where no try lowers the value enough, so that it never rises.
     """
     if slope >= 0:
         return 0.0
+    best, least = 0.0, before
     for _ in range(_TRIES):
         after = value(length)
+        if after <= before + _SUFFICIENT * length * slope and after < least:
+            best, least = length, after
+        elif best:
+            break
         curvature = after - before - length * slope
         shorter = (
             -0.5 * slope * length**2 / curvature if np.isfinite(after) and curvature > 0 else 0.5 * length
         )
-        if after <= before + _SUFFICIENT * length * slope and shorter > _NEAR * length:
-            return length
+        if best == length and shorter > _NEAR * length:
+            break
         length = max(min(shorter, 0.5 * length if not np.isfinite(after) else length), 0.1 * length)
-    return 0.0
+    return best

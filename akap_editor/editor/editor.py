@@ -2,17 +2,37 @@
 
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 from ..errors import SolverError
+from ..geometry.checks import Floats
 from .camera import Camera, Point, fit
-from .document import Document, Settings
+from .document import Document, Pin, Settings
 from .events import Event, KeyEvent, PointerEvent, ScrollEvent
+from .history import Entry
+from .poses import free_name
 from .session import Session
-from .tools import ZOOM_STEP, Idle, Tool, distance
+from .tool import Tool, distance
+from .tool_brush import Brush
+from .tools import ZOOM_STEP, Idle
+from .trails import Trails
 
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
 FRAME_BUDGET = 0.02  # seconds of stepping in one frame
+NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
+SERIES_PAUSE = 1.0  # seconds: arrow keys pressed in a row without a longer pause are one gesture
+ARROWS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}
+HELD_KEYS = ("space", "alt", "shift", "h")  # what they mean lasts as long as they are held
+
+
+@dataclass(frozen=True)
+class PinRequest:
+    """What the pointer asked the window to open for a pin."""
+
+    kind: Literal["values", "menu"]
+    pin: int
 
 
 class Editor:
@@ -26,8 +46,13 @@ class Editor:
         self.selection: frozenset[int] = frozenset()
         self.pointer: Point | None = None
         self.ui_scale = 1.0  # points of the window per point of the design
-        self.hand_tool = False
-        self._space = False
+        self.chosen_tool: Literal["pins", "hand", "brush"] = "pins"
+        self.brush = Brush()
+        self.held: frozenset[str] = frozenset()  # of HELD_KEYS
+        self.request: PinRequest | None = None
+        self.trails = Trails()
+        self.newest_pin: int | None = None  # added by the last click: a second one on it is no double click
+        self._nudge: tuple[Entry | None, frozenset[int], float] | None = None  # entry, selection, time
         self.tool: Tool = Idle(self)
         self._clock = clock
 
@@ -38,8 +63,15 @@ class Editor:
         session = Session(document, self._clock)
         self.cancel()
         self.session = session
+        self.trails.clear()
         self.select(())
         self.fit()
+
+    def close(self) -> None:
+        """Nothing is open any more."""
+        self.cancel()
+        self.session = None
+        self.select(())
 
     def mark_saved(self, path: Path) -> None:
         """The file at ``path`` now holds the current state."""
@@ -73,10 +105,14 @@ class Editor:
             raise
 
     def _key(self, event: KeyEvent) -> None:
-        if event.key == "space":
-            self._space = event.pressed
+        if event.key in HELD_KEYS:
+            self.held = self.held | {event.key} if event.pressed else self.held - {event.key}
         elif event.key == "escape" and event.pressed:
             self.cancel()
+        elif event.key in ARROWS and event.pressed:
+            size = BIG_NUDGE if event.shift else NUDGE
+            x, y = ARROWS[event.key]
+            self.nudge_selected(size * x, size * y)
 
     def pointer_left(self) -> None:
         """The pointer is no longer over the canvas."""
@@ -85,6 +121,10 @@ class Editor:
     def enter(self, tool: Tool) -> None:
         """Make a tool state the active one."""
         self.tool = tool
+
+    def rest(self) -> None:
+        """No tool is at work any more."""
+        self.enter(Idle(self))
 
     def cancel(self) -> None:
         """The one way out of a gesture: Escape, focus loss and errors all come here."""
@@ -113,10 +153,12 @@ class Editor:
         if self.session is None or not self.session.moving:
             return False
         started = time.perf_counter()
+        self.trails.follow(self.session)
         try:
             while True:
                 self.session.step()
-                if not self.session.moving or self.session.pin_error() < 1.0:
+                self.trails.follow(self.session)
+                if not self.session.moving or self.session.near:
                     return True
                 if time.perf_counter() - started > budget:
                     return True
@@ -148,23 +190,89 @@ class Editor:
         gone = frozenset(ids) & {pin.id for pin in self.session.state.pins}
         if gone:
             label = "Remove pin" if len(gone) == 1 else f"Remove {len(gone)} pins"
-            self._edit(label, lambda session: session.remove_pins(gone))
+            self.edit(label, lambda session: session.remove_pins(gone))
 
     def remove_selected(self) -> None:
         """Take the selected pins off the drawing."""
         self.remove_pins(self.selection)
 
+    def remove_last(self) -> None:
+        """Take off the pin that was added last."""
+        if self.session is not None and self.session.state.pins:
+            self.remove_pins({self.session.state.pins[-1].id})
+
+    def place_pin(self, pin_id: int, at: Point) -> None:
+        """Send a pin to a place (pixels); the drawing follows. Raises InputError on an unknown id or NaN."""
+        self.edit("Place pin", lambda session: session.set_targets({pin_id: at}))
+
+    def set_depth(self, pin_id: int, depth: int) -> None:
+        """Bring a pin to the front or back. Raises InputError on a depth out of range."""
+        self.edit("Set depth", lambda session: session.set_depths({pin_id: depth}))
+
+    def shift_depth(self, by: int) -> None:
+        """Bring the selected pins so much to the front, or to the back."""
+        if self.session is not None and self.selection:
+            depths = {pin.id: pin.depth + by for pin in self.session.state.pins if pin.id in self.selection}
+            label = "Bring forward" if by > 0 else "Send back"
+            self.edit(label, lambda session: session.set_depths(depths))
+
+    def nudge_selected(self, dx: float, dy: float) -> None:
+        """Send the selected pins so many pixels on; nudges in a row are one gesture."""
+        if self.session is None or self.busy or not self.selection:
+            return
+        session, now = self.session, self._clock()
+        entry, selection, when = self._nudge or (None, self.selection, now)
+        joins = entry is not None and entry is session.history.last and selection == self.selection
+        session.begin("Nudge" if len(self.selection) == 1 else f"Nudge {len(self.selection)} pins")
+        try:
+            session.hold_pins()
+            moved = (session.state.pin(pin) for pin in sorted(self.selection))
+            session.set_targets({pin.id: (pin.target[0] + dx, pin.target[1] + dy) for pin in moved})
+        except Exception:
+            session.abort()
+            raise
+        session.commit(join=joins and now - when < SERIES_PAUSE)
+        self._nudge = session.history.last, self.selection, now
+
     def reset_pose(self) -> None:
         """The rest pose, with the pins where they then are."""
-        self._edit("Reset pose", lambda session: session.reset_pose())
+        self.edit("Reset pose", lambda session: session.reset_pose())
+
+    def bake_pose(self) -> None:
+        """Make the pose the rest pose; nothing moves. Raises InputError where faces are flipped."""
+        self.edit("Make pose the rest pose", lambda session: session.bake_pose())
+
+    def keep_pose(self, name: str | None = None) -> None:
+        """Remember the current pose by a name, by default "Pose" and a number. Raises InputError."""
+        if self.session is not None:
+            wanted = name if name is not None else free_name(self.session.state.poses)
+            self.edit("Keep pose", lambda session: session.keep_pose(wanted))
+
+    def forget_pose(self, name: str) -> None:
+        """Forget a pose; undo brings it back."""
+        self.edit("Forget pose", lambda session: session.forget_pose(name))
+
+    def set_pose(self, positions: Floats, label: str = "Apply pose") -> None:
+        """Take over a pose (n, 2) of this mesh; pins go with it. Raises InputError."""
+        self.edit(label, lambda session: session.set_pose(positions))
+
+    def apply_pose(self, pins: tuple[Pin, ...], positions: Floats) -> None:
+        """Take over pins and pose (n, 2) from another session on the same mesh. Raises InputError."""
+
+        def take(session: Session) -> None:
+            session.set_pins(pins)
+            session.set_pose(positions)
+
+        self.edit("Apply pose", take)
 
     def set_settings(self, settings: Settings) -> None:
         """Bend differently from now on. Raises InputError on unknown methods or parameters."""
         if self.session is not None and settings != self.session.state.settings:
-            self._edit("Change settings", lambda session: session.set_settings(settings))
+            self.edit("Change settings", lambda session: session.set_settings(settings))
 
     def undo(self) -> None:
         """Take back the last gesture; in the middle of one, that one."""
+        self.trails.clear()
         if self.busy:
             self.cancel()
         elif self.session is not None:
@@ -173,11 +281,23 @@ class Editor:
 
     def redo(self) -> None:
         """Do again what was undone."""
+        self.trails.clear()
         if self.session is not None and not self.busy:
             self.session.redo()
             self._prune_selection()
 
-    def _edit(self, label: str, change: Callable[[Session], None]) -> None:
+    def go_to(self, depth: int) -> None:
+        """Undo or redo until so many gestures can be undone, or there are no more."""
+        if self.session is None or self.busy:
+            return
+        history = self.session.history
+        while history.depth > max(depth, 0):
+            self.undo()
+        while history.depth < depth and history.redo_label is not None:
+            self.redo()
+
+    def edit(self, label: str, change: Callable[[Session], None]) -> None:
+        """Change the session in one gesture; what goes wrong is taken back and raised."""
         if self.session is None or self.busy:
             return
         self.session.begin(label)
@@ -210,6 +330,14 @@ class Editor:
     def _prune_selection(self) -> None:
         there = {pin.id for pin in self.session.state.pins} if self.session is not None else set()
         self.selection &= there
+        if self.request is not None and self.request.pin not in there:
+            self.request = None
+
+    def ask(self, kind: Literal["values", "menu"], pin: int) -> None:
+        """Ask the window to open something for a pin, which becomes selected."""
+        if pin not in self.selection or kind == "values":
+            self.select({pin})
+        self.request = PinRequest(kind, pin)
 
     def pins_on_screen(self) -> dict[int, Point]:
         """Where the pins are seen, by id."""
@@ -226,15 +354,17 @@ class Editor:
 
     @property
     def hovered_pin(self) -> int | None:
-        """The pin under the pointer."""
-        return self.pin_at(self.pointer) if self.pointer is not None else None
+        """The pin under the pointer, if a press would take it."""
+        if self.pointer is None or self.chosen_tool == "brush":
+            return None
+        return self.pin_at(self.pointer)
 
     @property
     def would_add_pin(self) -> bool:
         """Whether a click where the pointer is would add a pin."""
         if self.session is None or self.pointer is None or self.hand or not isinstance(self.tool, Idle):
             return False
-        if self.hovered_pin is not None:
+        if self.chosen_tool == "brush" or self.hovered_pin is not None or self.held & {"shift", "alt"}:
             return False
         state, mesh = self.session.state, self.session.drawing.mesh
         return mesh.find(self.camera.to_drawing(self.pointer), state.positions) is not None
@@ -242,7 +372,7 @@ class Editor:
     @property
     def hand(self) -> bool:
         """Whether a left drag moves the canvas."""
-        return self.hand_tool or self._space
+        return self.chosen_tool == "hand" or "space" in self.held
 
     @property
     def canvas(self) -> tuple[float, float, float, float]:

@@ -10,12 +10,17 @@ Button = Literal["left", "middle", "right"]
 
 @dataclass(frozen=True)
 class PointerEvent:
-    """A press, a move or a release; position in points of the window, y down."""
+    """A press, a move or a release; position in points of the window, y down.
+
+    clicks: how many times in a row the button went down there, 2 for a double click.
+    """
 
     kind: Literal["press", "move", "release"]
     position: Point
     button: Button = "left"
     shift: bool = False
+    alt: bool = False
+    clicks: int = 1
 
 
 @dataclass(frozen=True)
@@ -28,10 +33,11 @@ class ScrollEvent:
 
 @dataclass(frozen=True)
 class KeyEvent:
-    """A key pressed or let go, by its lower-case name: "escape", "space", ..."""
+    """A key pressed or let go, by its lower-case name: "escape", "space", "alt", "left", ..."""
 
     key: str
     pressed: bool = True
+    shift: bool = False
 
 
 Event = PointerEvent | ScrollEvent | KeyEvent

@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 from .document import EditState
 
+MOST_ENTRIES = 1000
+MOST_BYTES = 2**28  # of poses
+
 
 @dataclass(frozen=True, eq=False)
 class Entry:
@@ -34,12 +37,23 @@ class History:
         assert self._open is not None, "no gesture is open"
         self._open = Entry(label, self._open.state)
 
-    def commit(self) -> None:
-        """Close the gesture as one entry; what was undone before can no longer be redone."""
+    def commit(self, join: bool = False) -> None:
+        """Close the gesture as one entry; what was undone before can no longer be redone.
+
+        join: as a part of the entry before it, so that undo takes both back.
+        """
         assert self._open is not None, "no gesture is open"
-        self._undo.append(self._open)
+        if not (join and self._undo):
+            self._undo.append(self._open)
         self._redo.clear()
+        self._forget_oldest()
         self._open = None
+
+    def _forget_oldest(self) -> None:
+        """Keep so much that nobody misses the rest, and a day's work does not fill the memory."""
+        size = sum(entry.state.positions.nbytes for entry in self._undo)
+        while len(self._undo) > MOST_ENTRIES or (size > MOST_BYTES and len(self._undo) > 1):
+            size -= self._undo.pop(0).state.positions.nbytes
 
     def abort(self) -> EditState:
         """Close the gesture without an entry; the state from before it."""
@@ -77,6 +91,16 @@ class History:
     def redo_label(self) -> str | None:
         """What redo would do again."""
         return self._redo[-1].label if self._redo else None
+
+    @property
+    def last(self) -> Entry | None:
+        """The entry that undo would take back; an object of its own for each commit."""
+        return self._undo[-1] if self._undo else None
+
+    @property
+    def labels(self) -> list[str]:
+        """Of all entries, the oldest first: those that can be undone, then those that can be redone."""
+        return [entry.label for entry in (*self._undo, *reversed(self._redo))]
 
     @property
     def depth(self) -> int:

@@ -2,17 +2,19 @@
 
 import hashlib
 import json
+import reprlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any
 
 from ..errors import InputError
 from ..geometry.mesh import TriMesh
 from .document import Drawing, Pin, Settings
+from .event_log import Event, EventLog
 
 VERSION = 1
 LATEST = 1e9  # seconds
-Event = dict[str, Any]
 
 # What each event must carry besides its time.
 _FIELDS: dict[str, tuple[str, ...]] = {
@@ -23,10 +25,18 @@ _FIELDS: dict[str, tuple[str, ...]] = {
     "redo": (),
     "pins": ("pins",),
     "targets": ("targets",),
+    "angles": ("angles",),
+    "stiffness": ("factors",),
+    "paint": ("dabs", "radius", "factor"),
     "step": (),
     "pose": ("positions",),
     "settings": ("method", "parameters"),
     "reset": (),
+    "bake": (),
+    "mesh": ("vertices", "expand", "threshold", "background"),
+    "return": ("line",),
+    "keep": ("name",),
+    "forget": ("name",),
 }
 
 
@@ -34,12 +44,13 @@ _FIELDS: dict[str, tuple[str, ...]] = {
 class Recording:
     """A session's pin edits, targets and settings with times.
 
-    header: the drawing that it was made on (see `drawing_header`); events: dictionaries with "t" (seconds
-    since the start), "do" (what was done) and that event's values. docs/file-format.md describes them.
+    header: the drawing that it was made on (see `drawing_header`), in a file also the drawing itself; events:
+    dictionaries with "t" (seconds since the start), "do" (what was done) and that event's values.
+    docs/file-format.md describes them.
     """
 
     header: dict[str, Any]
-    events: list[Event] = field(default_factory=list)
+    events: list[Event] | EventLog = field(default_factory=list)
 
     @property
     def duration(self) -> float:
@@ -49,7 +60,8 @@ class Recording:
     def to_text(self) -> str:
         """One JSON object a line, the header first."""
         head = {"format": "akap-recording", "version": VERSION, "drawing": self.header}
-        return "".join(json.dumps(line, separators=(",", ":")) + "\n" for line in [head, *self.events])
+        lines = chain([head], self.events)
+        return "".join(json.dumps(line, separators=(",", ":")) + "\n" for line in lines)
 
 
 def mesh_digest(mesh: TriMesh) -> str:
@@ -84,6 +96,8 @@ def pins_to_json(mesh: TriMesh, pins: Sequence[Pin]) -> list[dict[str, Any]]:
                 "id": pin.id,
                 "face": pin.face,
                 "weights": pin.weights.tolist(),
+                **({"depth": pin.depth} if pin.depth else {}),
+                **({"angle": pin.angle} if pin.angle is not None else {}),
                 "rest": rest.tolist(),
                 "target": pin.target.tolist(),
             }
@@ -125,15 +139,20 @@ def _check_head(head: dict[str, Any]) -> None:
         raise InputError("recording line 1: expected the header of a recording, got something else")
     version = head.get("version")
     if version != VERSION:
-        raise InputError(f"recording line 1: expected version {VERSION}, got {version!r}")
+        raise InputError(f"recording line 1: expected version {VERSION}, got {reprlib.repr(version)}")
 
 
 def _check_event(event: dict[str, Any], number: int, previous: float) -> None:
     do, when = event.get("do"), event.get("t")
     if not isinstance(do, str) or do not in _FIELDS:
-        raise InputError(f"recording line {number}: expected one of {', '.join(_FIELDS)}, got {do!r}")
-    if not isinstance(when, (int, float)) or not previous <= when <= LATEST:
-        raise InputError(f"recording line {number}: expected a time of {previous:g} s or later, got {when!r}")
+        came = reprlib.repr(do)
+        raise InputError(f"recording line {number}: expected one of {', '.join(_FIELDS)}, got {came}")
+    if isinstance(when, bool) or not isinstance(when, int | float) or not previous <= when <= LATEST:
+        came = reprlib.repr(when)
+        raise InputError(f"recording line {number}: expected a time of {previous:g} s or later, got {came}")
     for name in _FIELDS[do]:
         if name not in event:
             raise InputError(f"recording line {number}: expected a value {name!r} in {do!r}, got none")
+    if do == "return" and not (type(event["line"]) is int and 2 <= event["line"] < number):
+        came = reprlib.repr(event["line"])
+        raise InputError(f"recording line {number}: expected an earlier line to return to, got {came}")

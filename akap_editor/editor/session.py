@@ -2,22 +2,31 @@
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ..deform.deformer import Deformer, StepResult, make_deformer
+from ..deform.deformer import StepResult
 from ..errors import InputError, SolverError
-from ..geometry.checks import Floats, as_points
+from ..geometry.checks import Floats, as_number, as_points
+from .angles import MOST_ANGLE, pin_angles, stopped
+from .bake import baked_state
+from .bending import Bending
+from .depth import MOST, depth_at
 from .document import Document, Drawing, EditState, Pin, Settings
+from .event_log import EventLog
 from .history import History
+from .poses import NamedPose, with_pose
 from .recording import Recording, drawing_header, pins_to_json, settings_to_json
+from .remesh import carried_over
+from .stiffness import as_stiffness, coverage, painted
 
 PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
 STILL = 0.02  # pixels: a step that moves no vertex farther has come to rest
 MOST_SETTLING = 400  # steps after the last change of a target, should a pose never come to rest
-REACH = 0.02  # longest way of a pin in one step, as a share of √area: no step keeps the caller waiting
+ANGLE_TOLERANCE = 0.002  # radians: a pin turned more nearly than this has arrived
 
 Target = tuple[float, float]
 
@@ -35,13 +44,16 @@ class Session:
         self.history = History()
         self.last_step: StepResult | None = None
         self._saved: EditState | None = document.state
+        self._present: EditState | None = None  # while an earlier moment is visited
+        self._visited: int | None = 0  # its line in the recording
         self._settling = 0
-        self._reach = REACH * float(np.sqrt(document.drawing.mesh.rest_areas.sum()))
+        self._opened = document.drawing
         self._clock, self._started = clock, clock()
-        self.recording = Recording(drawing_header(document.drawing))
-        self._deformer = self._make_deformer(document.state.settings)
-        self._deformer.set_pins(document.state.points)
+        self.recording = Recording(drawing_header(document.drawing), EventLog())
+        self._bending = Bending(document.drawing.mesh, document.state)
         self._record("settings", **settings_to_json(document.state.settings))
+        if document.state.stiffness is not None:
+            self._record("stiffness", factors=document.state.stiffness.tolist())
         if self.posed:
             self._record("pose", positions=document.state.positions.tolist())
         if document.state.pins:
@@ -62,7 +74,7 @@ class Session:
     @property
     def modified(self) -> bool:
         """Whether there is something that the file does not hold."""
-        return self.document.state is not self._saved
+        return (self._present or self.document.state) is not self._saved
 
     @property
     def posed(self) -> bool:
@@ -78,24 +90,76 @@ class Session:
         """(k, 2): where the pins are now, as opposed to where they should be."""
         return self.drawing.mesh.evaluate(self.state.points, self.state.positions)
 
+    @property
+    def near(self) -> bool:
+        """Whether pins are where they should be, as far as an eye can see it in motion."""
+        return self.pin_error() < 1.0 and self._bending.turn_error(self.state) < 0.05
+
     def pin_error(self) -> float:
         """Largest distance of a pin from where it should be, pixels."""
-        return float(np.linalg.norm(self.state.targets - self.pin_positions(), axis=1).max(initial=0.0))
+        return float(np.linalg.norm(self._bending.off(self.state), axis=1).max(initial=0.0))
+
+    @property
+    def turns(self) -> bool:
+        """Whether pins can hold angles, which depends on the method."""
+        return self._bending.holds_angles
+
+    def pin_angle(self, pin_id: int) -> float:
+        """By how many radians the drawing around a pin is turned from rest now, in (−π, π]."""
+        pins = self.state.pins
+        angles = pin_angles(self.drawing.mesh, pins, self.state.positions, {pin_id})
+        return float(angles[[pin.id for pin in pins].index(pin_id)])
+
+    # -- visits --------------------------------------------------------------------------------------------
+
+    @property
+    def visiting(self) -> bool:
+        """Whether an earlier moment is shown in place of the present one."""
+        return self._present is not None
+
+    def visit(self, state: EditState, line: int | None) -> None:
+        """Show the state after an earlier ``line`` of the recording; nothing is edited, and nothing recorded.
+
+        The next gesture goes on from there, or, with None in place of a line, from the present. `leave`
+        returns to the present, and so do undo and redo.
+        """
+        present = self._present or self.state
+        self._restore(state)
+        self._present, self._visited = present, line
+
+    def leave(self) -> None:
+        """Show the present again, if an earlier moment is visited."""
+        if self._present is not None:
+            present, self._present = self._present, None
+            self._restore(present)
 
     # -- gestures ------------------------------------------------------------------------------------------
 
     def begin(self, label: str) -> None:
-        """Start a gesture."""
+        """Start a gesture; while an earlier moment is visited, from there, and an entry leads back to now."""
+        if self._visited is None:
+            self.leave()
+        if self._present is not None:
+            present, self._present = self._present, None
+            self.history.begin("Go back in time", present)
+            self._record("begin", label="Go back in time")
+            self._record("return", line=self._visited)
+            self.history.commit()
+            self._record("commit")
         self.history.begin(label, self.state)
+        self._bending.turns.forget()
         self._record("begin", label=label)
 
-    def commit(self) -> None:
-        """End the gesture: one undo entry, or none where nothing changed. The pose may go on to settle."""
+    def commit(self, join: bool = False) -> None:
+        """End the gesture: one undo entry, or none where nothing changed. The pose may go on to settle.
+
+        join: as a part of the entry before it.
+        """
         if self.history.unchanged(self.state):
             self.history.abort()
         else:
-            self.history.commit()
-        self._record("commit")
+            self.history.commit(join)
+        self._record("commit", **({"join": True} if join else {}))
 
     def abort(self) -> None:
         """End the gesture and restore the state from before it, bit for bit."""
@@ -106,12 +170,14 @@ class Session:
 
     def undo(self) -> None:
         """Back to the state before the last gesture, if there is one."""
+        self.leave()
         if self.history.undo_label is not None and not self.history.is_open:
             self._restore(self.history.undo(self.state))
             self._record("undo")
 
     def redo(self) -> None:
         """Forward again, if something was undone."""
+        self.leave()
         if self.history.redo_label is not None and not self.history.is_open:
             self._restore(self.history.redo(self.state))
             self._record("redo")
@@ -120,12 +186,14 @@ class Session:
 
     def add_pin(self, at: Target) -> int | None:
         """A pin exactly on what is seen at ``at`` in the current pose; its id, or None beside the drawing."""
-        found = self.drawing.mesh.find(at, self.state.positions)
+        mesh, pins = self.drawing.mesh, self.state.pins
+        found = mesh.find(at, self.state.positions, self.document.order)
         if found is None:
             return None
-        pin_id = 1 + max((pin.id for pin in self.state.pins), default=0)
-        pin = Pin(pin_id, int(found.faces[0]), found.weights[0], np.array(at, dtype=np.float64))
-        self.set_pins((*self.state.pins, pin))
+        depth = depth_at(mesh, pins, found)
+        pin_id = 1 + max((pin.id for pin in pins), default=0)
+        pin = Pin(pin_id, int(found.faces[0]), found.weights[0], np.array(at, dtype=np.float64), depth)
+        self.set_pins((*pins, pin))
         return pin_id
 
     def remove_pins(self, ids: Iterable[int]) -> None:
@@ -133,13 +201,21 @@ class Session:
         gone = set(ids)
         self.set_pins(tuple(pin for pin in self.state.pins if pin.id not in gone))
 
+    def set_depths(self, depths: Mapping[int, int]) -> None:
+        """Bring pins to the front or back, by id; moves nothing. Raises InputError on depths out of range."""
+        for pin_id, depth in depths.items():
+            if not -MOST <= depth <= MOST:
+                expected = f"a whole number from -{MOST} to {MOST}"
+                raise InputError(f"depth of pin {pin_id}: expected {expected}, got {depth}")
+        self.set_pins(tuple(replace(pin, depth=depths.get(pin.id, pin.depth)) for pin in self.state.pins))
+
     def set_pins(self, pins: tuple[Pin, ...]) -> None:
         """Replace all pins; moves nothing. The pins that stay are told to stay where they are."""
         if self._settling:
             here = dict(zip((pin.id for pin in self.state.pins), self.pin_positions(), strict=True))
             pins = tuple(replace(pin, target=here[pin.id]) if pin.id in here else pin for pin in pins)
         state = replace(self.state, pins=pins)
-        self._deformer.set_pins(state.points)
+        self._bending.deformer.set_pins(state.points)
         self._set_state(state)
         self._settling = 0
         self._record("pins", pins=pins_to_json(self.drawing.mesh, pins))
@@ -155,8 +231,31 @@ class Session:
             replace(pin, target=places[pin.id]) if pin.id in places else pin for pin in self.state.pins
         )
         self._set_state(replace(self.state, pins=pins))
-        self._settling = MOST_SETTLING + int(self.pin_error() / self._reach)
+        self._begin_settling()
         self._record("targets", targets={str(pin_id): at.tolist() for pin_id, at in places.items()})
+
+    def turn_pins(self, angles: Mapping[int, float]) -> None:
+        """Let pins hold angles, by id, in radians from rest; `step` turns the drawing around them.
+
+        Beyond π they are full turns where that is the nearer way from how far it is turned already. Raises
+        InputError on angles out of range.
+        """
+        held = {
+            pin_id: as_number(angle, f"angle of pin {pin_id}", -MOST_ANGLE, MOST_ANGLE)
+            for pin_id, angle in angles.items()
+        }
+        pins = tuple(replace(pin, angle=held.get(pin.id, pin.angle)) for pin in self.state.pins)
+        self._set_state(replace(self.state, pins=pins))
+        self._begin_settling()
+        self._record("angles", angles={str(pin_id): angle for pin_id, angle in held.items()})
+
+    def hold_angles(self, ids: Iterable[int], hold: bool = True) -> None:
+        """Let pins hold the angles that they have, or turn as they will again; moves nothing."""
+        mesh, chosen = self.drawing.mesh, set(ids)
+        found = pin_angles(mesh, self.state.pins, self.state.positions, chosen if hold else ())
+        angles = zip(self.state.pins, found.tolist(), strict=True)
+        held = {pin.id: angle if hold else None for pin, angle in angles if pin.id in chosen}
+        self.set_pins(tuple(replace(pin, angle=held.get(pin.id, pin.angle)) for pin in self.state.pins))
 
     def hold_pins(self) -> None:
         """Before a new drag: pins that were stopped on their way, by undo or Escape, stay where they are."""
@@ -166,12 +265,33 @@ class Session:
 
     def set_settings(self, settings: Settings) -> None:
         """Bend differently from now on; moves nothing. Raises InputError, and then nothing has changed."""
-        deformer = self._make_deformer(settings)
-        deformer.set_pins(self.state.points)
-        self._deformer = deformer
-        self._set_state(replace(self.state, settings=settings))
-        self._settling = 0
+        self._bend_by(replace(self.state, settings=settings))
         self._record("settings", **settings_to_json(settings))
+
+    def set_stiffness(self, factors: ArrayLike | None) -> None:
+        """Let faces bend less by factors (m,), None for 1 everywhere; moves nothing. Raises InputError."""
+        stiffness = None if factors is None else as_stiffness(factors, len(self.drawing.mesh.faces))
+        self._bend_by(replace(self.state, stiffness=stiffness))
+        self._record("stiffness", factors=None if stiffness is None else stiffness.tolist())
+
+    def paint_stiffness(self, dabs: ArrayLike, radius: float, factor: float) -> None:
+        """Let bend less what a brush covers, at places ``dabs`` (d, 2) of the rest pose; moves nothing.
+
+        radius: in pixels; factor: from 1, as without, to 1000. Raises InputError.
+        """
+        places = as_points(dabs, "dabs")
+        stiffness = painted(self.state.stiffness, coverage(self.drawing.mesh, places, radius), factor)
+        self._bend_by(replace(self.state, stiffness=stiffness))
+        self._record("paint", dabs=places.tolist(), radius=radius, factor=factor)
+
+    def set_drawing(self, drawing: Drawing, carried: EditState | None = None) -> None:
+        """Bend another mesh of the same picture, made by `remeshed`, from now on; pins and pose stay.
+
+        carried: the current state `carried_over` to it, where that is known. Raises InputError as that does.
+        """
+        assert drawing.meshing is not None, "expected a drawing whose mesh can be made again"
+        self._restore(carried or carried_over(self.state, self.drawing.mesh, drawing))
+        self._record("mesh", **asdict(drawing.meshing))
 
     def set_pose(self, positions: Floats) -> None:
         """Take over a pose (n, 2); the pins stay on the drawing and go there with it. Raises InputError."""
@@ -185,25 +305,61 @@ class Session:
             self._put(self.drawing.mesh.vertices)
             self._record("reset")
 
+    def bake_pose(self) -> None:
+        """Make the pose the rest pose; nothing moves. Raises InputError, and then nothing has changed."""
+        if self.posed:
+            self._restore(baked_state(self.state, self.drawing))
+            self._record("bake")
+
+    def keep_pose(self, name: str) -> None:
+        """Remember the current pose by a name; one of the same name is forgotten. Raises InputError."""
+        pose = NamedPose(name, self.state.positions)
+        self._set_state(replace(self.state, poses=with_pose(self.state.poses, pose)))
+        self._record("keep", name=name)
+
+    def forget_pose(self, name: str) -> None:
+        """Forget a pose, if there is one of that name."""
+        self._set_state(
+            replace(self.state, poses=tuple(pose for pose in self.state.poses if pose.name != name))
+        )
+        self._record("forget", name=name)
+
+    def go_back(self, state: EditState, line: int) -> None:
+        """Take over the state after an earlier ``line`` of the recording, where what came after it stays."""
+        self._restore(state)
+        self._record("return", line=line)
+
     # -- motion --------------------------------------------------------------------------------------------
 
     def step(self) -> StepResult:
         """One step of the deformer towards the current targets. On SolverError the pose is as it was."""
-        before, targets, here = self.state.positions, self.state.targets, self.pin_positions()
-        way = float(np.linalg.norm(targets - here, axis=1).max(initial=0.0))
-        share = min(1.0, self._reach / way) if way else 1.0
+        before, off = self.state.positions, self._bending.off(self.state)
         try:
-            result = self._deformer.step(before, here + share * (targets - here) if share < 1 else targets)
+            result = self._bending.step(self.state)
         except SolverError:
             self._settling = 0
             raise
+        if result.field is not None and np.linalg.norm(off, axis=1).max(initial=0.0) > PIN_TOLERANCE:
+            self._bending.last_way = before, off
         self._set_state(replace(self.state, positions=result.positions))
         self._record("step")
         moved = float(np.abs(result.positions - before).max())
-        still = moved < STILL if self.pin_error() < PIN_TOLERANCE else moved < 0.1 * STILL
+        turned = self._bending.turn_error(self.state) < ANGLE_TOLERANCE
+        arrived = self.pin_error() < PIN_TOLERANCE and turned
+        still = self._bending.wobbles or moved < (STILL if arrived else 0.1 * STILL)
         self._settling = 0 if still else max(self._settling - 1, 0)
         self.last_step = result
         return result
+
+    def fields(self) -> tuple[Floats, Floats] | None:
+        """U_opt and U°, (n, 2) each, of the last step that moved pins; None for a method without fields."""
+        way = self.last_way
+        return None if way is None or len(way[1]) != len(self.state.pins) else self._bending.fields()
+
+    @property
+    def last_way(self) -> tuple[Floats, Floats] | None:
+        """Of the last step that moved pins: the pose before, (n, 2), and velocities of the pins, (k, 2)."""
+        return self._bending.last_way
 
     def settle(self) -> None:
         """Step until the pose has come to rest."""
@@ -217,25 +373,37 @@ class Session:
         self.document = replace(self.document, path=path)
         self._saved = self.state
 
+    def mark_unsaved(self) -> None:
+        """No file holds the current state, though it was there from the start."""
+        self._saved = None
+
     # -- inside --------------------------------------------------------------------------------------------
 
-    def _make_deformer(self, settings: Settings) -> Deformer:
-        return make_deformer(settings.method, self.drawing.mesh, **dict(settings.parameters))
+    def _bend_by(self, state: EditState) -> None:
+        """Take over a state that bends differently; nothing has changed where that is not possible."""
+        self._bending = Bending(self.drawing.mesh, state)
+        self._set_state(state)
+        self._settling = 0
+
+    def _begin_settling(self) -> None:
+        self._settling = MOST_SETTLING + int(self._bending.steps_left(self.state))
 
     def _put(self, pose: Floats) -> None:
-        places = self.drawing.mesh.evaluate(self.state.points, pose)
-        pins = tuple(replace(pin, target=place) for pin, place in zip(self.state.pins, places, strict=True))
+        pins = stopped(self.drawing.mesh, self.state.pins, pose)
         self._set_state(replace(self.state, pins=pins, positions=pose))
         self._settling = 0
 
     def _set_state(self, state: EditState) -> None:
-        self.document = self.document.with_state(state)
+        self.document = replace(self.document.with_state(state), drawing=state.drawing or self._opened)
 
     def _restore(self, state: EditState) -> None:
-        if state.settings != self.state.settings:
-            self._deformer = self._make_deformer(state.settings)
-        self._deformer.set_pins(state.points)
         self._set_state(state)
+        if self._bending.fits(self.drawing.mesh, state):
+            self._bending.last_way = None
+            self._bending.turns.forget()
+            self._bending.deformer.set_pins(state.points)
+        else:
+            self._bending = Bending(self.drawing.mesh, state)
         self._settling = 0
 
     def _record(self, do: str, **values: object) -> None:

@@ -6,39 +6,14 @@ import numpy as np
 
 from .camera import Point
 from .events import PointerEvent
+from .tool import Pointing, Tool
+from .tool_brush import Painting
+from .tool_turning import PointingRing, hovered_ring, ring_at
 
 if TYPE_CHECKING:
     from .editor import Editor
 
-DRAG_DISTANCE = 3.0  # points of the screen: less is a click with a trembling hand
 ZOOM_STEP = 1.15
-
-
-def distance(a: Point, b: Point) -> float:
-    """Between two points of the screen."""
-    return float(np.hypot(a[0] - b[0], a[1] - b[1]))
-
-
-class Tool:
-    """A state of the pointer. Events lead to others; `cancel` leaves as if it had never been entered."""
-
-    hint = ""
-
-    def __init__(self, editor: "Editor") -> None:
-        self.editor = editor
-
-    def press(self, event: PointerEvent) -> None:
-        """A button goes down."""
-
-    def move(self, event: PointerEvent) -> None:
-        """The pointer moves, buttons up or down."""
-
-    def release(self, event: PointerEvent) -> None:
-        """A button goes up."""
-
-    def cancel(self) -> None:
-        """Escape, focus loss or an error: back to idle, everything as it was before the press."""
-        self.editor.enter(Idle(self.editor))
 
 
 class Idle(Tool):
@@ -52,8 +27,16 @@ class Idle(Tool):
             return "Open a picture or a drawing to begin"
         if editor.hand:
             return "Drag to move the canvas, wheel to zoom"
+        if editor.chosen_tool == "brush":
+            return editor.brush.hint
+        if hovered_ring(editor) is not None:
+            return "Drag the ring to turn the drawing around this pin, with Shift by steps of 15°"
         if editor.hovered_pin is not None:
-            return "Drag to bend the drawing, Shift-click to select several pins"
+            if "alt" in editor.held:
+                return "Click to remove this pin, drag its ring to turn the drawing around it"
+            if "shift" in editor.held:
+                return "Click to select this pin too, or to take it out of the selection"
+            return "Drag to bend the drawing, Shift-click to select several pins, double-click for values"
         if editor.would_add_pin:
             return "Click to add a pin, or press and drag to bend from here"
         if not editor.session.state.pins:
@@ -65,11 +48,33 @@ class Idle(Tool):
         if event.button == "middle" or (event.button == "left" and editor.hand):
             editor.enter(Panning(editor, event))
             return
-        if event.button != "left" or editor.session is None:
+        if editor.session is None:
+            return
+        if editor.chosen_tool == "brush":
+            editor.enter(Painting(editor, event))
             return
         pin = editor.pin_at(event.position)
-        if pin is not None:
+        ring = ring_at(editor, event.position) if event.alt else None
+        if event.button == "right":
+            if pin is not None:
+                editor.enter(AskingForMenu(editor, event, pin))
+        elif ring is not None:
+            editor.enter(PointingRing(editor, event, ring))
+        elif pin is None:
+            self._press_beside_pins(event)
+        elif event.alt:
+            editor.enter(CuttingPin(editor, event, pin))
+        elif event.clicks == 2 and pin != editor.newest_pin:
+            editor.ask("values", pin)
+        else:
             editor.enter(PointingPin(editor, event, pin, is_new=False))
+
+    def _press_beside_pins(self, event: PointerEvent) -> None:
+        """A new pin where the drawing is; Shift and Alt are for pins that are there."""
+        editor = self.editor
+        assert editor.session is not None
+        if event.shift or event.alt:
+            editor.enter(PointingCanvas(editor, event))
             return
         editor.session.begin("Add pin")
         added = editor.session.add_pin(editor.camera.to_drawing(event.position))
@@ -80,14 +85,14 @@ class Idle(Tool):
             editor.enter(PointingPin(editor, event, added, is_new=True))
 
 
-class PointingPin(Tool):
+class PointingPin(Pointing):
     """Pressed on a pin, or on the drawing where a pin now is; not dragged yet."""
 
     hint = "Drag to bend the drawing"
 
     def __init__(self, editor: "Editor", event: PointerEvent, pin: int, is_new: bool) -> None:
-        super().__init__(editor)
-        self.start, self.pin, self.is_new = event.position, pin, is_new
+        super().__init__(editor, event)
+        self.pin, self.is_new = pin, is_new
         self._selection_before = editor.selection
         self._was_selected = pin in editor.selection
         if event.shift:
@@ -96,16 +101,14 @@ class PointingPin(Tool):
             editor.select({pin})
         self._toggle = event.shift and self._was_selected
 
-    def move(self, event: PointerEvent) -> None:
-        if distance(event.position, self.start) >= DRAG_DISTANCE * self.editor.ui_scale:
-            drag = DraggingPin(self.editor, self.start, self._selection_before, self.is_new)
-            self.editor.enter(drag)
-            drag.move(event)
+    def dragged(self, event: PointerEvent) -> None:
+        drag = DraggingPin(self.editor, self.start, self._selection_before, self.is_new)
+        self.editor.enter(drag)
+        drag.move(event)
 
-    def release(self, event: PointerEvent) -> None:
+    def clicked(self, event: PointerEvent) -> None:
         editor = self.editor
-        if event.button != "left":
-            return
+        editor.newest_pin = self.pin if self.is_new else None
         if self.is_new:
             assert editor.session is not None
             editor.session.commit()
@@ -120,6 +123,34 @@ class PointingPin(Tool):
             self.editor.session.abort()
         self.editor.select(self._selection_before)
         super().cancel()
+
+
+class CuttingPin(Pointing):
+    """Pressed on a pin with Alt."""
+
+    hint = "Release to remove this pin, Escape to keep it"
+
+    def __init__(self, editor: "Editor", event: PointerEvent, pin: int) -> None:
+        super().__init__(editor, event)
+        self.pin = pin
+
+    def clicked(self, event: PointerEvent) -> None:
+        self.editor.enter(Idle(self.editor))
+        self.editor.remove_pins({self.pin})
+
+
+class AskingForMenu(Pointing):
+    """Pressed on a pin with the right button; a drag with that button does nothing."""
+
+    hint = "Release for the menu of this pin"
+
+    def __init__(self, editor: "Editor", event: PointerEvent, pin: int) -> None:
+        super().__init__(editor, event)
+        self.pin = pin
+
+    def clicked(self, event: PointerEvent) -> None:
+        self.editor.enter(Idle(self.editor))
+        self.editor.ask("menu", self.pin)
 
 
 class DraggingPin(Tool):
@@ -141,6 +172,7 @@ class DraggingPin(Tool):
         else:
             session.begin(label)
         session.hold_pins()
+        editor.trails.clear()
         where = zip(session.state.pins, session.pin_positions(), strict=True)
         self._from = {pin.id: (x, y) for pin, (x, y) in where if pin.id in editor.selection}
 
@@ -159,30 +191,29 @@ class DraggingPin(Tool):
     def cancel(self) -> None:
         if self.editor.session is not None:
             self.editor.session.abort()
+        self.editor.trails.clear()
         self.editor.select(self._selection_before)
         super().cancel()
 
 
-class PointingCanvas(Tool):
-    """Pressed beside the drawing; not dragged yet."""
+class PointingCanvas(Pointing):
+    """Pressed beside the drawing, or on it with Shift; not dragged yet."""
 
     hint = "Drag to select pins with a box"
 
     def __init__(self, editor: "Editor", event: PointerEvent) -> None:
-        super().__init__(editor)
-        self.start, self._adds = event.position, event.shift
+        super().__init__(editor, event)
+        self._adds = event.shift
 
-    def move(self, event: PointerEvent) -> None:
-        if distance(event.position, self.start) >= DRAG_DISTANCE * self.editor.ui_scale:
-            band = RubberBand(self.editor, self.start, self._adds)
-            self.editor.enter(band)
-            band.move(event)
+    def dragged(self, event: PointerEvent) -> None:
+        band = RubberBand(self.editor, self.start, self._adds)
+        self.editor.enter(band)
+        band.move(event)
 
-    def release(self, event: PointerEvent) -> None:
-        if event.button == "left":
-            if not self._adds:
-                self.editor.select(())
-            self.editor.enter(Idle(self.editor))
+    def clicked(self, event: PointerEvent) -> None:
+        if not self._adds:
+            self.editor.select(())
+        self.editor.enter(Idle(self.editor))
 
 
 class RubberBand(Tool):

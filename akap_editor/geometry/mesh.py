@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import Delaunay
 
 from ..errors import InputError
 from .checks import Floats, Ints, as_indices, as_points, frozen
@@ -50,10 +51,13 @@ class TriMesh:
     vertices: (n, 2) float64, every one used, none twice; faces: (m, 3) int32, every signed area positive, at
     most one on each side of an edge. Parts that touch share an edge: in a single point they could turn about
     it freely. Arrays are read-only. Raises InputError where that does not hold.
+    tied: whether a part without a pin rides with the part nearest to it, see `deform.riding`; else it holds
+    still.
     """
 
     vertices: Floats
     faces: Ints
+    tied: bool = False
 
     def __post_init__(self) -> None:
         vertices = as_points(self.vertices, "vertices")
@@ -139,22 +143,43 @@ class TriMesh:
         return frozen(labels.astype(np.int32))
 
     @cached_property
+    def gaps(self) -> Ints:
+        """(g, 2) int32, the narrowest first: the nearest vertices of two parts that are side by side.
+
+        An edge of the Delaunay triangulation joins each set of points with the point nearest to it, so that
+        no other pairs need to be looked at.
+        """
+        if not self.component.any():
+            return np.zeros((0, 2), dtype=np.int32)
+        rim = self.boundary_vertices
+        corners = rim[Delaunay(self.vertices[rim] - self.vertices[rim].mean(axis=0)).simplices]
+        pairs = corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        pairs = pairs[self.component[pairs[:, 0]] < self.component[pairs[:, 1]]]
+        widths = np.linalg.norm(self.vertices[pairs[:, 0]] - self.vertices[pairs[:, 1]], axis=1)
+        pairs = pairs[np.argsort(widths, kind="stable")]
+        _, first = np.unique(self.component[pairs], axis=0, return_index=True)
+        return frozen(pairs[np.sort(first)])
+
+    @cached_property
     def rest_areas(self) -> Floats:
         """(m,) areas of the rest faces, square pixels."""
         return frozen(signed_areas(self.vertices, self.faces))
 
-    def find(self, point: ArrayLike, positions: ArrayLike | None = None) -> MeshPoints | None:
+    def find(
+        self, point: ArrayLike, positions: ArrayLike | None = None, order: Ints | None = None
+    ) -> MeshPoints | None:
         """The point of the drawing seen at ``point`` in the pose ``positions`` (default: at rest), or None.
 
-        Where faces overlap, the one drawn last (highest index) is seen.
+        Where faces overlap, the one drawn last is seen: order (m,) are the faces as they are drawn, by default
+        by their index.
         """
         q = as_points([point], "point", 1)[0]  # type: ignore[arg-type]
-        return self._find(q, self._pose(positions))
+        return self._find(q, self._pose(positions), order)
 
     def _pose(self, positions: ArrayLike | None) -> Floats:
         return self.vertices if positions is None else as_points(positions, "positions", len(self.vertices))
 
-    def _find(self, point: Floats, pose: Floats) -> MeshPoints | None:
+    def _find(self, point: Floats, pose: Floats, order: Ints | None = None) -> MeshPoints | None:
         corners = pose[self.faces]
         margin = _ROUNDING * np.abs(point).max()
         near = (corners.min(axis=1) <= point + margin) & (corners.max(axis=1) >= point - margin)
@@ -163,6 +188,10 @@ class TriMesh:
         hits = np.flatnonzero(weights.min(axis=1) >= -_ROUNDING)
         if not len(hits):
             return None
+        if order is not None:
+            rank = np.empty(len(order), dtype=np.int64)
+            rank[order] = np.arange(len(order))
+            hits = hits[np.argsort(rank[inside[hits]])]
         return MeshPoints(inside[hits[-1:]], weights[hits[-1:]])
 
     def locate(self, points: ArrayLike, positions: ArrayLike | None = None) -> MeshPoints:
@@ -194,7 +223,7 @@ class TriMesh:
 
 
 def barycentric(corners: Floats, point: Floats) -> Floats:
-    """Barycentric weights (m, 3) of ``point`` (2,) in each of the triangles ``corners`` (m, 3, 2)."""
+    """Barycentric weights (m, 3) in triangles ``corners`` (m, 3, 2) of a ``point``, (2,) or (m, 2)."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     u, v, w = b - a, c - a, point - a
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):

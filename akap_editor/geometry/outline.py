@@ -1,19 +1,27 @@
 """From an alpha channel to polygons: the cut-out of a drawing."""
 
 from dataclasses import dataclass
-from itertools import pairwise
 
-import contourpy
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
 from .checks import Floats, as_points, frozen
+from .contours import contours
 
-SMALLEST_PART = 12.0  # square pixels; anything less is a speck
+SMALLEST_PART = 10.0  # square pixels; anything less is a speck
+SMALLEST_SHARE = 2e-5  # of the whole drawing; anything less is a speck, too
+SMALLEST_HOLE = 10.0  # square pixels; anything less is filled
+SCRAP = 1.0  # square pixels: what cutting apart may leave over
+THINNEST = 1.5  # pixels: a thinner stroke is made thicker by half of that on each side
+SKETCH = 0.2  # share of the tolerance used up at first: all that follows takes a tenth of the time
 GRID = 1 / 64  # pixels: nearer points are one point, so that no two are too near for Triangle
 BITE = 0.5  # pixels: half the side of what is cut out where rings meet in a point
+
+Polygons = NDArray[np.object_]  # of shapely polygons
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,18 +44,94 @@ class Outline:
         return shapely.Polygon(self.outer, self.holes)
 
 
+@dataclass(frozen=True)
+class CutOut:
+    """The parts of a picture, largest first, and what was left out as too small.
+
+    specks: islands left out; speck_area: their area in square pixels.
+    """
+
+    parts: tuple[Outline, ...]
+    specks: int
+    speck_area: float
+
+    @property
+    def points(self) -> int:
+        """Number of points of all rings."""
+        return sum(len(part.outer) + sum(map(len, part.holes)) for part in self.parts)
+
+    @property
+    def holes(self) -> int:
+        """Number of holes of all parts."""
+        return sum(len(part.holes) for part in self.parts)
+
+
 def outlines(
     alpha: NDArray[np.uint8], threshold: float = 0.5, expand: float = 2.0, tolerance: float = 0.5
 ) -> list[Outline]:
-    """The parts of a picture as polygons with holes, largest first.
+    """The parts of a picture as polygons with holes, largest first; see `cut_out`."""
+    return list(cut_out(alpha, threshold, expand, tolerance).parts)
+
+
+def cut_out(
+    alpha: NDArray[np.uint8],
+    threshold: float = 0.5,
+    expand: float = 2.0,
+    tolerance: float = 0.5,
+    most_points: float = np.inf,
+) -> CutOut:
+    """Cut a picture out along its alpha.
 
     alpha: (h, w) uint8; threshold: share of full opacity at which the picture ends, in (0, 1); expand: pixels
     by which the outline moves outwards, so that the soft rim is inside and near parts join (never past the
-    picture's frame); tolerance: pixels by which the contour may be simplified.
-    The contour is the sub-pixel iso-line of alpha, pixel centers at half-integers.
+    picture's frame); tolerance: pixels by which the contour may be simplified; most_points: where all
+    outlines together have more, they are simplified further, and moved out so far that the picture stays
+    inside, as long as no parts join and no hole larger than some 1/6 of the area per point closes.
+    The contour is the sub-pixel iso-line of alpha, pixel centers at half-integers. Strokes thinner than
+    `THINNEST` are made thicker. Islands below `SMALLEST_PART` or `SMALLEST_SHARE` are left out, unless the
+    expansion joins them to others; holes below `SMALLEST_HOLE` are filled.
     Rings never meet, not even in a point. Raises InputError where the picture has no visible part.
     """
     alpha = np.asarray(alpha)
+    _check(alpha, threshold, expand, tolerance)
+    height, width = alpha.shape
+    rings = contours(alpha, 255 * threshold)
+    if not rings:
+        raise InputError(
+            f"the picture is fully transparent: expected a drawing, but none of its {width}×{height} pixels "
+            f"is more than {threshold:.0%} opaque"
+        )
+    # An expansion by r closes every hole of at most π r² square pixels.
+    drawn = polygons_of(rings, max(SMALLEST_HOLE, np.pi * expand**2))
+    specks = _specks(drawn, 2 * expand)
+    if specks.all():
+        raise InputError(
+            f"the picture is too small to bend: expected a part of at least {SMALLEST_PART:g} square pixels, "
+            f"got {width}×{height} pixels with {int((alpha > 255 * threshold).sum())} of them visible, "
+            f"in {len(drawn)} pieces"
+        )
+    kept = drawn[~specks]
+    frame = shapely.box(0, 0, width, height)
+    left_out = int(specks.sum()), float(shapely.area(drawn[specks]).sum())
+    cut = CutOut(_parts(kept, expand, tolerance, frame), *left_out)
+    slack = max(tolerance, 0.5)
+    while cut.points > most_points and slack < max(alpha.shape) / 8:
+        slack *= 1.4
+        coarser = CutOut(_parts(kept, max(expand, slack), slack, frame), *left_out)
+        if _shape_of(coarser, most_points) != _shape_of(cut, most_points):
+            break
+        cut = coarser
+    return cut
+
+
+def _shape_of(cut: CutOut, most_points: float) -> tuple[int, int]:
+    """Number of parts, and of the holes that so few points can show."""
+    areas = [shapely.Polygon(hole).area for part in cut.parts for hole in part.holes]
+    smallest = sum(part.polygon.area for part in cut.parts) / (6 * most_points)
+    return len(cut.parts), int((np.array(areas) > smallest).sum())
+
+
+def _check(alpha: NDArray[np.uint8], threshold: float, expand: float, tolerance: float) -> None:
     if alpha.ndim != 2 or alpha.dtype != np.uint8 or not alpha.size:
         raise InputError(f"alpha: expected shape (h, w) uint8, got {alpha.shape} {alpha.dtype}")
     if not 0 < threshold < 1:
@@ -55,40 +139,77 @@ def outlines(
     for name, value in (("expand", expand), ("tolerance", tolerance)):
         if not 0 <= value < np.inf:
             raise InputError(f"{name}: expected a number of pixels, at least 0, got {value:g}")
-    height, width = alpha.shape
-    if not (alpha > 255 * threshold).any():
-        raise InputError(
-            f"the picture is fully transparent: expected a drawing, but none of its {width}×{height} pixels "
-            f"is more than {threshold:.0%} opaque"
-        )
-    shape = shapely.union_all([_polygon(*part) for part in _contours(alpha, threshold)])
-    shape = shape.buffer(expand, quad_segs=4).simplify(tolerance)
-    shape = shapely.set_precision(shape.intersection(shapely.box(0, 0, width, height)), GRID)
-    parts = [part for part in _polygons(_apart(shape)) if part.area >= SMALLEST_PART]
-    if not parts:
-        raise InputError(
-            f"the picture is too small to bend: expected a part of at least {SMALLEST_PART:g} square pixels, "
-            f"got {width}×{height} pixels with {int((alpha > 255 * threshold).sum())} of them visible"
-        )
+
+
+def visible_polygons(alpha: NDArray[np.uint8], threshold: float) -> Polygons:
+    """All that is more opaque than ``threshold``, exactly along the iso-line, as polygons with holes."""
+    return polygons_of(contours(alpha, 255 * threshold))
+
+
+def polygons_of(rings: list[Floats], smallest_hole: float = 0.0) -> Polygons:
+    """Polygons with holes from rings that never meet, smallest first.
+
+    rings: (p, 2) each, outer ones with a positive signed area (y down), holes with a negative one, as of
+    `contours`; smallest_hole: holes of at most that many square pixels are filled.
+    """
+    if not rings:
+        return np.zeros(0, dtype=np.object_)
+    lengths = [len(ring) for ring in rings]
+    lines = shapely.linearrings(np.concatenate(rings), indices=np.repeat(np.arange(len(rings)), lengths))
+    outer = shapely.is_ccw(lines)
+    filled = shapely.polygons(lines)
+    polygons = filled[outer]
+    order = np.argsort(shapely.area(polygons), kind="stable")
+    polygons = polygons[order]
+    holes = np.flatnonzero(~outer)
+    holes = holes[shapely.area(filled[holes]) > smallest_hole]
+    if not len(holes):
+        return polygons
+    shapely.prepare(polygons)
+    points = np.array([rings[hole][0] for hole in holes])
+    hole, owner = shapely.STRtree(polygons).query(shapely.points(points))
+    inside = shapely.contains_xy(polygons[owner], *points[hole].T)
+    owners = np.full(len(holes), len(polygons))
+    np.minimum.at(owners, hole[inside], owner[inside])  # the smallest around it
+    for number in np.unique(owners):
+        rim = shapely.get_exterior_ring(polygons[number])
+        polygons[number] = shapely.polygons(rim, lines[holes[owners == number]])
+    return polygons
+
+
+def _specks(polygons: Polygons, reach: float) -> NDArray[np.bool_]:
+    """Which polygons are too small, taken together with all that are within reach."""
+    count = len(polygons)
+    pairs = shapely.STRtree(polygons).query(polygons, predicate="dwithin", distance=reach)
+    links = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=(count, count))
+    _, group = connected_components(links, directed=False)
+    areas = np.bincount(group, shapely.area(polygons))
+    return (areas < max(SMALLEST_PART, SMALLEST_SHARE * areas.sum()))[group]
+
+
+def _parts(drawn: Polygons, expand: float, tolerance: float, frame: shapely.Polygon) -> tuple[Outline, ...]:
+    """Expanded, simplified, clipped and taken apart, largest first."""
+    # Simplified ring by ring, which may make rings cross: `_expanded` takes that.
+    sketch = shapely.simplify(drawn, SKETCH * tolerance, preserve_topology=False)
+    shape = _expanded(sketch, expand).simplify((1 - SKETCH) * tolerance)
+    shape = shapely.set_precision(shape.intersection(frame), GRID)
+    parts = [part for part in _polygons(_apart(shape)) if part.area >= SCRAP]
     parts.sort(key=lambda part: -part.area)
-    return [_outline(part) for part in parts]
+    return tuple(_outline(part) for part in parts)
 
 
-def _contours(alpha: NDArray[np.uint8], threshold: float) -> list[tuple[Floats, list[int]]]:
-    """Points and ring offsets of each filled part, in pixels."""
-    level = 255 * threshold
-    padded = np.pad(alpha, 1).astype(np.float32)
-    generator = contourpy.contour_generator(z=padded, fill_type=contourpy.FillType.OuterOffset)
-    points, offsets = generator.filled(level, 1000.0)
-    # sample (i, j) of the padded array is the center of pixel (i - 1, j - 1)
-    return [
-        (part.astype(np.float64) - 0.5, ends.tolist()) for part, ends in zip(points, offsets, strict=True)
-    ]
-
-
-def _polygon(points: Floats, offsets: list[int]) -> shapely.Geometry:
-    rings = [points[a:b] for a, b in pairwise(offsets)]
-    return shapely.make_valid(shapely.Polygon(rings[0], rings[1:]))
+def _expanded(drawn: Polygons, expand: float) -> shapely.Geometry:
+    """One valid shape, larger by ``expand`` on all sides, no stroke thinner than `THINNEST`."""
+    if expand > 0:
+        shape = shapely.union_all(shapely.buffer(drawn, expand, quad_segs=4))
+    else:
+        shape = shapely.union_all(shapely.make_valid(drawn))
+    half = THINNEST / 2
+    if expand < half:
+        thin = shape.difference(shape.buffer(-half).buffer(1.01 * half))
+        strokes = [part for part in _polygons(thin) if part.area > half**2]  # less is a corner
+        shape = shapely.union_all([shape, *shapely.buffer(strokes, half, quad_segs=4)])
+    return shape
 
 
 def _polygons(shape: shapely.Geometry) -> list[shapely.Polygon]:
@@ -109,7 +230,7 @@ def _apart(shape: shapely.Geometry) -> shapely.Geometry:
 
 
 def _outline(polygon: shapely.Polygon) -> Outline:
-    holes = [ring for ring in polygon.interiors if shapely.Polygon(ring).area >= SMALLEST_PART]
+    holes = [ring for ring in polygon.interiors if shapely.Polygon(ring).area >= SMALLEST_HOLE]
     return Outline(
         np.array(polygon.exterior.coords)[:-1], tuple(np.array(ring.coords)[:-1] for ring in holes)
     )

@@ -5,6 +5,7 @@ import os
 import secrets
 import shutil
 import stat
+from contextlib import suppress
 from pathlib import Path
 
 from ..errors import InputError
@@ -36,8 +37,10 @@ def read_file(path: str | Path, expected: str) -> bytes:
 def write_atomic(path: str | Path, data: bytes) -> None:
     """Write a file under a temporary name in its folder and move it into place.
 
-    Whatever fails, the old file stays as it was and no temporary file is left. A link is followed, permission
-    bits of the old file are kept, those of a new file follow the umask. Raises InputError.
+    Whatever fails, the old file stays as it was and no temporary file is left; only where the process is
+    killed, a file .akap-*.tmp may be. Once this returns, the new file outlasts a power cut as far as the
+    system can promise it. A link is followed, permission bits of the old file are kept, those of a new file
+    follow the umask. Raises InputError.
     """
     try:
         target = Path(path).resolve()
@@ -56,11 +59,24 @@ def write_atomic(path: str | Path, data: bytes) -> None:
             if old:
                 shutil.copymode(target, temporary)
             os.replace(temporary, target)
+            _flush_folder(target.parent)
         except BaseException:
             temporary.unlink(missing_ok=True)
             raise
     except (OSError, ValueError) as error:
         raise InputError(f"cannot write {path}: {_reason(error)}") from error
+
+
+def _flush_folder(folder: Path) -> None:
+    """Write the folder's list of names to the disk, where the system knows of such a thing."""
+    if os.name != "posix":
+        return
+    with suppress(OSError):  # some file systems refuse, and the new file is in place whatever happens here
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
 
 
 def _reason(error: OSError | ValueError) -> str:

@@ -1,9 +1,7 @@
 """Renders a posed drawing to an array, without a window."""
 
 import sys
-from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
-from math import ceil, floor, isfinite
 from typing import Any, Self
 
 import moderngl
@@ -11,32 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..editor.document import Drawing
-from ..errors import GraphicsError, InputError
-from ..geometry.checks import as_points
-from .renderer import Background, Color, Renderer, View, load_program
+from ..editor.framing import Box, frame_box, picture_size
+from ..errors import GraphicsError
+from ..geometry.checks import Ints, as_points
+from .programs import load_program
+from .renderer import Background, Color, Renderer
 
-Box = tuple[int, int, int, int]
-
-MAX_SIZE = 8192
-_SLACK = 1e-6  # pixels: rounding noise must not add a row
-
-
-def frame_box(drawing: Drawing, poses: Sequence[ArrayLike]) -> Box:
-    """The rectangle (x0, y0, x1, y1) in whole drawing units that holds the picture's frame and all ``poses``.
-
-    poses: (n, 2) each. Nothing is cut off, and an animation gets one box for all its frames.
-    Raises InputError for a bad pose.
-    """
-    corners = [np.array([(0, 0), drawing.size], dtype=np.float64)]
-    corners += [as_points(pose, "poses", len(drawing.mesh.vertices)) for pose in poses]
-    low = np.min([points.min(axis=0) for points in corners], axis=0)
-    high = np.max([points.max(axis=0) for points in corners], axis=0)
-    return (
-        floor(low[0] + _SLACK),
-        floor(low[1] + _SLACK),
-        ceil(high[0] - _SLACK),
-        ceil(high[1] - _SLACK),
-    )
+TILE = 2048  # pixels a side that are drawn at once: bounds the memory of the graphics card
+SAMPLES = 4  # per pixel, of the mesh's edges: textures are sampled once, so what they hold stays exact
 
 
 def standalone_context() -> moderngl.Context:
@@ -83,62 +63,71 @@ class OffscreenRenderer:
         box: Box | None = None,
         scale: float = 1.0,
         background: Color | None = None,
+        order: Ints | None = None,
     ) -> NDArray[np.uint8]:
         """The drawing in a pose as (h, w, 4) uint8, straight alpha; where alpha is 0, so is the color.
 
         positions: (n, 2) drawing units; box: the part of the drawing plane to show, by default `frame_box` of
-        the pose; scale: pixels per drawing unit, the size is rounded up; background: (r, g, b) from 0 to 1,
-        or None for transparent. A drawing at rest comes out as its picture was, within what its mesh covers.
+        the pose; scale: pixels per drawing unit, the size is rounded up (see `picture_size`); background:
+        (r, g, b) from 0 to 1, or None for transparent; order: (m,) the faces as they are drawn, the last one
+        in front, see `Document.order`. A drawing at rest comes out as its picture was, within what its mesh
+        covers. The driver's limit of sizes does not matter.
         Raises InputError for a bad argument or too large a picture, GraphicsError without OpenGL 3.3.
         """
         pose = as_points(positions, "positions", len(drawing.mesh.vertices))
-        x0, y0, x1, y1 = frame_box(drawing, [pose]) if box is None else box
-        if not (isfinite(scale) and scale > 0):
-            raise InputError(f"scale: expected a positive number, got {scale:g}")
-        if not (x0 < x1 and y0 < y1):
-            raise InputError(f"box: expected x0 < x1 and y0 < y1, got {(x0, y0, x1, y1)}")
+        box = frame_box(drawing, [pose]) if box is None else box
+        width, height = picture_size(box, scale)
         if self._context is None:
             self._context = standalone_context()
         with self._current():
             renderer = self._prepared_renderer(self._context)
-            width, height = (x1 - x0) * scale, (y1 - y0) * scale
-            limit = min(MAX_SIZE, renderer.max_texture_size)
-            if max(width, height) > limit + _SLACK:
-                raise InputError(
-                    f"picture size: expected at most {limit}×{limit} pixels, got {width:.0f}×{height:.0f}; "
-                    "choose a smaller scale"
-                )
-            size = max(1, ceil(width - _SLACK)), max(1, ceil(height - _SLACK))
-            renderer.show(drawing, pose)
-            # y is not turned: the target's bottom row, which is read first, is the top row of the result.
-            sx, sy = 2 * scale / size[0], 2 * scale / size[1]
-            view = sx, sy, -1 - sx * x0, -1 - sy * y0
-            return self._draw(self._context, renderer, size, view, Background(background))
+            renderer.show(drawing, pose, order)
+            side = min(TILE, renderer.max_texture_size)
+            picture = np.empty((height, width, 4), dtype=np.uint8)
+            for top in range(0, height, side):
+                for left in range(0, width, side):
+                    tile = picture[top : top + side, left : left + side]
+                    corner = box[0] + left / scale, box[1] + top / scale
+                    tile[...] = self._draw(renderer, tile.shape[1::-1], corner, scale, Background(background))
+        return picture
 
     def _draw(
         self,
-        ctx: moderngl.Context,
         renderer: Renderer,
         size: tuple[int, int],
-        view: View,
+        corner: tuple[float, float],
+        scale: float,
         background: Background,
     ) -> NDArray[np.uint8]:
-        """Draw in 16-bit floats, so that the division by alpha is exact, and divide on the graphics card."""
-        target = ctx.texture(size, 4, dtype="f2")
+        """The part of the plane with its top left ``corner`` at a drawing unit, ``size`` in pixels.
+
+        Drawn in 16-bit floats, so that the division by alpha is exact, and divided on the graphics card.
+        """
+        assert self._context is not None
+        ctx = self._context
+        # y is not turned: the target's bottom row, which is read first, is the top row of the result.
+        sx, sy = 2 * scale / size[0], 2 * scale / size[1]
+        view = sx, sy, -1 - sx * corner[0], -1 - sy * corner[1]
+        sampled = ctx.renderbuffer(size, 4, samples=min(SAMPLES, ctx.max_samples), dtype="f2")
+        resolved = ctx.texture(size, 4, dtype="f2")
         straight = ctx.renderbuffer(size, 4)
-        first, second = ctx.framebuffer([target]), ctx.framebuffer([straight])
+        targets = [ctx.framebuffer([buffer]) for buffer in (sampled, resolved, straight)]
         try:
-            with ctx.scope(first):
-                renderer.draw(first, size, view, background=background)
-            target.use(0)
-            with ctx.scope(second, moderngl.NOTHING):
+            with ctx.scope(targets[0]):
+                renderer.draw(targets[0], size, view, background=background)
+            ctx.copy_framebuffer(targets[1], targets[0])
+            resolved.use(0)
+            with ctx.scope(targets[2], moderngl.NOTHING):
                 self._unpremultiply_pass.render(moderngl.TRIANGLES, vertices=3)
             pixels = np.empty((size[1], size[0], 4), dtype=np.uint8)
-            second.read_into(pixels, components=4, alignment=1)
+            targets[2].read_into(pixels, components=4, alignment=1)
             return pixels
         finally:
-            for item in (first, second, target, straight):
-                item.release()
+            for target in targets:
+                target.release()
+            for buffer in (sampled, straight):
+                buffer.release()
+            resolved.release()
 
     def _prepared_renderer(self, ctx: moderngl.Context) -> Renderer:
         if self._renderer is None:

@@ -135,7 +135,7 @@ def test_panning_takes_the_canvas_along_and_edits_nothing(pinned, how):
     end = start[0] + 70, start[1] - 40
     place = pinned.place(start)
     if how == "hand tool":
-        pinned.editor.hand_tool = True
+        pinned.editor.chosen_tool = "hand"
     pinned.drag(
         start, end, button=2 if how == "middle button" else 0, held=Key.space if how == "space" else None
     )
@@ -297,7 +297,7 @@ def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkey
         pinned.begin_drag(hand, start)
         move(hand, (start[0], start[1] + 100))
         hand.yield_(2)
-        monkeypatch.setattr(pinned.session._deformer, "step", fail)
+        monkeypatch.setattr(pinned.session._bending.deformer, "step", fail)
         move(hand, (start[0], start[1] + 200))
         hand.yield_(2)
         seen.append((pinned.space.error, pinned.tool))

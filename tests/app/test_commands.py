@@ -3,14 +3,15 @@
 from imgui_bundle import imgui  # isort: skip
 import pytest
 
-from akap_editor.app import commands
-from akap_editor.app.commands import COMMANDS, CTRL, MENUS, SHIFT, Key, chord_name
-from akap_editor.app.panels import METHODS
+from akap_editor.app import commands, panels
+from akap_editor.app.commands import COMMANDS, CTRL, MENUS, SHIFT, Command, Key, chord_name
 from akap_editor.deform.deformer import method_names
+from akap_editor.deform.variants import VARIANTS, variant_of
 from akap_editor.editor.camera import Camera
+from akap_editor.editor.tool_brush import Brush
 from akap_editor.errors import SolverError
 
-ITEMS = [(menu, command) for menu, group in MENUS for command in group if command is not None]
+ITEMS = [(menu, command) for menu, group in MENUS for command in group if isinstance(command, Command)]
 
 
 def bend(ui):
@@ -40,8 +41,22 @@ def one_selected(ui):
     ui.editor.select({2})
 
 
+def with_tool(name):
+    return lambda ui: setattr(ui.editor, "chosen_tool", name)
+
+
+def stiffened(ui):
+    ui.editor.edit("Stiffen", lambda session: session.paint_stiffness([(50.0, 80.0)], 30.0, 100.0))
+
+
 def moved_camera(ui):
     ui.editor.camera = Camera(0.7, (10.0, 20.0))
+
+
+def watch_palette(ui):
+    """Test Engine closes popups at the end of its tests, so each frame is looked at."""
+    ui.palettes = []
+    ui.window.after_draw[:] = [lambda: ui.palettes.append(ui.space.palette)]
 
 
 def is_rest(ui):
@@ -62,14 +77,19 @@ CASES = {
     "Open...": (nothing, lambda ui: ui.space.request is not None and not ui.space.request.saving),
     "Save": (bent, lambda ui: ui.space.request is not None and ui.space.request.saving),
     "Save As...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
-    "Export PNG...": (nothing, lambda ui: ui.space.request is not None),
+    "Export...": (nothing, lambda ui: ui.space.export.shown),
+    "Close": (nothing, lambda ui: ui.space.document is None),
     "Quit": (nothing, lambda ui: ui.space.closing),
     "Undo": (bent, is_rest),
     "Redo": (undone, lambda ui: ui.session.posed),
     "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
+    "Bring Forward": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, 1, 0]),
+    "Send Back": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, -1, 0]),
+    "Remove Last Pin": (nothing, lambda ui: [pin.id for pin in ui.pins] == [1, 2]),
     "Select All Pins": (nothing, lambda ui: ui.editor.selection == {1, 2, 3}),
     "Deselect": (one_selected, lambda ui: not ui.editor.selection),
     "Reset Pose": (bent, lambda ui: not ui.session.posed and len(ui.pins) == 3),
+    "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.posed and ui.editor.modified),
     "Remember the Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
     "Fit in Window": (moved_camera, lambda ui: ui.editor.camera == fitted(ui)),
     "100 %": (moved_camera, lambda ui: ui.editor.camera.zoom == pytest.approx(1.0)),
@@ -78,10 +98,35 @@ CASES = {
     "Show Mesh": (nothing, lambda ui: ui.space.show_mesh),
     "Show Pins": (nothing, lambda ui: not ui.space.show_pins),
     "Checkerboard": (nothing, lambda ui: not ui.space.checker),
+    "Vector Field of the Drag": (nothing, lambda ui: ui.space.view.vectors),
+    "Distortion of Areas": (nothing, lambda ui: ui.space.view.heat == "area"),
+    "Distortion of Angles": (
+        lambda ui: setattr(ui.space.view, "heat", "area"),
+        lambda ui: ui.space.view.heat == "angle",
+    ),
+    "Rest Pose": (nothing, lambda ui: ui.space.view.ghost),
+    "Pin Trails": (nothing, lambda ui: ui.space.view.trails),
+    "Reference Picture...": (nothing, lambda ui: ui.space.request is not None),
+    "Show Reference Picture": (
+        lambda ui: ui.space.view.set_reference(ui.document.drawing.image),
+        lambda ui: not ui.space.view.show_reference,
+    ),
+    "Save Pose...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
+    "Apply Pose...": (nothing, lambda ui: ui.space.request is not None and not ui.space.request.saving),
+    "Save Recording...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
+    "Two Methods Side by Side": (nothing, lambda ui: ui.space.split),
+    "Timeline": (nothing, lambda ui: ui.space.show_timeline),
+    "Find Command...": (watch_palette, lambda ui: any(ui.palettes)),
     "Keys and Mouse": (nothing, lambda ui: ui.space.keys),
     "About akap-editor": (nothing, lambda ui: ui.space.about),
-    "Pins": (lambda ui: setattr(ui.editor, "hand_tool", True), lambda ui: not ui.editor.hand_tool),
-    "Move Canvas": (nothing, lambda ui: ui.editor.hand_tool),
+    "Pins": (with_tool("hand"), lambda ui: ui.editor.chosen_tool == "pins"),
+    "Move Canvas": (nothing, lambda ui: ui.editor.chosen_tool == "hand"),
+    "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool == "brush"),
+    "Erase Stiffness": (with_tool("brush"), lambda ui: ui.editor.brush.erasing),
+    "Smaller Brush": (with_tool("brush"), lambda ui: ui.editor.brush.radius < Brush().radius),
+    "Larger Brush": (with_tool("brush"), lambda ui: ui.editor.brush.radius > Brush().radius),
+    "Remove All Stiffness": (stiffened, lambda ui: ui.session.state.stiffness is None),
+    "Hold Angle": (one_selected, lambda ui: [pin.angle for pin in ui.pins] == [None, 0.0, None]),
 }
 
 
@@ -263,13 +308,11 @@ def test_the_pin_list_selects(pinned):
     ],
 )
 def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd, error, message):
-    from akap_editor.app import panels
-
-    def fail(space):
+    def fail(space, scale):
         raise error
 
     with monkeypatch.context() as patch:
-        patch.setattr(panels, "_numbers", fail)
+        patch.setattr(panels, "SECTIONS", (*panels.SECTIONS, panels.Section("Broken", fail)))
         pinned.frame()
         assert pinned.space.error == message
     assert ("Traceback" in capfd.readouterr().err) == isinstance(error, KeyError)
@@ -305,7 +348,21 @@ def test_help_opens_and_closes(pinned, label, name, title, close):
 
 
 def test_every_method_can_be_chosen():
-    assert list(METHODS) == method_names()
+    assert {variant.method for variant in VARIANTS} == set(method_names())
+
+
+@pytest.mark.parametrize("variant", [each for each in VARIANTS if each.settings], ids=lambda each: each.spec)
+def test_a_variant_is_chosen_and_keeps_its_memory(pinned, variant):
+    def choose(hand):
+        hand.set_ref("Panel")
+        hand.combo_click(f"##method/{variant.label}")
+
+    pinned.do(choose)
+    settings = pinned.session.state.settings
+    assert settings.method == variant.method
+    memory = {"memory": 1.0} if variant.method == "akap" else {}
+    assert dict(settings.parameters) == {**variant.settings, **memory}
+    assert variant_of(settings.method, dict(settings.parameters)) is variant
 
 
 def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):
@@ -314,7 +371,7 @@ def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):
 
     def choose(hand):
         hand.set_ref("Panel")
-        hand.combo_click(f"##method/{METHODS['arap'][0]}")
+        hand.combo_click("##method/As rigid as possible")
 
     pinned.do(choose)
     assert pinned.session.state.settings.method == "arap"

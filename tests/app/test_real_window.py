@@ -1,6 +1,7 @@
 """The program on a real X server, with a real mouse and keyboard, judged by what is on the screen."""
 
 import ctypes
+import json
 import os
 import shutil
 import subprocess
@@ -50,8 +51,11 @@ def start(display, tmp_path):
     """Starts the program on a file."""
     programs = []
 
-    def run(file):
-        programs.append(Program(display, file, tmp_path))
+    def run(file, remembered=None):
+        preferences = tmp_path / f"preferences-{len(programs)}"
+        preferences.mkdir()
+        (preferences / "preferences.json").write_text(json.dumps(remembered or {"first steps done": True}))
+        programs.append(Program(display, file, tmp_path, preferences))
         return programs[-1]
 
     yield run
@@ -86,11 +90,12 @@ class ClientMessage(ctypes.Structure):
 class Program:
     """The running program, its screen, and a hand at mouse and keyboard."""
 
-    def __init__(self, display, file, folder):
+    def __init__(self, display, file, folder, preferences):
         self._folder, self._shots = folder, 0
         away = {"WAYLAND_DISPLAY", "XDG_SESSION_TYPE"}
         self._environment = {name: value for name, value in os.environ.items() if name not in away}
         self._environment["DISPLAY"] = self._display = display
+        self._environment["AKAP_EDITOR_CONFIG"] = str(preferences)
         command = [sys.executable, "-m", "akap_editor.cli", str(file)]
         self._log = (folder / f"{Path(file).stem}.log").open("w+")
         self.process = subprocess.Popen(command, env=self._environment, stderr=self._log)
@@ -315,3 +320,65 @@ def test_closing_the_window_asks_for_unsaved_changes_and_else_ends(start, pictur
     program.key("ctrl+z", "the pin is taken back")
     program.close_window()
     assert program.ended() == 0
+
+
+def test_after_a_kill_in_a_drag_the_next_start_offers_the_drawing(start, picture, monkeypatch, tmp_path):
+    state = tmp_path / "state"
+    monkeypatch.setenv("AKAP_EDITOR_STATE", str(state))
+    alpha = read_image(picture)[..., 3]
+    program = start(picture)
+    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    pins = np.rint(far_apart(alpha, 10) * zoom + offset).astype(int)
+    for pin in pins.tolist():
+        program.click(pin)
+    program.until(lambda _: list(state.glob("autosave/*.akap")), "the tenth pin is in a copy")
+    program.hand("mousemove", *pins[0], "mousedown", 1)
+    program.hand("mousemove", *(pins[0] + 25))
+    program.process.kill()
+    program.process.wait()
+    program.hand("mouseup", 1)
+
+    again = start(picture)
+    offered = again.until(lambda _: True, "the question is there")
+    again.press("Return")
+    again.until(lambda shot: (canvas(shot) > canvas(offered)).any(axis=2).mean() > 0.2, "it is answered")
+    saved = tmp_path / "recovered.akap"
+    again.key("ctrl+shift+s", "the file dialog is open")
+    again.hand("type", "--delay", 10, str(saved))
+    again.press("Return")
+    again.until(lambda _: saved.is_file(), "the file is saved")
+    again.press("ctrl+q")
+    assert again.ended() == 0
+    recovered = akap_editor.load(saved)
+    assert len(recovered.state.pins) == 10
+    assert np.linalg.norm(recovered.state.targets - (pins - offset) / zoom, axis=1).max() * zoom < 2.0
+    assert not list(state.glob("autosave/*.akap")), "what was saved leaves no copy"
+
+
+def test_pins_by_keys_alt_and_the_right_button(start, picture):
+    alpha = read_image(picture)[..., 3]
+    program = start(picture)
+    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    pins = np.rint(far_apart(alpha, 2) * zoom + offset).astype(int).tolist()
+    bare = canvas(program.grab())
+    one = canvas(program.click(pins[0]))
+    both = canvas(program.click(pins[1]))
+
+    program.hand("mousemove", *pins[0], "mousedown", 3, "mousemove", *pins[1], "mouseup", 3)
+    program.hand("mousemove", *CORNER)
+    program.until(lambda shot: (canvas(shot) == both).all(), "a right-drag does nothing")
+
+    program.hand("mousemove", *pins[0], "click", 3)
+    program.until(lambda shot: (canvas(shot) != both).any(axis=2).sum() > 5000, "a menu is open")
+    program.press("Escape")
+    program.hand("mousemove", *CORNER)
+    program.press("ctrl+z")  # the second pin; the right-click has selected the first one
+    program.until(lambda shot: (canvas(shot) == one).all(), "one pin, selected, no menu")
+
+    nudged = canvas(program.key("shift+Right", "the pin and the drawing are nudged"))
+    assert changed_near(one, nudged, np.subtract(pins[0], (LEFT, TOP))) > 0
+    program.press("ctrl+z")
+    program.until(lambda shot: (canvas(shot) == one).all(), "the nudge is taken back")
+
+    program.hand("mousemove", *pins[0], "keydown", "alt", "click", 1, "keyup", "alt", "mousemove", *CORNER)
+    program.until(lambda shot: (canvas(shot) == bare).all(), "the pin is cut off")

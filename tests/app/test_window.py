@@ -127,11 +127,11 @@ def test_without_a_document_the_window_shows_how_to_begin(ui):
     ui.settle()
     assert ui.space.title == "akap-editor"
     assert "Open" in ui.editor.hint
-    for label in ("Save", "Export PNG...", "Fit in Window"):
+    for label in ("Save", "Export...", "Fit in Window"):
         command = next(c for c in window_module.commands.COMMANDS if c.label == label)
         assert not command.enabled(ui.space)
-    ui.click((400.0, 400.0))
-    ui.wheel((400.0, 400.0), 1.0)
+    ui.click(ui.beside)
+    ui.wheel(ui.beside, 1.0)
     assert not ui.space.error
 
 

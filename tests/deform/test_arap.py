@@ -95,10 +95,11 @@ def test_agrees_with_the_dense_implementation(mesh, shapes, dense, iterations):
 # -- laws ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("rotations", ["faces", "spokes-and-rims"])
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_energy_never_rises(mesh, shapes, seed):
+def test_energy_never_rises(mesh, shapes, seed, rotations):
     points, pose, targets = scene(mesh, shapes, seed)
-    deformer = deformer_with(mesh, points, iterations=1, tolerance=0)
+    deformer = deformer_with(mesh, points, iterations=1, tolerance=0, rotations=rotations)
     energies = []
     for _ in range(40):
         pose = deformer.step(pose, targets).positions
@@ -152,21 +153,66 @@ def test_step_ends_once_nothing_moves_farther_than_the_tolerance(shapes):
     assert np.abs(once_more - ended).max() < 1e-6 * np.sqrt(mesh.rest_areas.sum())
 
 
+def test_converging_goes_on_until_nothing_moves(shapes):
+    mesh = shapes.SHAPES["bar"]
+    points, pose, targets = scene(mesh, shapes)
+    few = deformer_with(mesh, points).step(pose, targets).positions
+    deformer = deformer_with(mesh, points, converge=True)
+    ended = deformer.step(pose, targets).positions
+    assert deformer.energy(ended) < 0.99 * deformer.energy(few)
+    bound = 1e-7 * np.sqrt(mesh.rest_areas.sum())
+    assert np.abs(deformer.step(ended, targets).positions - ended).max() < bound
+    many = deformer_with(mesh, points, iterations=100_000).step(pose, targets).positions
+    assert many.tolist() == ended.tolist()
+
+
+# -- spokes and rims -----------------------------------------------------------------------------------------
+
+
+def vertex_energy(mesh, pose):
+    """⅓ Σ_v min_R Σ cot |(p_i − p_j) − R (v_i − v_j)|² over the edges of the faces around each vertex v."""
+    edges = list(cotangent_edges(mesh))
+    total = 0.0
+    for vertex in range(len(mesh.vertices)):
+        near = [edge for edge in edges if vertex in mesh.faces[edge[0]]]
+        moment = sum(
+            w * np.outer(mesh.vertices[i] - mesh.vertices[j], pose[i] - pose[j]) for _, i, j, w in near
+        )
+        left, _, right = np.linalg.svd(moment)
+        turn = left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right
+        for _, i, j, weight in near:
+            off = pose[i] - pose[j] - (mesh.vertices[i] - mesh.vertices[j]) @ turn
+            total += weight * (off @ off) / 3
+    return total
+
+
+@pytest.mark.parametrize("shape_name", ["triangle", "L", "ring", "strip", "disc 1"])
+def test_energy_of_spokes_and_rims_is_that_of_its_definition(mesh, shapes):
+    _, pose, _ = scene(mesh, shapes)
+    noise = np.random.default_rng(2).normal(scale=20.0, size=pose.shape)
+    deformer = ArapDeformer(mesh, rotations="spokes-and-rims")
+    for positions in (pose, pose + noise):
+        assert deformer.energy(positions) == pytest.approx(vertex_energy(mesh, positions), rel=1e-9)
+
+
 # -- others' implementations, real drawings, bad settings ----------------------------------------------------
 
 
+@pytest.mark.parametrize(
+    ("rotations", "kind"), [("faces", "ELEMENTS"), ("spokes-and-rims", "SPOKES_AND_RIMS")]
+)
 @pytest.mark.parametrize("shape_name", ["square", "bar", "star", "ring", "disc 2"])
-def test_least_energy_is_that_of_libigl(mesh, shapes):
+def test_least_energy_is_that_of_libigl(mesh, shapes, rotations, kind):
     igl = pytest.importorskip("igl", reason="libigl is not installed")
     vertices = np.random.default_rng(6).choice(len(mesh.vertices), 4, replace=False)
     points = shapes.vertex_pins(mesh, vertices)
     targets = mesh.vertices[vertices] + np.random.default_rng(7).normal(scale=10.0, size=(4, 2))
-    deformer = deformer_with(mesh, points, iterations=20_000, tolerance=1e-11)
+    deformer = deformer_with(mesh, points, tolerance=1e-11, converge=True, rotations=rotations)
     found = deformer.step(mesh.vertices, targets).positions
 
     data = igl.ARAPData()
     data.max_iter = 20_000
-    data.energy = igl.ARAP_ENERGY_TYPE_ELEMENTS
+    data.energy = getattr(igl, f"ARAP_ENERGY_TYPE_{kind}")
     igl.arap_precomputation(
         mesh.vertices.copy(), mesh.faces.astype(np.int64), 2, vertices.astype(np.int32), data
     )
@@ -196,6 +242,7 @@ def test_bent_cartoon_keeps_its_shape(cartoon, shapes, name):
         ({"iterations": "many"}, "iterations: expected a number"),
         ({"tolerance": -1.0}, "tolerance: expected a number from 0 to 1, got -1.0"),
         ({"tolerance": float("nan")}, "tolerance: expected a number"),
+        ({"rotations": "edges"}, "rotations: expected 'faces' or 'spokes-and-rims', got 'edges'"),
     ],
 )
 def test_bad_settings_are_refused(shapes, settings, message):

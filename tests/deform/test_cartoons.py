@@ -5,7 +5,7 @@ import pytest
 
 from akap_editor.deform import akap
 from akap_editor.deform.akap import AkapDeformer
-from akap_editor.deform.cholesky import SparseCholesky
+from akap_editor.deform.reuse import ReusedCholesky
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints
 from akap_editor.resources import bundled_drawings
@@ -28,8 +28,8 @@ def far_apart(mesh, count=5):
 class Drag:
     """A drawing whose last pin is dragged while the others are to stay."""
 
-    def __init__(self, mesh, **settings):
-        self.mesh, self.points = mesh, far_apart(mesh)
+    def __init__(self, mesh, pins=5, **settings):
+        self.mesh, self.points = mesh, far_apart(mesh, pins)
         self.rest = mesh.evaluate(self.points, mesh.vertices)
         self.deformer = AkapDeformer(mesh, **settings)
         self.deformer.set_pins(self.points)
@@ -78,13 +78,16 @@ def beyond_isometry(mesh, pose):
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-@pytest.mark.parametrize("name", ["bar", "elephant", "cat", "gingerbread"])
-def test_one_event_comes_to_the_same_as_sixty(cartoon, name, memory):
-    """A mouse that is asked seldom bends the drawing as one that is asked often."""
+@pytest.mark.parametrize(("name", "pins"), [("bar", 3), ("elephant", 5), ("cat", 5), ("gingerbread", 5)])
+def test_one_event_comes_to_the_same_as_sixty(cartoon, name, pins, memory):
+    """A mouse that is asked seldom bends the drawing as one that is asked often.
+
+    The bar is held in the middle and at one end: between more pins it would buckle, one way or the other.
+    """
     mesh = cartoon(name)
     found = []
     for events in (1, 60):
-        drag = Drag(mesh, memory=memory)
+        drag = Drag(mesh, pins, memory=memory)
         for far in np.linspace(0, 200, events + 1)[1:]:
             drag.to(drag.aside(far))
         drag.settle()
@@ -135,10 +138,6 @@ def test_memory_comes_back_to_rest(cartoon, name, direction):
     assert np.abs(drag.pose - drag.mesh.vertices).max() < 0.01
 
 
-# The raptor's head, turned far: the reference turns faces inside out on its way to a lower energy.
-ONLY_THROUGH_A_FLIP = {("raptor", 80)}
-
-
 @pytest.mark.parametrize(("degrees", "share"), [(40, 0.9), (80, 0.85)])
 @pytest.mark.parametrize("name", BUNDLED + SHARED)
 def test_memory_distorts_no_more_than_converged_arap(cartoon, arap, name, degrees, share):
@@ -150,10 +149,7 @@ def test_memory_distorts_no_more_than_converged_arap(cartoon, arap, name, degree
     assert ours.flipped == 0
     assert drag.misses().max() < ARRIVED
     rival = distortion(drag.mesh, arap.converged_arap(drag.mesh, drag.points, drag.goals, drag.pose))
-    if (name, degrees) in ONLY_THROUGH_A_FLIP:
-        assert rival.flipped > 0
-    else:
-        assert ours.area + ours.angle <= rival.area + rival.angle
+    assert ours.area + ours.angle <= rival.area + rival.angle
 
 
 @pytest.mark.parametrize("name", ["raptor", "elephant"])
@@ -178,15 +174,15 @@ def wave(drag, t):
 
 @pytest.fixture
 def factorizations(monkeypatch):
-    """How often a matrix was factorized."""
+    """How often the matrix of a field was factorized."""
     count = [0]
-    original = SparseCholesky.factorize
+    original = ReusedCholesky._factorize
 
-    def counted(self, nonzeros):
+    def counted(self):
         count[0] += 1
-        original(self, nonzeros)
+        original(self)
 
-    monkeypatch.setattr(SparseCholesky, "factorize", counted)
+    monkeypatch.setattr(ReusedCholesky, "_factorize", counted)
     return count
 
 

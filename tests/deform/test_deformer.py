@@ -1,5 +1,7 @@
 """The contract that every deformation method keeps (see `Deformer`), method by method."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -18,7 +20,8 @@ SETTINGS = {
         {"memory": 0.0, "exact": True},
         {"memory": 1.0, "exact": True},
     ],
-    "arap": [{}, {"iterations": 1}],
+    "arap": [{}, {"iterations": 1}, {"rotations": "spokes-and-rims"}],
+    "igarashi": [{}, {"pin_weight": 10.0}],
     "cauchy-green": [{}, {"cage": 40, "smoothness": 0.1}],
     "mls": [{}, {"transform": "similarity"}, {"transform": "affine"}, {"alpha": 3.0}],
 }
@@ -27,7 +30,7 @@ CASES = {
     for method in method_names()
     for settings in SETTINGS.get(method, [{}])
 }
-SHAPE_NAMES = ["triangle", "bar", "star", "ring", "islands", "strip", "disc 1"]
+SHAPE_NAMES = ["triangle", "bar", "star", "ring", "islands", "strip", "disc 1", "tied islands"]
 NO_PINS = MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
 
 
@@ -40,6 +43,14 @@ def case(request):
 @pytest.fixture(params=SHAPE_NAMES)
 def shape_name(request):
     return request.param
+
+
+@pytest.fixture
+def mesh(shape_name, shapes):
+    """Each shape in turn; of tied islands, one rides with the body and one with that one."""
+    if shape_name != "tied islands":
+        return shapes.SHAPES[shape_name]
+    return replace(shapes.blocks("##.#.# ##.#.. ##...#", 50, 3, 0.2), tied=True)
 
 
 def deformer_of(case, mesh, points):
@@ -58,8 +69,14 @@ def stepped(case, mesh, points, positions, targets, steps=1):
 
 
 def scene(mesh, shapes, seed=1):
-    """Pins, a pose that is no rigid motion of the rest pose, and targets a few pixels from where pins are."""
+    """Pins, a pose that is no rigid motion of the rest pose, and targets a few pixels from where pins are.
+
+    Where parts are tied, one of them has all the pins.
+    """
     points = shapes.random_pins(mesh, seed)
+    if mesh.tied:
+        part = mesh.component[mesh.faces[points.faces, 0]]
+        points = MeshPoints(points.faces[part == 0], points.weights[part == 0])
     x, y = mesh.vertices.T
     pose = np.stack([x + 3 * np.sin(y / 40), 1.03 * y - 2 * np.cos(x / 50)], axis=1)
     targets = mesh.evaluate(points, pose) + np.random.default_rng(seed).normal(
@@ -113,7 +130,7 @@ def test_moving_turning_and_scaling_commute_with_a_step(case, mesh, shapes, fact
 
     points, pose, targets = scene(mesh, shapes)
     expected = moved(stepped(case, mesh, points, pose, targets))
-    other = TriMesh(moved(mesh.vertices), mesh.faces)
+    other = TriMesh(moved(mesh.vertices), mesh.faces, mesh.tied)
     found = stepped(case, other, points, moved(pose), moved(targets))
     assert np.abs(found - expected).max() < 1e-9 * 300 * abs(factor)
 
@@ -157,7 +174,7 @@ def test_part_without_a_pin_holds_still(case, shapes):
 
 def test_one_pin_moves_its_part_rigidly(case, mesh):
     points = MeshPoints([len(mesh.faces) // 2], [[0.2, 0.3, 0.5]])
-    own = mesh.component == mesh.component[mesh.faces[points.faces[0], 0]]
+    own = mesh.tied | (mesh.component == mesh.component[mesh.faces[points.faces[0], 0]])
     target = mesh.evaluate(points, mesh.vertices) + np.array([17.0, -9.0])
     result = stepped(case, mesh, points, mesh.vertices, target, 3)
     i, j = mesh.edges[own[mesh.edges[:, 0]]].T
@@ -168,7 +185,7 @@ def test_one_pin_moves_its_part_rigidly(case, mesh):
 
 
 def test_pins_at_their_targets_translate_the_drawing(case, mesh, shapes):
-    points = shapes.random_pins(mesh, 1)
+    points, _, _ = scene(mesh, shapes)
     targets = mesh.evaluate(points, mesh.vertices) + np.array([6.0, -11.0])
     result = stepped(case, mesh, points, mesh.vertices, targets, 3)
     assert np.abs(result - mesh.vertices - [6.0, -11.0]).max() < 1e-6

@@ -160,6 +160,12 @@ def test_descent_goes_to_the_minimum_of_a_parabola(length):
     assert descend(value, value(0.0), slope, length) == pytest.approx(2.5, rel=1e-9)
 
 
+def test_descent_down_a_cliff_keeps_the_best_try():
+    """Next to a face that is nearly flipped, every parabola asks for half of the way."""
+    far = descend(lambda t: 1e7 / (1e-4 + t) ** 2 + t, 1e15, -2e19, 1.0)
+    assert far > 0.2
+
+
 def test_descent_goes_no_farther_than_it_may():
     value, slope = parabola(3.0, 0.5)
     assert descend(value, value(0.0), slope, 1.25) == 1.25

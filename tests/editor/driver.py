@@ -28,8 +28,12 @@ class Ticks:
 
 def bits(state: EditState) -> tuple[Any, ...]:
     """A state as a value to compare, equal only if equal to the last bit."""
-    pins = [(pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes()) for pin in state.pins]
-    return state.positions.tobytes(), tuple(pins), state.settings
+    pins = [
+        (pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes(), pin.depth, pin.angle)
+        for pin in state.pins
+    ]
+    stiffness = None if state.stiffness is None else state.stiffness.tobytes()
+    return state.positions.tobytes(), tuple(pins), state.settings, stiffness
 
 
 class Driver:

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
 from akap_editor.editor.document import new_document
+from akap_editor.editor.events import KeyEvent, PointerEvent
 
 from .driver import BESIDE, Driver, bits
 
@@ -46,6 +47,15 @@ def machine(drawing):
         @rule(at=places, shift=st.booleans())
         def click(self, at, shift):
             self.driver.click(at, shift)
+
+        @rule(key=st.sampled_from(["left", "up", "right", "down"]), shift=st.booleans())
+        def nudge(self, key, shift):
+            self.driver.handle(KeyEvent(key, shift=shift))
+
+        @rule(at=places)
+        def cut(self, at):
+            for kind in ("press", "release"):
+                self.driver.handle(PointerEvent(kind, self.editor.camera.to_screen(at), alt=True))
 
         @rule(pin=st.integers(0, 5), to=places, shift=st.booleans())
         def grab_a_pin(self, pin, to, shift):

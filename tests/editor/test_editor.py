@@ -95,9 +95,9 @@ def test_hover(pinned):
     pinned.move(BESIDE)
     assert not pinned.editor.would_add_pin
     pinned.move((45.0, 25.0))
-    pinned.editor.hand_tool = True
+    pinned.editor.chosen_tool = "hand"
     assert not pinned.editor.would_add_pin
-    pinned.editor.hand_tool = False
+    pinned.editor.chosen_tool = "pins"
     pinned.press((45.0, 25.0))
     assert not pinned.editor.would_add_pin
     pinned.key("escape")
@@ -128,7 +128,7 @@ def test_the_hint_of_idle_says_what_a_press_would_do(driver):
     for at in (NECK, BESIDE):
         driver.move(at)
         hints.append(driver.editor.hint)
-    driver.editor.hand_tool = True
+    driver.editor.chosen_tool = "hand"
     hints.append(driver.editor.hint)
     assert len(set(hints)) == 5
 

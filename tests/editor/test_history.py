@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import history as history_module
 from akap_editor.editor.document import EditState
 from akap_editor.editor.history import History
 
@@ -82,3 +83,27 @@ def test_gestures_do_not_nest_and_end_only_once(history, states):
     history.begin("open", states[3])
     with pytest.raises(AssertionError, match="already open"):
         history.begin("second", states[3])
+
+
+@pytest.mark.parametrize(("limit", "value", "kept"), [("MOST_ENTRIES", 3, 3), ("MOST_BYTES", 5 * 32, 5)])
+def test_the_oldest_gestures_are_forgotten(monkeypatch, limit, value, kept):
+    monkeypatch.setattr(history_module, limit, value)
+    history = History()
+    states = [EditState((), np.full((2, 2), float(number))) for number in range(9)]
+    for number, state in enumerate(states[:-1]):
+        history.begin(f"gesture {number}", state)
+        history.commit()
+        assert history.depth == min(number + 1, kept)
+    now = states[-1]
+    for state in reversed(states[:-1][-kept:]):
+        now = history.undo(now)
+        assert now is state
+    assert history.undo_label is None
+
+
+def test_one_gesture_can_always_be_undone(monkeypatch):
+    monkeypatch.setattr(history_module, "MOST_BYTES", 0)
+    history, state = History(), EditState((), np.zeros((2, 2)))
+    history.begin("large", state)
+    history.commit()
+    assert history.undo(state) is state

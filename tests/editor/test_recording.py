@@ -112,6 +112,17 @@ def test_windows_line_ends_are_read():
         ([HEAD, {"t": 0, "do": "pins"}], "line 2: expected a value 'pins'"),
         ([HEAD, {"t": 0, "do": "targets"}], "line 2: expected a value 'targets'"),
         ([HEAD, {"t": 0, "do": "pose"}], "line 2: expected a value 'positions'"),
+        ([HEAD, {"t": True, "do": "step"}], "line 2: expected a time of 0 s or later, got True"),
+        ([HEAD, {"t": 0, "do": "return"}], "line 2: expected a value 'line'"),
+        (
+            [HEAD, EVENTS[0], {"t": 0, "do": "return", "line": 3}],
+            "line 3: expected an earlier line",
+        ),
+        (
+            [HEAD, EVENTS[0], {"t": 0, "do": "return", "line": 1}],
+            "line 3: .* earlier line .*, got 1",
+        ),
+        ([HEAD, EVENTS[0], {"t": 0, "do": "return", "line": "2"}], "line 3: expected an earlier line"),
         ([HEAD, {"t": 0, "do": "settings", "method": "akap"}], "line 2: expected a value 'parameters'"),
     ],
 )

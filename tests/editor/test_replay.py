@@ -1,22 +1,29 @@
+import os
 import random
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from akap_editor.editor.document import Settings, new_document
+from akap_editor.editor.document import Settings, make_drawing, new_document
 from akap_editor.editor.recording import Recording, drawing_header, parse_recording
 from akap_editor.editor.replay import replay
-from akap_editor.errors import InputError
+from akap_editor.editor.session import Session
+from akap_editor.errors import InputError, SolverError
+from akap_editor.io.recordings import write_recording
 
 from .driver import Driver, bits
 
+ROOT = Path(__file__).parents[2]
 HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
 
 
 def last(recording, drawing):
     """The state that a recording ends with."""
-    *_, (_, state) = replay(recording, drawing)
-    return state
+    *_, moment = replay(recording, drawing)
+    return moment.state
 
 
 def written_and_read(recording):
@@ -97,8 +104,8 @@ def test_every_state_on_the_way_is_that_of_the_session(pinned, drawing):
         pinned.advance()
         poses.append(session.state.positions.tobytes())
     frames = list(replay(written_and_read(session.recording), drawing))
-    assert [time for time, _ in frames] == [event["t"] for event in session.recording.events]
-    assert [state.positions.tobytes() for _, state in frames[first - 1 :]] == poses
+    assert [frame.time for frame in frames] == [event["t"] for event in session.recording.events]
+    assert [state.positions.tobytes() for _, state, *_ in frames[first - 1 :]] == poses
 
 
 def test_a_session_that_began_in_the_middle_replays_too(pinned, drawing):
@@ -209,15 +216,106 @@ def test_a_recording_is_replayed_with_other_settings(driver, drawing):
     a = driver.editor.add_pin(NECK)
     assert a is not None
     other = Settings("akap", (("dirichlet", False), ("memory", 0.0)))
-    states = [state for _, state in replay(driver.session.recording, drawing, other)]
+    states = [moment.state for moment in replay(driver.session.recording, drawing, lambda _: other)]
     assert {state.settings for state in states} == {other}
 
 
 def test_pins_with_the_same_id_are_refused_with_their_line(driver, drawing):
     assert driver.editor.add_pin(NECK) is not None
-    recording = driver.session.recording
+    recording = written_and_read(driver.session.recording)
     event = next(event for event in recording.events if event["do"] == "pins")
     line = recording.events.index(event) + 2
     event["pins"].append(event["pins"][0])
     with pytest.raises(InputError, match=f"line {line}: .*one id twice"):
         list(replay(recording, drawing))
+
+
+# -- other drawings, going back ------------------------------------------------------------------------------
+
+
+def test_a_drawing_of_the_same_proportions_bends_alike_in_its_own_size(pinned, image):
+    pinned.drag(END, (90.0, 60.0))
+    pinned.settle()
+    large = make_drawing(np.repeat(np.repeat(image, 2, axis=0), 2, axis=1), vertices=200, name="figure")
+    state = last(written_and_read(pinned.session.recording), large)
+    np.testing.assert_allclose(state.targets, 2 * pinned.state.targets, atol=1e-9)
+    places = large.mesh.evaluate(state.points, state.positions)
+    assert np.hypot(*(places - 2 * pinned.session.pin_positions()).T).max() < 2.0
+
+
+def test_a_drawing_of_other_proportions_is_refused_in_one_sentence(pinned, image):
+    other = make_drawing(np.ascontiguousarray(image.swapaxes(0, 1)), vertices=100, name="tall")
+    sentence = "line 1: it was made on 'figure', 120 x 80 pixels, .* but 'tall' has 80 x 120$"
+    with pytest.raises(InputError, match=sentence):
+        next(replay(pinned.session.recording, other))
+
+
+@pytest.mark.parametrize("size", [[0, 80], [120], "large", [None, 1], None, [NAN, 80]])
+def test_a_header_with_a_bad_size_is_refused(drawing, size):
+    header = {**drawing_header(drawing), "size": size, "mesh": "another"}
+    with pytest.raises(InputError, match="line 1: "):
+        next(replay(Recording(header, [{"t": 0, **SETTINGS}]), drawing))
+
+
+def test_a_pose_of_another_mesh_with_as_many_vertices_is_refused(pinned, drawing):
+    pinned.session.begin("Pose")
+    pinned.session.set_pose(drawing.mesh.vertices + 1.0)
+    header = {**pinned.session.recording.header, "mesh": "another"}
+    recording = Recording(header, pinned.session.recording.events)
+    line = len(recording.events) + 1
+    with pytest.raises(InputError, match=f"line {line}: .* only the mesh that it was made on"):
+        list(replay(recording, drawing))
+
+
+def test_going_back_restores_exactly_and_the_old_branch_can_be_undone_to(pinned, drawing):
+    session = pinned.session
+    pinned.drag(END, (90.0, 60.0))
+    pinned.settle()
+    line, then = len(session.recording.events) + 1, session.state
+    pinned.drag((90.0, 60.0), (100.0, 20.0))
+    pinned.settle()
+    old_branch = bits(session.state)
+    session.begin("Go back")
+    session.go_back(then, line)
+    session.commit()
+    assert bits(session.state) == bits(then)
+    pinned.drag((90.0, 60.0), (80.0, 55.0))
+    pinned.settle()
+    assert bits(last(written_and_read(session.recording), drawing)) == bits(session.state)
+    session.undo()
+    session.undo()
+    assert bits(session.state) == old_branch
+    assert bits(last(written_and_read(session.recording), drawing)) == old_branch
+
+
+def test_a_step_that_fails_is_named_by_its_line(pinned, drawing, monkeypatch):
+    def fail(self):
+        raise SolverError("the step has no finite result")
+
+    pinned.drag(END, (90.0, 60.0))
+    monkeypatch.setattr(Session, "step", fail)
+    first = next(n for n, event in enumerate(pinned.session.recording.events, 2) if event["do"] == "step")
+    with pytest.raises(SolverError, match=f"line {first}: the step has no finite result"):
+        list(replay(pinned.session.recording, drawing))
+
+
+OTHER_MACHINE = """
+import sys
+from akap_editor.editor.replay import replay
+from akap_editor.io.recordings import read_recording, recorded_drawing
+recording = read_recording(sys.argv[1])
+*_, last = replay(recording, recorded_drawing(recording))
+sys.stdout.buffer.write(last.state.positions.tobytes())
+"""
+
+
+def test_a_machine_that_computes_with_other_instructions_gives_the_same_pose(pinned, drawing, tmp_path):
+    """As near as one machine can come to another: numpy and BLAS without what this processor has."""
+    pinned.drag(END, (90.0, 60.0))
+    pinned.settle()
+    write_recording(pinned.session.recording, tmp_path / "a.akaprec", drawing)
+    older = {**os.environ, "OPENBLAS_CORETYPE": "Prescott", "NPY_DISABLE_CPU_FEATURES": "AVX2 FMA3"}
+    command = [sys.executable, "-c", OTHER_MACHINE, str(tmp_path / "a.akaprec")]
+    done = subprocess.run(command, env=older, cwd=ROOT, capture_output=True, check=True)
+    elsewhere = np.frombuffer(done.stdout).reshape(-1, 2)
+    np.testing.assert_allclose(elsewhere, pinned.state.positions, atol=1e-6, rtol=0)

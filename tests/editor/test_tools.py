@@ -6,7 +6,7 @@ import pytest
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.editor import PICK_RADIUS
 from akap_editor.editor.events import PointerEvent
-from akap_editor.editor.tools import DRAG_DISTANCE
+from akap_editor.editor.tool import DRAG_DISTANCE
 from akap_editor.errors import InputError
 
 from .driver import BESIDE, bits
@@ -75,6 +75,16 @@ def enter_panning(d):
     return "Panning"
 
 
+def enter_cutting_pin(d):
+    d.handle(PointerEvent("press", d.editor.camera.to_screen(NECK), alt=True))
+    return "CuttingPin"
+
+
+def enter_asking_for_menu(d):
+    d.press(NECK, "right")
+    return "AskingForMenu"
+
+
 ENTER = [
     enter_pointing_new_pin,
     enter_pointing_pin,
@@ -84,7 +94,10 @@ ENTER = [
     enter_pointing_canvas,
     enter_rubber_band,
     enter_panning,
+    enter_cutting_pin,
+    enter_asking_for_menu,
 ]
+BUTTON = {"Panning": "middle", "AskingForMenu": "right"}  # that ends a gesture; else the left one
 
 
 @pytest.mark.parametrize("enter", ENTER)
@@ -106,7 +119,7 @@ def test_after_a_cancelled_gesture_the_rest_of_it_does_nothing(pinned, enter):
     before = pinned.everything
     enter(pinned)
     pinned.key("escape")
-    for button in ("left", "middle"):
+    for button in ("left", "middle", "right"):
         pinned.move((30.0, 30.0), button)
         pinned.release((30.0, 30.0), button)
     assert pinned.everything == before
@@ -115,7 +128,7 @@ def test_after_a_cancelled_gesture_the_rest_of_it_does_nothing(pinned, enter):
 @pytest.mark.parametrize("enter", ENTER)
 def test_a_release_completes(pinned, enter):
     enter(pinned)
-    pinned.release((70.0, 70.0), "middle" if pinned.tool == "Panning" else "left")
+    pinned.release((70.0, 70.0), BUTTON.get(pinned.tool, "left"))
     assert pinned.tool == "Idle"
     assert not pinned.editor.busy
 
@@ -123,7 +136,7 @@ def test_a_release_completes(pinned, enter):
 @pytest.mark.parametrize("enter", ENTER)
 def test_other_buttons_do_not_end_a_gesture(pinned, enter):
     name = enter(pinned)
-    for button in ("right", "left" if name == "Panning" else "middle"):
+    for button in {"left", "middle", "right"} - {BUTTON.get(name, "left")}:
         pinned.press((30.0, 30.0), button)
         pinned.release((30.0, 30.0), button)
     assert pinned.tool == name
@@ -170,12 +183,13 @@ def test_a_gesture_is_one_entry_and_undo_and_redo_are_exact(pinned, enter, label
 
 
 @pytest.mark.parametrize(
-    "enter", [enter_pointing_pin, enter_pointing_canvas, enter_rubber_band, enter_panning]
+    "enter",
+    [enter_pointing_pin, enter_pointing_canvas, enter_rubber_band, enter_panning, enter_asking_for_menu],
 )
 def test_what_is_no_edit_makes_no_entry(pinned, enter):
     before, depth = bits(pinned.state), pinned.depth
     enter(pinned)
-    pinned.release((70.0, 70.0), "middle" if pinned.tool == "Panning" else "left")
+    pinned.release((70.0, 70.0), BUTTON.get(pinned.tool, "left"))
     assert (bits(pinned.state), pinned.depth) == (before, depth)
 
 
@@ -319,7 +333,7 @@ def pan(d, how):
     elif how == "space":
         d.key("space")
     else:
-        d.editor.hand_tool = True
+        d.editor.chosen_tool = "hand"
     d.drag(NECK, (72.0, 45.0), button=button)
     d.key("space", pressed=False)
 

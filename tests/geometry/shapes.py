@@ -78,7 +78,7 @@ def renumbered(mesh: TriMesh, seed: int) -> tuple[TriMesh, np.ndarray, np.ndarra
     faces = np.argsort(order)[mesh.faces][face_order]
     turns = rng.integers(0, 3, len(faces))
     faces = np.take_along_axis(faces, (np.arange(3) + turns[:, None]) % 3, axis=1)
-    return TriMesh(mesh.vertices[order], faces), order, np.argsort(face_order)
+    return TriMesh(mesh.vertices[order], faces, mesh.tied), order, np.argsort(face_order)
 
 
 def random_pins(mesh: TriMesh, seed: int, each: int = 3) -> MeshPoints:

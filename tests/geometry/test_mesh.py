@@ -258,3 +258,40 @@ def test_barycentric_weights_reproduce_the_point_and_reject_flat_triangles():
     assert weights[0] @ corners[0] == pytest.approx([1.0, 1.5], abs=1e-15)
     assert weights[0].sum() == pytest.approx(1.0, abs=1e-15)
     assert weights[1].max() < 0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_gaps_have_the_way_of_least_widths_between_parts(seed):
+    """Parts at random places: the narrowest gaps that join all of them are those of comparing every pair."""
+    rng = np.random.default_rng(seed)
+    centers = 40 * np.stack(np.divmod(rng.choice(49, 12, replace=False), 7), axis=1)
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    vertices = np.concatenate(
+        [center + rng.uniform(8, 30) * corners + rng.normal(size=2) for center in centers]
+    )
+    faces = (4 * np.arange(12)[:, None, None] + [[0, 1, 2], [0, 2, 3]]).reshape(-1, 3)
+    mesh = TriMesh(vertices, faces)
+    ways = np.linalg.norm(vertices[:, None] - vertices, axis=2)
+    between = [
+        (ways[mesh.component == a][:, mesh.component == b].min(), a, b) for a in range(12) for b in range(a)
+    ]
+    found = [(ways[i, j], *sorted(mesh.component[[i, j]], reverse=True)) for i, j in mesh.gaps]
+    assert joining(found) == pytest.approx(joining(between))
+    assert [width for width, _, _ in found] == sorted(width for width, _, _ in found)
+    assert len({gap[1:] for gap in found}) == len(found)
+
+
+def joining(gaps):
+    """Widths of the narrowest gaps that make one of all parts, by Kruskal's algorithm."""
+    group, widths = {}, []
+    for width, a, b in sorted(gaps):
+        first, second = group.setdefault(a, {a}), group.setdefault(b, {b})
+        if first is not second:
+            widths.append(width)
+            first |= second
+            group.update(dict.fromkeys(first, first))
+    return widths
+
+
+def test_one_part_has_no_gaps():
+    assert TriMesh(TRIANGLE, FACE).gaps.shape == (0, 2)

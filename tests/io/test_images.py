@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from akap_editor.editor.document import make_drawing
 from akap_editor.errors import InputError
 from akap_editor.io import images
 from akap_editor.io.images import (
@@ -15,7 +16,6 @@ from akap_editor.io.images import (
     encode_png,
     has_transparency,
     read_image,
-    write_animation,
     write_png,
 )
 
@@ -115,7 +115,7 @@ def test_png_of_every_kind(tmp_path, kind):
     assert image[0].tolist() == expected
 
 
-@pytest.mark.parametrize("kind", ["WEBP", "BMP", "GIF"])
+@pytest.mark.parametrize("kind", ["WEBP", "BMP", "GIF", "TIFF"])
 def test_other_lossless_formats(kind):
     pixels = np.array(
         [[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [9, 9, 9]], [[1, 2, 3], [0, 0, 0]]], np.uint8
@@ -154,6 +154,83 @@ def test_jpeg_in_cmyk():
     assert np.abs(image.reshape(-1, 4).astype(int) - [255, 0, 0, 255]).max() <= 4
 
 
+@pytest.mark.parametrize("orientation", [1, 3, 6])
+def test_tiff_stands_as_its_tag_says(orientation):
+    """Once, not twice: Pillow turns some TIFF files by itself."""
+    upright = np.zeros((4, 8, 3), np.uint8)
+    upright[:2, :4] = [255, 0, 0]
+    undo = {1: 0, 3: 2, 6: 1}
+    stored = np.rot90(upright, undo[orientation])
+    buffer = BytesIO()
+    Image.fromarray(np.ascontiguousarray(stored)).save(buffer, "TIFF", tiffinfo={274: orientation})
+    image = decode_image(buffer.getvalue())
+    assert image[..., :3].tolist() == upright.tolist()
+
+
+def saved_tiff(pixels, mode=None, **options):
+    buffer = BytesIO()
+    Image.fromarray(pixels, mode).save(buffer, "TIFF", **options)
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize("compression", [None, "tiff_lzw", "tiff_deflate", "packbits"])
+def test_tiff_compressions_and_alpha(compression):
+    pixels = np.random.default_rng(1).integers(0, 256, (5, 7, 4), dtype=np.uint8)
+    assert decode_image(saved_tiff(pixels, compression=compression)).tolist() == pixels.tolist()
+
+
+def test_tiff_of_other_samples():
+    deep = np.array([[0, 255, 0x7F80, 65535]], dtype=np.uint16)
+    assert decode_image(saved_tiff(deep))[0].tolist() == grey(0, 0, 127, 255)
+    buffer = BytesIO()
+    Image.new("CMYK", (2, 1), (0, 255, 255, 0)).save(buffer, "TIFF")
+    assert decode_image(buffer.getvalue())[0].tolist() == [[255, 0, 0, 255]] * 2
+    with pytest.raises(InputError, match="expected samples of 8 or 16 bits, got 32 bits a sample"):
+        decode_image(saved_tiff(deep.astype(np.float32)))
+    with pytest.raises(InputError, match="expected samples of 8 or 16 bits, got 32 bits a sample"):
+        decode_image(saved_tiff(deep.astype(np.int32)))
+
+
+def test_an_animation_is_told_from_a_picture_and_gives_its_first_frame(tmp_path):
+    frames = [Image.new("RGB", (4, 3), color) for color in ("red", "lime", "blue")]
+    for name in ("a.gif", "a.webp", "a.png", "a.tiff"):
+        options = {"lossless": True} if name == "a.webp" else {}
+        frames[0].save(tmp_path / name, save_all=True, append_images=frames[1:], **options)
+        assert images.is_animation(tmp_path / name)
+        assert read_image(tmp_path / name)[0, 0].tolist() == [255, 0, 0, 255]
+        frames[0].save(tmp_path / f"still-{name}", **options)
+        assert not images.is_animation(tmp_path / f"still-{name}")
+    (tmp_path / "text.gif").write_text("GIF89a and nothing else")
+    assert not images.is_animation(tmp_path / "text.gif")
+    assert not images.is_animation(tmp_path / "none.gif")
+
+
+def test_mask_is_brightness_or_alpha(tmp_path):
+    shown = np.array([[0, 100, 255]], dtype=np.uint8)
+    Image.fromarray(shown).save(tmp_path / "grey.png")
+    assert images.read_mask(tmp_path / "grey.png").tolist() == shown.tolist()
+    Image.fromarray(np.dstack([shown * 0, shown * 0, shown * 0, shown])).save(tmp_path / "alpha.png")
+    assert images.read_mask(tmp_path / "alpha.png").tolist() == shown.tolist()
+    Image.fromarray(shown > 127).save(tmp_path / "bits.png")
+    assert images.read_mask(tmp_path / "bits.png").tolist() == [[0, 0, 255]]
+
+
+def test_mask_of_a_drawing(shared_data):
+    """Photographed paper: only what the mask shows is cut out."""
+    image = read_image(shared_data / "drawings" / "char1-texture.png")
+    shown = images.read_mask(shared_data / "drawings" / "char1-mask.png")
+    drawing = make_drawing(image, shown, vertices=300)
+    assert drawing.image[..., 3].tolist() == shown.tolist()
+    assert drawing.mesh.rest_areas.sum() == pytest.approx((shown > 127).sum(), rel=0.08)
+
+
+def test_mask_of_another_size_is_refused():
+    with pytest.raises(InputError, match="mask: expected the size of the picture, 3 x 2 pixels, got 2 x 2"):
+        make_drawing(np.zeros((2, 3, 4), np.uint8), np.zeros((2, 2), np.uint8))
+    with pytest.raises(InputError, match=r"mask: expected shape \(h, w\) uint8, got \(2, 3, 4\) uint8"):
+        make_drawing(np.zeros((2, 3, 4), np.uint8), np.zeros((2, 3, 4), np.uint8))
+
+
 def test_has_transparency():
     image = np.full((2, 2, 4), 255, np.uint8)
     assert not has_transparency(image)
@@ -187,7 +264,7 @@ def test_only_rgba_is_written(tmp_path, image):
 GOOD = PNGS["rgba 8"][0]
 BOMB = png((10_001, 10_000), 8, RGBA, [])
 BAD = {
-    "empty": (b"", r"expected a PNG, JPEG, WEBP, BMP or GIF picture, got .*begins with b''"),
+    "empty": (b"", r"expected a PNG, JPEG, WEBP, BMP, GIF or TIFF picture, got .*begins with b''"),
     "text": (b"hello world", r"expected a PNG, .* picture, got .*begins with b'hello wo'"),
     "pdf": (b"%PDF-1.7\n", r"expected a PNG, .*begins with b'%PDF-1.7'"),
     "header only": (GOOD[:20], r"expected a PNG, .* picture, got a damaged"),
@@ -227,7 +304,7 @@ def test_missing_files_and_folders_are_named(tmp_path):
         read_image(tmp_path)
 
 
-@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP", "BMP", "GIF"])
+@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP", "BMP", "GIF", "TIFF"])
 def test_damaged_pictures_never_leak_other_errors(kind):
     rng = np.random.default_rng(3)
     pixels = rng.integers(0, 256, (12, 9, 3), dtype=np.uint8)
@@ -251,188 +328,18 @@ def test_damaged_pictures_never_leak_other_errors(kind):
             assert image.dtype == np.uint8
 
 
-# Animations
-
-
-def disc(step: int, side: int = 24) -> np.ndarray:
-    """A red disc with a soft rim that moves to the right over a transparent picture."""
-    y, x = np.mgrid[:side, :side]
-    distance = np.hypot(x - 8 - step, y - 12)
-    image = np.zeros((side, side, 4), np.uint8)
-    image[..., :3] = [200, 10, 60]
-    image[..., 3] = np.clip((7 - distance) * 128, 0, 255)
-    return image
-
-
-def played(path) -> list[tuple[np.ndarray, float]]:
-    """What a player shows: frames (h, w, 4) and for how many ms."""
-    with Image.open(path) as file:
-        assert file.info["loop"] == 0
-        shown = []
-        for number in range(file.n_frames):
-            file.seek(number)
-            file.load()
-            shown.append((np.array(file.convert("RGBA")), file.info["duration"]))
-        return shown
-
-
-def thresholded(image: np.ndarray) -> np.ndarray:
-    result = image.copy()
-    result[..., 3] = np.where(image[..., 3] >= 128, 255, 0)
-    return result
-
-
-def assert_same_looks(came: np.ndarray, expected: np.ndarray) -> None:
-    assert (came[..., 3] == expected[..., 3]).all()
-    visible = expected[..., 3] > 0
-    assert (came[visible] == expected[visible]).all()
-
-
-@pytest.mark.parametrize("suffix", [".webp", ".WebP", ".png", ".apng", ".gif"])
-def test_animation_shows_the_frames(tmp_path, suffix):
-    frames = [disc(step) for step in range(6)]
-    write_animation(tmp_path / f"a{suffix}", iter(frames), fps=25)
-    shown = played(tmp_path / f"a{suffix}")
-    assert [duration for _, duration in shown] == [40] * 6
-    for (came, _), frame in zip(shown, frames, strict=True):
-        assert_same_looks(came, thresholded(frame) if suffix == ".gif" else frame)
-
-
-def test_frames_may_share_one_array(tmp_path):
-    def reuse():
-        canvas = np.empty((24, 24, 4), np.uint8)
-        for step in range(3):
-            canvas[...] = disc(step)
-            yield canvas
-
-    write_animation(tmp_path / "a.webp", reuse(), fps=10)
-    for step, (came, _) in enumerate(played(tmp_path / "a.webp")):
-        assert_same_looks(came, disc(step))
-
-
-@pytest.mark.parametrize("suffix", [".webp", ".png", ".gif"])
-def test_one_frame_is_a_picture(tmp_path, suffix):
-    write_animation(tmp_path / f"a{suffix}", [disc(0)], fps=25)
-    assert_same_looks(
-        read_image(tmp_path / f"a{suffix}"), thresholded(disc(0)) if suffix == ".gif" else disc(0)
-    )
-
-
-def test_frame_rates():
-    assert images._durations(4, 60, unit=1) == [17, 16, 17, 17]
-    assert images._durations(6, 30, unit=10) == [30, 40, 30, 30, 40, 30]
-    for fps in (0.1, 7, 23.976, 29.97, 47, 50):
-        durations = images._durations(300, fps, unit=10)
-        assert min(durations) >= 20
-        assert abs(sum(durations) - 300_000 / fps) <= 5
-
-
-def test_gif_of_sixty_fps_leaves_out_each_sixth_frame(tmp_path):
-    frames = [disc(step, side=40) for step in range(24)]
-    write_animation(tmp_path / "a.gif", frames, fps=60)
-    shown = played(tmp_path / "a.gif")
-    assert [duration for _, duration in shown] == [20] * 20
-    kept = [frame for number, frame in enumerate(frames) if number % 6 != 1]
-    for (came, _), frame in zip(shown, kept, strict=True):
-        assert_same_looks(came, thresholded(frame))
-
-
-def test_gif_colours_do_not_flicker(tmp_path):
-    """A part that stands still keeps its colours while all else changes, with far too many colours."""
-    rng = np.random.default_rng(0)
-    still = rng.integers(0, 256, (32, 32, 4), dtype=np.uint8)
-    still[..., 3] = 255
-    frames = [still.copy() for _ in range(5)]
-    for frame in frames:
-        frame[16:, :, :3] = rng.integers(0, 256, (16, 32, 3))
-    write_animation(tmp_path / "a.gif", frames, fps=10)
-    first, *others = [came for came, _ in played(tmp_path / "a.gif")]
-    assert len(others) == 4
-    for other in others:
-        assert (other[:16] == first[:16]).all()
-        assert (other[16:] != first[16:]).any()
-    error = np.abs(first[..., :3].astype(int) - still[..., :3])[:16]
-    assert error.mean() < 25  # 255 colours for a cube of 256**3: cells with a side of about 40
-
-
-def test_gif_black_is_not_transparent(tmp_path):
-    frame = np.zeros((4, 4, 4), np.uint8)
-    frame[:2, :, 3] = 255
-    write_animation(tmp_path / "a.gif", [frame, frame[::-1]], fps=10)
-    (first, _), (second, _) = played(tmp_path / "a.gif")
-    assert_same_looks(first, frame)
-    assert_same_looks(second, frame[::-1])
-
-
-def test_gif_of_nothing_is_transparent(tmp_path):
-    write_animation(tmp_path / "a.gif", [np.zeros((4, 4, 4), np.uint8)], fps=10)
-    assert (read_image(tmp_path / "a.gif")[..., 3] == 0).all()
-
-
-def test_still_frames_keep_their_time(tmp_path):
-    for suffix in (".gif", ".webp", ".png"):
-        write_animation(tmp_path / f"a{suffix}", [disc(0), disc(0), disc(3)], fps=10)
-        durations = [duration for _, duration in played(tmp_path / f"a{suffix}")]
-        assert durations in ([200, 100], [100, 100, 100])
-
-
-@pytest.mark.parametrize(
-    ("name", "frames", "fps", "message"),
-    [
-        (
-            "a.mp4",
-            [disc(0)],
-            10,
-            r"a\.mp4: expected a name that ends in \.gif, \.webp, \.png or \.apng, got \.mp4",
-        ),
-        ("a", [disc(0)], 10, "expected a name that ends in .*, got none"),
-        ("a.gif", [], 10, "frames: expected at least one frame, got none"),
-        ("a.gif", [disc(0), disc(0, 25)], 10, "frame 1: expected 24 x 24 pixels as in frame 0, got 25 x 25"),
-        ("a.gif", [disc(0)[..., :3]], 10, r"frame 0: expected shape \(h, w, 4\) uint8, got \(24, 24, 3\)"),
-        ("a.gif", [disc(0)], 0, "fps: expected a number from 0.1 to 1000, got 0"),
-        ("a.gif", [disc(0)], float("nan"), "fps: expected a number from 0.1 to 1000, got nan"),
-        ("a.gif", [disc(0)], 1001, "fps: expected"),
-        (
-            "a.webp",
-            [np.zeros((1, 16384, 4), np.uint8)],
-            10,
-            "webp: expected at most 16383 pixels a side, got 16384 x 1",
-        ),
-        ("missing/a.gif", [disc(0)], 10, "cannot write .*: no such file or directory"),
-    ],
-)
-def test_bad_animations_give_one_sentence(tmp_path, name, frames, fps, message):
-    with pytest.raises(InputError, match=message):
-        write_animation(tmp_path / name, frames, fps)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_animation_too_large_for_memory_is_refused_while_it_comes(tmp_path, monkeypatch):
-    monkeypatch.setattr(images, "MAX_ANIMATION_PIXELS", 3 * 24 * 24)
-    drawn = []
-
-    def endless():
-        while True:
-            drawn.append(disc(len(drawn)))
-            yield drawn[-1]
-
-    with pytest.raises(InputError, match="frames: expected at most 3 frames of 24 x 24 pixels, got more"):
-        write_animation(tmp_path / "a.gif", endless(), fps=10)
-    assert len(drawn) == 4
-
-
-def test_failure_of_a_frame_keeps_the_old_animation(tmp_path):
-    def broken():
-        yield disc(0)
-        raise RuntimeError("no graphics card")
-
-    (tmp_path / "a.gif").write_bytes(b"old")
-    with pytest.raises(RuntimeError, match="no graphics card"):
-        write_animation(tmp_path / "a.gif", broken(), fps=10)
-    assert (tmp_path / "a.gif").read_bytes() == b"old"
-
-
-def test_still_for_longer_than_a_gif_can_say(tmp_path):
-    with pytest.raises(InputError, match=r"cannot write .*a\.gif: the encoder says"):
-        write_animation(tmp_path / "a.gif", [disc(0)] * 70 + [disc(1)], fps=0.1)
-    assert list(tmp_path.iterdir()) == []
+@pytest.mark.parametrize("mode", ["RGBA", "RGB", "P", "L", "LA", "1", "I;16"])
+def test_converting_in_strips_changes_nothing(mode, monkeypatch):
+    samples = np.random.default_rng(3).integers(0, 256, (23, 11, 4), dtype=np.uint8)
+    picture = Image.fromarray(samples)
+    if mode == "I;16":
+        picture = Image.fromarray(samples[..., :2].copy().view(np.uint16)[..., 0])
+    elif mode == "P":
+        picture = picture.convert("RGB").quantize(16)
+    else:
+        picture = picture.convert(mode)
+    buffer = BytesIO()
+    picture.save(buffer, "PNG", transparency=5 if mode in ("P", "L") else None)
+    whole = decode_image(buffer.getvalue())
+    monkeypatch.setattr(images, "STRIP", 40)
+    assert (decode_image(buffer.getvalue()) == whole).all()

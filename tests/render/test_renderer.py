@@ -6,6 +6,7 @@ import pytest
 
 from akap_editor.editor.camera import Camera
 from akap_editor.errors import InputError
+from akap_editor.render.overlays import Overlays
 from akap_editor.render.renderer import CANVAS, TRANSPARENT, Background, Renderer
 
 WHITE, BLACK, BLUE = Background((1, 1, 1)), Background((0, 0, 0)), Background((0.2, 0.4, 0.8))
@@ -91,7 +92,7 @@ def test_drawing_ignores_the_state_that_others_left(ctx, renderer, shoot, sheet,
 
 
 def test_before_show_only_the_plain_background_is_drawn(shoot):
-    result = shoot(background=CANVAS, mesh_lines=True)
+    result = shoot(background=CANVAS, overlays=Overlays(mesh_lines=True))
     assert (np.abs(result[..., :3] - 255 * np.array(CANVAS.color)) <= 0.5).all()
 
 
@@ -155,7 +156,7 @@ def distance_to_lines(drawing, shape):
 def test_mesh_lines_show_on_white_and_on_black(renderer, shoot, sheet, plain, level, sign):
     drawing = sheet(plain(96, 96, level, level, level, 255), cells=3)
     renderer.show(drawing, drawing.mesh.vertices)
-    without, lines = shoot((96, 96)), shoot((96, 96), mesh_lines=True)
+    without, lines = shoot((96, 96)), shoot((96, 96), overlays=Overlays(mesh_lines=True))
     change = (lines - without)[..., :3].mean(axis=2) * sign
     distance = distance_to_lines(drawing, change.shape)
     near = distance < (0.75 if level == 255 else 1.5)
@@ -167,7 +168,7 @@ def test_mesh_lines_show_on_white_and_on_black(renderer, shoot, sheet, plain, le
 def test_a_dense_mesh_seen_from_afar_does_not_cover_the_picture(renderer, shoot, sheet, plain):
     drawing = sheet(plain(400, 400, 255, 255, 255, 255), cells=100)
     renderer.show(drawing, drawing.mesh.vertices)
-    result = shoot((100, 100), Camera(0.25), mesh_lines=True)
+    result = shoot((100, 100), Camera(0.25), overlays=Overlays(mesh_lines=True))
     assert result[..., :3].min() > 128
     assert result[..., :3].max() < 255
 
@@ -175,7 +176,7 @@ def test_a_dense_mesh_seen_from_afar_does_not_cover_the_picture(renderer, shoot,
 def test_mesh_lines_follow_the_pose_and_survive_collapsed_edges(renderer, shoot, sheet, plain):
     drawing = sheet(plain(32, 32, 0, 0, 0, 0), cells=1)
     renderer.show(drawing, drawing.mesh.vertices * [1, 0] + [0, 16.5])
-    rows = shoot((32, 32), background=WHITE, mesh_lines=True)[..., 0].min(axis=1)
+    rows = shoot((32, 32), background=WHITE, overlays=Overlays(mesh_lines=True))[..., 0].min(axis=1)
     assert rows[16] < 180
     assert (np.delete(rows, [14, 15, 16, 17, 18]) == 255).all()
 

@@ -1,0 +1,40 @@
+"""The list of steps, to click through."""
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from .theme import QUIET
+from .workspace import Workspace
+
+_ROWS = 6  # that are seen at once
+_START = "As opened"
+
+
+def draw(space: Workspace, scale: float) -> None:
+    """The steps, the oldest first; a click goes there. What is undone is quiet."""
+    session = space.editor.session
+    assert session is not None
+    depth, names = session.history.depth, [_START, *session.history.labels]
+    line = imgui.get_text_line_height_with_spacing()
+    imgui.begin_child("##history", ImVec2(0, min(len(names), _ROWS) * line + 6 * scale))
+    for index, name in enumerate(names):
+        if index > depth:
+            imgui.push_style_color(imgui.Col_.text, ImVec4(*QUIET))
+        if imgui.selectable(f"  {name}##step {index}", index == depth)[0]:
+            space.attempt(lambda index=index: space.editor.go_to(index))  # type: ignore[misc]
+        if index > depth:
+            imgui.pop_style_color()
+        if index == depth and not imgui.is_window_hovered() and not _wholly_seen():
+            imgui.set_scroll_here_y(0.5)
+    imgui.end_child()
+
+
+def _wholly_seen() -> bool:
+    """Whether no part of the last row is cut off."""
+    top = imgui.get_window_pos().y
+    bottom = top + imgui.get_window_size().y
+    return top <= imgui.get_item_rect_min().y and imgui.get_item_rect_max().y <= bottom
+
+
+def step_count(space: Workspace) -> str:
+    """How many steps there are to go back, in digits; nothing where there are none."""
+    return str((space.editor.session.history.depth if space.editor.session is not None else 0) or "")

@@ -1,0 +1,132 @@
+"""Small pieces that panels and dialogs are made of. They hold nothing themselves."""
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from ..editor.document import Settings
+from .commands import Command
+from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE
+from .workspace import Workspace
+
+_BAR = (
+    imgui.WindowFlags_.no_title_bar
+    | imgui.WindowFlags_.no_resize
+    | imgui.WindowFlags_.no_move
+    | imgui.WindowFlags_.no_saved_settings
+    | imgui.WindowFlags_.no_docking
+)
+_DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
+
+
+def run(space: Workspace, command: Command) -> None:
+    """Run a command; what goes wrong becomes a message."""
+    space.notice = ""
+    space.attempt(lambda: command.run(space))
+
+
+def change(space: Workspace, settings: Settings) -> None:
+    """Change how the drawing bends; what goes wrong becomes a message."""
+    space.notice = ""
+    space.attempt(lambda: space.change_settings(settings))
+
+
+def switch(label: str, on: bool, tooltip: str = "") -> tuple[bool, bool]:
+    """A check box of the height of its text; whether it was clicked, and whether it is on."""
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.18, 0.18) * imgui.get_font_size())
+    imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.0)
+    imgui.push_style_color(imgui.Col_.border, ImVec4(*(ACCENT if on else STRONG_LINE)))
+    clicked, on = imgui.checkbox(label, on)
+    imgui.pop_style_color()
+    imgui.pop_style_var(2)
+    explain(tooltip)
+    return clicked, on
+
+
+def row(label: str, value: str, tooltip: str = "") -> None:
+    """A quiet label on the left, its value on the right."""
+    imgui.text_colored(ImVec4(*QUIET), label)
+    explain(tooltip)
+    imgui.same_line(
+        imgui.get_content_region_avail().x - imgui.calc_text_size(value).x + imgui.get_cursor_pos_x()
+    )
+    imgui.text(value)
+
+
+def quiet(text: str) -> None:
+    """A quiet sentence, wrapped at the panel's edge."""
+    imgui.push_text_wrap_pos(0.0)
+    imgui.text_colored(ImVec4(*QUIET), text)
+    imgui.pop_text_wrap_pos()
+
+
+def explain(tooltip: str) -> None:
+    """Show a text, if there is any, while the pointer rests on the item before, also on a disabled one."""
+    flags = imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled
+    if tooltip and imgui.is_item_hovered(flags):
+        imgui.begin_tooltip()
+        imgui.push_text_wrap_pos(imgui.get_font_size() * 22)
+        imgui.text_unformatted(tooltip)
+        imgui.pop_text_wrap_pos()
+        imgui.end_tooltip()
+
+
+def side_bar(name: str, side: imgui.Dir, size: float, padding: ImVec2, scrolls: bool = False) -> bool:
+    """Take ``size`` points from a side of the room left for the canvas; `imgui.end` must follow."""
+    fixed = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
+    imgui.push_style_var(imgui.StyleVar_.window_padding, padding)
+    imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+    imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+    shown = imgui.internal.begin_viewport_side_bar(
+        name, imgui.get_main_viewport(), side, size, _BAR | (0 if scrolls else fixed)
+    )
+    imgui.pop_style_var(3)
+    return bool(shown)
+
+
+# -- dialogs ------------------------------------------------------------------------------------------------
+
+
+def begin_dialog(title: str) -> bool:
+    """A dialog in the middle of the window, the rest dimmed; if it is shown, `imgui.end_popup` ends it."""
+    name = f"{title}###dialog {title}"
+    if not imgui.is_popup_open(name):
+        imgui.open_popup(name)
+    imgui.set_next_window_pos(imgui.get_main_viewport().get_center(), imgui.Cond_.always, ImVec2(0.5, 0.5))
+    return bool(imgui.begin_popup_modal(name, None, _DIALOG)[0])
+
+
+def button(label: str, primary: bool = False) -> bool:
+    """A button of a dialog; primary: what Enter does."""
+    width = max(imgui.calc_text_size(label).x + 2.5 * imgui.get_font_size(), 6 * imgui.get_font_size())
+    if primary:
+        imgui.push_style_color(imgui.Col_.button, ImVec4(*ACCENT))
+        imgui.push_style_color(imgui.Col_.button_hovered, ImVec4(*ACCENT_HOVER))
+        imgui.push_style_color(imgui.Col_.button_active, ImVec4(*ACCENT_ACTIVE))
+        imgui.push_style_color(imgui.Col_.text, ImVec4(*DARK))
+    pressed = bool(imgui.button(label, ImVec2(width, 0)))
+    if primary:
+        imgui.pop_style_color(4)
+    return pressed
+
+
+def escape() -> bool:
+    """Whether Escape was pressed."""
+    return bool(imgui.is_key_pressed(imgui.Key.escape, False))
+
+
+def enter() -> bool:
+    """Whether one of the Enter keys was pressed."""
+    keys = (imgui.Key.enter, imgui.Key.keypad_enter)
+    return any(imgui.is_key_pressed(key, False) for key in keys)
+
+
+def close(space: Workspace, field: str, value: object) -> None:
+    """Close the dialog that a field of the workspace has asked for."""
+    setattr(space, field, value)
+    close_popup()
+
+
+def close_popup() -> None:
+    """Close the popup; keys belong to the canvas again."""
+    imgui.close_current_popup()
+    imgui.set_window_focus(None)
+    imgui.set_nav_cursor_visible(False)

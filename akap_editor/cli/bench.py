@@ -1,0 +1,134 @@
+"""Measures the engine."""
+
+import json
+import sys
+import time
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import click
+import numpy as np
+
+from ..deform.deformer import make_deformer
+from ..deform.variants import parse_method
+from ..editor.document import Drawing, make_drawing
+from ..errors import InputError
+from ..geometry.checks import Floats
+from ..geometry.distortion import distortion
+from ..io.images import read_image
+from .common import bundled
+
+DRAWING = "elephant"
+HOLDING = [(135.0, 800.0), (285.0, 795.0), (445.0, 795.0), (625.0, 800.0), (260.0, 420.0)]
+LED, WAY = (915.0, 180.0), (-250.0, -90.0)
+FRAMES = 60
+
+
+@dataclass(frozen=True)
+class Row:
+    """One drag. Milliseconds of one step, of the worst in twenty, and of the preparation before the drag."""
+
+    method: str
+    vertices: int
+    faces: int
+    prepare_ms: float
+    median_ms: float
+    slowest_ms: float
+    area: float
+    angle: float
+    flipped: int
+    pin_error: float
+
+
+@click.command(epilog="Example: akap-editor bench --sizes 1000,10000 -m akap -m arap")
+@click.option(
+    "--sizes", default="1000,3000,10000", show_default=True, metavar="NUMBERS", help="Vertices of the meshes."
+)
+@click.option(
+    "-m",
+    "--method",
+    "methods",
+    multiple=True,
+    metavar="METHOD",
+    default=("akap:memory=1",),
+    show_default=True,
+    help="How the drawing bends; may be given several times.",
+)
+@click.option("--frames", default=FRAMES, show_default=True, help="Steps of a drag.")
+@click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+def bench(sizes: str, methods: tuple[str, ...], frames: int, as_json: bool) -> None:
+    """Measure the engine on this computer: the bundled elephant lifts its trunk, one step a frame.
+
+    E_area and E_angle say how much areas and angles have changed in the end; 2 is not at all.
+    """
+    if not 1 <= frames <= 10_000:
+        raise InputError(f"--frames: expected a number from 1 to 10000, got {frames}")
+    counts, specs = _sizes(sizes), [(name, *parse_method(name)) for name in methods]
+    rows = []
+    image = read_image(bundled(DRAWING))
+    with click.progressbar(length=len(counts) * len(specs), label="Bending", file=sys.stderr) as bar:
+        for count in counts:
+            drawing = make_drawing(image, vertices=count)
+            for name, method, settings in specs:
+                rows.append(measure(drawing, name, method, settings, frames))
+                bar.update(1)
+    click.echo(json.dumps([asdict(row) for row in rows], indent=2) if as_json else _table(rows))
+
+
+def measure(drawing: Drawing, name: str, method: str, settings: dict[str, Any], frames: int) -> Row:
+    """One drag of ``frames`` steps by one method."""
+    mesh = drawing.mesh
+    points = mesh.locate([*HOLDING, LED])
+    started = time.perf_counter()
+    deformer = make_deformer(method, mesh, **settings)
+    deformer.set_pins(points)
+    pose: Floats = mesh.vertices
+    start = mesh.evaluate(points, pose)
+    targets = start
+    steps = [time.perf_counter() - started]
+    for share in np.linspace(0, 1, frames + 1)[1:]:
+        targets = start.copy()
+        targets[-1] += share * np.array(WAY)
+        started = time.perf_counter()
+        pose = deformer.step(pose, targets).positions
+        steps.append(time.perf_counter() - started)
+    spent = 1000 * np.array(steps[1:])
+    measured = distortion(mesh, pose)
+    return Row(
+        method=name,
+        vertices=len(mesh.vertices),
+        faces=len(mesh.faces),
+        prepare_ms=round(1000 * steps[0], 3),
+        median_ms=round(float(np.median(spent)), 3),
+        slowest_ms=round(float(np.percentile(spent, 95)), 3),
+        area=measured.area,
+        angle=measured.angle,
+        flipped=measured.flipped,
+        pin_error=float(np.linalg.norm(mesh.evaluate(points, pose) - targets, axis=1).max()),
+    )
+
+
+def _sizes(text: str) -> list[int]:
+    try:
+        sizes = [int(part) for part in text.split(",")]
+    except ValueError as error:
+        raise InputError(f"--sizes: expected numbers divided by commas, got {text!r}") from error
+    for size in sizes:
+        if not 100 <= size <= 100_000:
+            raise InputError(f"--sizes: expected numbers from 100 to 100000, got {size}")
+    return sizes
+
+
+def _table(rows: list[Row]) -> str:
+    width = max(len("method"), *(len(row.method) for row in rows))
+    lines = [
+        f"{'method':<{width}} {'vertices':>9} {'prepare':>9} {'median':>9} {'95 %':>9}"
+        f" {'E_area':>9} {'E_angle':>9} {'flipped':>8} {'pins off':>9}"
+    ]
+    lines += [
+        f"{row.method:<{width}} {row.vertices:>9} {row.prepare_ms:>6.1f} ms {row.median_ms:>6.2f} ms"
+        f" {row.slowest_ms:>6.2f} ms {row.area:>9.4f} {row.angle:>9.4f} {row.flipped:>8}"
+        f" {row.pin_error:>6.2f} px"
+        for row in rows
+    ]
+    return "\n".join(lines)

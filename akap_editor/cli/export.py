@@ -1,0 +1,87 @@
+"""Writes drawings for other programs."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+
+from ..editor.framing import crop_box, picture_size
+from ..errors import InputError
+from ..io.documents import open_document
+from ..io.export import FORMATS, ExportOptions, export, format_of
+from .common import FILE, export_options, framing_options, make_folder_of
+
+_KINDS = "\n".join(f"{each.suffix:<12} {each.label}" for each in FORMATS)
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What was written: the format's label, all files, the one named last; size in pixels of a picture."""
+
+    label: str
+    files: list[Path]
+    size: tuple[int, int] | None
+
+    @property
+    def text(self) -> str:
+        """In words."""
+        beside = ", ".join(path.name for path in self.files[:-1])
+        size = f": {self.size[0]} × {self.size[1]} pixels" if self.size else f": {self.label}"
+        return f"{self.files[-1]}{size}" + (f", with {beside}" if beside else "")
+
+    @property
+    def facts(self) -> dict[str, object]:
+        """For --json."""
+        size = dict(zip(("width", "height"), self.size, strict=True)) if self.size else {}
+        return {"format": self.label, "files": [str(path) for path in self.files], **size}
+
+
+def export_file(file: Path, output: Path, options: ExportOptions) -> Exported:
+    """Export what is in ``file``. Raises InputError."""
+    from ..render.offscreen import OffscreenRenderer
+
+    chosen = format_of(output)
+    document = open_document(file)
+    make_folder_of(output)
+    with OffscreenRenderer() as renderer:
+        files = export(document, output, options, renderer)
+    if not chosen.framed:
+        return Exported(chosen.label, files, None)
+    pose = document.drawing.mesh.vertices if options.rest else document.state.positions
+    size = picture_size(crop_box(document.drawing, pose, options.crop), options.scale)
+    return Exported(chosen.label, files, size)
+
+
+@click.command(
+    "export",
+    epilog="Example: akap-editor export posed.akap -o cat.glb\n\n"
+    "Example: akap-editor export posed.akap -o cat.png --scale 2 --crop pose",
+)
+@click.argument("file", type=FILE)
+@click.option(
+    "-o", "--output", type=FILE, required=True, help="File to write; its ending decides on the format."
+)
+@framing_options
+@click.option("--rest", is_flag=True, help="The drawing at rest in place of its pose.")
+@click.option("--json", "as_json", is_flag=True, help="Print what was written as JSON.")
+def export_command(
+    file: Path,
+    output: Path,
+    scale: float | None,
+    background: str | None,
+    crop: str | None,
+    rest: bool,
+    as_json: bool,
+) -> None:
+    """Write FILE, a saved drawing or a picture, for other programs."""
+    chosen = format_of(output)
+    given = {"--scale": scale, "--background": background, "--crop": crop}
+    for name, value in given.items():
+        if value is not None and not chosen.framed:
+            raise InputError(f"{name}: expected a picture or an outline to write, got {chosen.suffix}")
+    exported = export_file(file, output, export_options(scale, background, crop, rest))
+    click.echo(json.dumps(exported.facts, indent=2) if as_json else exported.text)
+
+
+export_command.help = f"{export_command.help}\n\n\b\nFormats, by the ending of the output:\n{_KINDS}"

@@ -1,0 +1,87 @@
+"""What bends a drawing as its state says, and how far one step goes."""
+
+from typing import Any
+
+import numpy as np
+
+from ..deform.deformer import StepResult, holds_angles, make_deformer, takes_stiffness
+from ..geometry.checks import Floats
+from ..geometry.mesh import TriMesh
+from .angles import Turns, pin_angles
+from .document import EditState
+
+REACH = 0.02  # longest way of a pin in one step, as a share of √area: no step keeps the caller waiting
+MOST_TURN = 0.2  # radians that a pin turns in one step
+WOBBLE = 0.1  # pixels: a pose so near to that of two steps ago only goes to and fro
+
+
+class Bending:
+    """The deformer of a mesh, made for the settings and the stiffness of a state, with that state's pins.
+
+    turns: full turns of pins since it was told to forget them; last_way: of pins that moved, the pose before
+    and their velocities, for `fields`; wobbles: whether the last step only led back to where the one before
+    it began, as where pins hold angles that cannot all be met. Raises InputError on settings that no method knows.
+    """
+
+    def __init__(self, mesh: TriMesh, state: EditState) -> None:
+        self._mesh = mesh
+        self.settings, self.stiffness = state.settings, state.stiffness
+        method, parameters = state.settings.method, dict(state.settings.parameters)
+        if state.stiffness is not None and takes_stiffness(method):
+            parameters["stiffness"] = state.stiffness
+        # Any: of a method that may have more than the contract asks for
+        self.deformer: Any = make_deformer(method, mesh, **parameters)
+        self.deformer.set_pins(state.points)
+        self.holds_angles = holds_angles(method)
+        self.turns = Turns()
+        self.last_way: tuple[Floats, Floats] | None = None
+        self.wobbles = False
+        self._last_two: tuple[Floats, ...] = ()
+        self._reach = REACH * float(np.sqrt(mesh.rest_areas.sum()))
+
+    def fits(self, mesh: TriMesh, state: EditState) -> bool:
+        """Whether it bends this mesh as this state says, whatever the pins are."""
+        same = mesh is self._mesh and state.stiffness is self.stiffness
+        return same and state.settings == self.settings
+
+    def off(self, state: EditState) -> Floats:
+        """(k, 2): by how much pins are away from where they should be."""
+        return state.targets - self._mesh.evaluate(state.points, state.positions)
+
+    def angles_off(self, state: EditState) -> Floats:
+        """(k,): by how many radians pins still have to turn; NaN for those that turn as they will."""
+        wanted = state.angles
+        if not self.holds_angles or not np.isfinite(wanted).any():
+            return np.full(len(wanted), np.nan)
+        return wanted - self.turns.counted(state.pins, pin_angles(self._mesh, state.pins, state.positions))
+
+    def turn_error(self, state: EditState) -> float:
+        """Largest angle by which a pin still has to turn, radians."""
+        return float(np.nan_to_num(np.abs(self.angles_off(state))).max(initial=0.0))
+
+    def steps_left(self, state: EditState) -> float:
+        """How many steps pins need at least to where they should be."""
+        way = np.linalg.norm(self.off(state), axis=1).max(initial=0.0)
+        return float(max(way / self._reach, self.turn_error(state) / MOST_TURN))
+
+    def step(self, state: EditState) -> StepResult:
+        """One step from a state towards its targets and angles. Raises SolverError."""
+        here, turn = self._mesh.evaluate(state.points, state.positions), self.angles_off(state)
+        share = 1.0 / max(1.0, self.steps_left(state))
+        goals = state.targets if share == 1.0 else here + share * (state.targets - here)
+        angles = (state.angles - (1.0 - share) * turn,) if np.isfinite(turn).any() else ()
+        result: StepResult = self.deformer.step(state.positions, goals, *angles)
+        self.wobbles = bool(angles) and self._returned(result.positions)
+        self._last_two = self._last_two[-1:] + (result.positions,)
+        return result
+
+    def _returned(self, positions: Floats) -> bool:
+        """Whether a pose (n, 2) is that of two steps ago."""
+        return len(self._last_two) == 2 and bool(np.abs(positions - self._last_two[0]).max() < WOBBLE)
+
+    def fields(self) -> tuple[Floats, Floats] | None:
+        """U_opt and U°, (n, 2) each, of the last way of pins; None without one."""
+        if self.last_way is None:
+            return None
+        optimal, smooth = self.deformer.vector_fields(*self.last_way)
+        return optimal, smooth

@@ -1,0 +1,35 @@
+"""Poses that a drawing remembers by name."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..errors import InputError
+from ..geometry.checks import Floats, as_points, frozen
+
+MAX_NAME = 80
+
+
+@dataclass(frozen=True, eq=False)
+class NamedPose:
+    """name: not empty, unique in its drawing; positions: (n, 2) float64 of the mesh's vertices, in pixels."""
+
+    name: str
+    positions: Floats
+
+    def __post_init__(self) -> None:
+        if not self.name.strip() or len(self.name) > MAX_NAME:
+            raise InputError(f"pose: expected a name of 1 to {MAX_NAME} characters, got {self.name[:99]!r}")
+        object.__setattr__(self, "positions", frozen(as_points(self.positions, "pose")))
+
+
+def with_pose(poses: Sequence[NamedPose], pose: NamedPose) -> tuple[NamedPose, ...]:
+    """These poses and another one, in the place of one of the same name."""
+    if any(each.name == pose.name for each in poses):
+        return tuple(pose if each.name == pose.name else each for each in poses)
+    return (*poses, pose)
+
+
+def free_name(poses: Sequence[NamedPose]) -> str:
+    """Pose 1, Pose 2, ...: the first that is not taken."""
+    taken = {pose.name for pose in poses}
+    return next(name for number in range(1, len(taken) + 2) if (name := f"Pose {number}") not in taken)

@@ -1,0 +1,114 @@
+"""glTF 2.0 binary: mesh, texture, and the pose as a morph target (specification of the Khronos Group)."""
+
+import json
+import struct
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...editor.document import Drawing
+from ...geometry.checks import Floats
+from .texture import encode_texture, y_up
+
+PIXELS_PER_UNIT = 100.0  # of the scene; the mesh itself is in pixels
+
+_FLOAT, _UINT = 5126, 5125
+_VERTICES, _INDICES = 34962, 34963  # what a buffer view is used for
+_LINEAR, _MIPMAPS, _CLAMP = 9729, 9987, 33071
+
+
+class _Buffer:
+    """The binary part: views of it, and accessors that say what is in them."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+
+    def add(self, data: bytes, **facts: int) -> int:
+        """The number of a new view; each begins at a multiple of 4 bytes."""
+        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data), **facts})
+        self.data += data + bytes(-len(data) % 4)
+        return len(self.views) - 1
+
+    def add_array(self, array: NDArray[Any], kind: str, bounds: bool = False) -> int:
+        """The number of a new accessor to an array (count, columns) of float32 or, as indices, uint32."""
+        indices = array.dtype == np.uint32
+        view = self.add(array.tobytes(), target=_INDICES if indices else _VERTICES)
+        count = array.size if indices else len(array)
+        accessor: dict[str, Any] = {"bufferView": view, "componentType": _UINT if indices else _FLOAT}
+        accessor |= {"count": count, "type": kind}
+        if bounds:
+            accessor |= {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
+        self.accessors.append(accessor)
+        return len(self.accessors) - 1
+
+
+def encode_glb(drawing: Drawing, positions: Floats) -> bytes:
+    """The bytes of a .glb file: the mesh at rest, and the pose ``positions`` (n, 2) as a morph target.
+
+    The target's weight is 1, so that the pose is what is seen. Faces are counterclockwise seen from +z, in
+    the order in which they overlap.
+    """
+    buffer = _Buffer()
+    rest, pose = (_in_space(y_up(drawing, points)) for points in (drawing.mesh.vertices, positions))
+    primitive = {
+        "attributes": {
+            "POSITION": buffer.add_array(rest, "VEC3", bounds=True),
+            "TEXCOORD_0": buffer.add_array(drawing.uv.astype("<f4"), "VEC2"),
+        },
+        "indices": buffer.add_array(drawing.mesh.faces[:, ::-1].astype("<u4"), "SCALAR"),
+        "material": 0,
+        "targets": [{"POSITION": buffer.add_array(pose - rest, "VEC3", bounds=True)}],
+    }
+    image = buffer.add(encode_texture(drawing))
+    scene = {
+        "asset": {"version": "2.0", "generator": "akap-editor"},
+        "extensionsUsed": ["KHR_materials_unlit"],
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": drawing.name, "mesh": 0, "scale": [1 / PIXELS_PER_UNIT] * 3}],
+        "meshes": [
+            {
+                "name": drawing.name,
+                "primitives": [primitive],
+                "weights": [1.0],
+                "extras": {"targetNames": ["Pose"]},
+            }
+        ],
+        "materials": [_material(drawing.name)],
+        "textures": [{"sampler": 0, "source": 0}],
+        "samplers": [{"magFilter": _LINEAR, "minFilter": _MIPMAPS, "wrapS": _CLAMP, "wrapT": _CLAMP}],
+        "images": [{"name": drawing.name, "bufferView": image, "mimeType": "image/png"}],
+        "buffers": [{"byteLength": len(buffer.data)}],
+        "bufferViews": buffer.views,
+        "accessors": buffer.accessors,
+    }
+    text = json.dumps(scene, separators=(",", ":"), allow_nan=False).encode()
+    chunks = _chunk(b"JSON", text + b" " * (-len(text) % 4)) + _chunk(b"BIN\0", bytes(buffer.data))
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def _in_space(points: Floats) -> NDArray[np.float32]:
+    """(n, 2) as (n, 3) float32, z = 0."""
+    return np.pad(points, [(0, 0), (0, 1)]).astype("<f4")
+
+
+def _material(name: str) -> dict[str, Any]:
+    """Colors without light; alpha blends; both sides are seen, for a pose may turn faces over."""
+    return {
+        "name": name,
+        "pbrMetallicRoughness": {
+            "baseColorTexture": {"index": 0},
+            "metallicFactor": 0.0,
+            "roughnessFactor": 1.0,
+        },
+        "alphaMode": "BLEND",
+        "doubleSided": True,
+        "extensions": {"KHR_materials_unlit": {}},
+    }
+
+
+def _chunk(kind: bytes, content: bytes) -> bytes:
+    return struct.pack("<I4s", len(content), kind) + content

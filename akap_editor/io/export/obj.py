@@ -1,0 +1,37 @@
+"""Wavefront OBJ: the posed mesh, its material and its texture."""
+
+import numpy as np
+
+from ...editor.document import Drawing
+from ...geometry.checks import Floats
+from .texture import companion, encode_texture, y_up
+
+
+def encode_obj(drawing: Drawing, positions: Floats, stem: str) -> dict[str, bytes]:
+    """The files of a mesh in the pose ``positions`` (n, 2), by name: texture, material, mesh.
+
+    Vertices keep their order, so that two poses of a drawing can be blended. Faces are counterclockwise seen
+    from +z, in the order in which they overlap.
+    """
+    name = companion(stem)
+    texture, material = f"{name}-texture.png", f"{name}.mtl"
+    points, uv = y_up(drawing, positions), drawing.uv * np.array([1, -1]) + np.array([0, 1])
+    corners = drawing.mesh.faces[:, ::-1] + 1
+    lines = [
+        f"mtllib {material}",
+        f"o {companion(drawing.name) or 'drawing'}",
+        *(f"v {x:.9g} {y:.9g} 0" for x, y in points.tolist()),
+        *(f"vt {u:.9g} {v:.9g}" for u, v in uv.tolist()),
+        "vn 0 0 1",
+        "usemtl drawing",
+        *(f"f {a}/{a}/1 {b}/{b}/1 {c}/{c}/1" for a, b, c in corners.tolist()),
+    ]
+    return {
+        texture: encode_texture(drawing),
+        material: _material(texture).encode(),
+        f"{stem}.obj": ("\n".join(lines) + "\n").encode(),
+    }
+
+
+def _material(texture: str) -> str:
+    return f"newmtl drawing\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nd 1\nillum 1\nmap_Kd {texture}\nmap_d {texture}\n"

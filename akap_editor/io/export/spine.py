@@ -1,0 +1,105 @@
+"""Spine: mesh attachments as in its JSON export format, https://esotericsoftware.com/spine-json-format."""
+
+import json
+from typing import Any
+
+import numpy as np
+
+from ...editor.document import Drawing
+from ...errors import InputError
+from ...geometry.checks import Floats, Ints
+from ...geometry.mesh import TriMesh
+from .texture import companion, encode_texture, y_up
+
+SPINE_VERSION = "4.2.00"
+MAX_VERTICES = 32767  # of one mesh: runtimes count vertices in 16 bits, with a sign
+_DECIMALS = 3
+
+
+def encode_spine(drawing: Drawing, positions: Floats, stem: str) -> dict[str, bytes]:
+    """The files of a Spine skeleton, by name: texture and JSON. Raises InputError for too large a mesh.
+
+    One bone; for each part of the drawing a slot with one unweighted mesh attachment. The setup pose is the
+    rest pose, the animation "pose" holds ``positions`` (n, 2) as a deform key.
+    """
+    texture, title = f"{companion(stem)}-texture", drawing.name or "drawing"
+    rest, pose = y_up(drawing, drawing.mesh.vertices), y_up(drawing, positions)
+    slots, attachments, deform = [], {}, {}
+    for number, part in enumerate(_parts(drawing.mesh), start=1):
+        name = title if number == 1 else f"{title} {number}"
+        slots.append({"name": name, "bone": "root", "attachment": name})
+        attachments[name] = {name: _attachment(drawing, part, rest, texture)}
+        offsets = _flat(pose[part.order]) - _flat(rest[part.order])
+        deform[name] = {name: {"deform": [{"vertices": np.round(offsets, _DECIMALS).tolist()}]}}
+    low, high = rest.min(axis=0), rest.max(axis=0)
+    x, y, width, height = np.round([*low, *(high - low)], 2).tolist()
+    skeleton = {"spine": SPINE_VERSION, "x": x, "y": y, "width": width, "height": height, "images": "./"}
+    record = {
+        "skeleton": skeleton,
+        "bones": [{"name": "root"}],
+        "slots": slots,
+        "skins": [{"name": "default", "attachments": attachments}],
+        "animations": {"pose": {"attachments": {"default": deform}}},
+    }
+    text = json.dumps(record, separators=(",", ":"), allow_nan=False)
+    return {f"{texture}.png": encode_texture(drawing), f"{stem}.spine.json": text.encode()}
+
+
+class _Part:
+    """One component of a mesh, renumbered as Spine wants it: the hull first, in order.
+
+    order: (p,) the mesh's vertex of each new one; hull: how many of them are the outer contour; faces, edges:
+    new numbers, (m, 3) and (e, 2).
+    """
+
+    def __init__(self, mesh: TriMesh, number: int) -> None:
+        vertices = np.flatnonzero(mesh.component == number)
+        loops = [loop for loop in mesh.boundary_loops if mesh.component[loop[0]] == number]
+        hull = max(loops, key=lambda loop: abs(_area(mesh.vertices[loop])))
+        self.hull = len(hull)
+        self.order = np.concatenate([hull, np.setdiff1d(vertices, hull)])
+        new = np.full(len(mesh.vertices), -1)
+        new[self.order] = np.arange(len(self.order))
+        self.faces = new[mesh.faces[mesh.component[mesh.faces[:, 0]] == number]]
+        ring = np.stack([np.arange(self.hull), np.roll(np.arange(self.hull), -1)], axis=1)
+        inner = np.sort(new[mesh.edges[mesh.component[mesh.edges[:, 0]] == number]], axis=1)
+        known = {tuple(sorted(pair)) for pair in ring.tolist()}
+        rest = [pair for pair in inner.tolist() if tuple(pair) not in known]
+        self.edges: Ints = np.array([*ring.tolist(), *rest])
+
+
+def _parts(mesh: TriMesh) -> list[_Part]:
+    """The components, those drawn first in front of the list, as slots are drawn in order."""
+    first = mesh.component[mesh.faces[:, 0]]
+    numbers = list(dict.fromkeys(first.tolist()))
+    return [_Part(mesh, number) for number in numbers]
+
+
+def _attachment(drawing: Drawing, part: _Part, rest: Floats, texture: str) -> dict[str, Any]:
+    if len(part.order) > MAX_VERTICES:
+        raise InputError(
+            f"expected parts of at most {MAX_VERTICES} vertices for Spine, got {len(part.order)}; "
+            "choose a coarser mesh"
+        )
+    width, height = drawing.size
+    return {
+        "type": "mesh",
+        "path": texture,
+        "uvs": np.round(_flat(drawing.uv[part.order].astype(np.float64)), 6).tolist(),
+        "triangles": part.faces.ravel().tolist(),
+        "vertices": np.round(_flat(rest[part.order]), _DECIMALS).tolist(),
+        "hull": part.hull,
+        "edges": (2 * part.edges).ravel().tolist(),  # places in a list of coordinates
+        "width": width,
+        "height": height,
+    }
+
+
+def _flat(points: Floats) -> Floats:
+    return points.ravel() + 0.0
+
+
+def _area(ring: Floats) -> float:
+    """Signed area of a polygon (q, 2)."""
+    x, y = ring.T
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))

@@ -1,0 +1,58 @@
+"""SVG: the outline of a pose as paths."""
+
+from xml.sax.saxutils import escape
+
+import numpy as np
+import shapely
+
+from ...editor.document import Drawing
+from ...editor.framing import Box, picture_size
+from ...geometry.checks import Floats
+from ...geometry.mesh import signed_areas
+
+GRID = 0.001
+
+
+def silhouette(drawing: Drawing, positions: Floats) -> list[shapely.Polygon]:
+    """What the mesh covers in the pose ``positions`` (n, 2), largest part first; overlaps count once.
+
+    Points are on a grid of `GRID` pixels, on which the slivers that rounding leaves at overlaps vanish.
+    """
+    faces = drawing.mesh.faces[signed_areas(positions, drawing.mesh.faces) != 0]
+    covered = shapely.set_precision(shapely.union_all(shapely.polygons(positions[faces])), GRID)
+    parts = [part for part in shapely.get_parts(covered) if part.geom_type == "Polygon"]
+    return sorted(parts, key=lambda part: -part.area)
+
+
+def encode_svg(
+    drawing: Drawing,
+    positions: Floats,
+    box: Box,
+    scale: float,
+    background: tuple[float, float, float] | None,
+) -> str:
+    """An SVG picture of ``box``: one path for each part of the pose, its holes by the even-odd rule.
+
+    Paths are in drawing units, three decimals. Raises InputError as `picture_size` does.
+    """
+    picture_size(box, scale)
+    x0, y0, x1, y1 = box
+    width, height = x1 - x0, y1 - y0
+    size = f'width="{width * scale:.10g}" height="{height * scale:.10g}"'
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size} viewBox="{x0} {y0} {width} {height}">',
+        f"  <title>{escape(drawing.name)}</title>",
+    ]
+    if background is not None:
+        red, green, blue = (round(255 * value) for value in background)
+        fill = f"#{red:02x}{green:02x}{blue:02x}"
+        lines.append(f'  <rect x="{x0}" y="{y0}" width="{width}" height="{height}" fill="{fill}"/>')
+    for part in silhouette(drawing, positions):
+        data = " ".join(_ring(ring) for ring in (part.exterior, *part.interiors))
+        lines.append(f'  <path fill="#000" fill-rule="evenodd" d="{data}"/>')
+    return "\n".join([*lines, "</svg>", ""])
+
+
+def _ring(ring: shapely.LinearRing) -> str:
+    points = np.round(shapely.get_coordinates(ring)[:-1], 3) + 0.0  # + 0: no "-0"
+    return "M" + "L".join(f"{x:.10g} {y:.10g}" for x, y in points.tolist()) + "Z"

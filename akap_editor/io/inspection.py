@@ -1,0 +1,165 @@
+"""What a file is, by its content, and whether it is sound."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..editor.recording import parse_recording
+from ..errors import InputError
+from ..geometry.distortion import distortion
+from ..geometry.meshing import mesh_picture
+from . import project_file
+from .atomic import read_file
+from .images import decode_image, has_transparency
+from .mesh_data import count_parts, decode_mesh, mesh_problems
+from .pose_file import FORMAT as POSE_FORMAT
+from .records import get, pairs, parse_record
+from .states import read_pins
+
+Facts = dict[str, Any]
+
+_PICTURES = {
+    b"\x89PNG": "PNG",
+    b"\xff\xd8\xff": "JPEG",
+    b"RIFF": "WebP",
+    b"BM": "BMP",
+    b"GIF8": "GIF",
+    b"II*\0": "TIFF",
+    b"MM\0*": "TIFF",
+}
+_SUFFIXES = {
+    ".akap": "drawing",
+    ".akaprec": "recording",
+    **dict.fromkeys((".obj", ".off", ".glb", ".json"), "mesh"),
+    **dict.fromkeys((".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif"), "picture"),
+}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """kind: "picture", "drawing", "pose", "recording", "mesh" or "unknown"; facts: by name; problems:
+    sentences, none where the file is sound.
+    """
+
+    kind: str
+    facts: Facts
+    problems: list[str]
+
+    @property
+    def sound(self) -> bool:
+        """Whether all is well."""
+        return not self.problems
+
+
+def inspect(path: str | Path) -> Finding:
+    """What a file is and whether it is sound. Raises InputError where it cannot be read at all."""
+    data = read_file(path, "a file")
+    kind = _kind(data) or _SUFFIXES.get(Path(path).suffix.lower(), "unknown")
+    if kind == "unknown":
+        came = (
+            f"expected a picture, a drawing, a recording or a mesh, got something that begins {data[:12]!r}"
+        )
+        return Finding(kind, {}, [came])
+    try:
+        facts, problems = _INSPECTORS[kind](data)
+    except InputError as error:
+        return Finding(kind, {}, [str(error)])
+    return Finding(kind, facts, problems)
+
+
+def _kind(data: bytes) -> str | None:
+    """By its first bytes."""
+    if any(data.startswith(magic) for magic in _PICTURES):
+        return "picture"
+    if data.startswith(b"PK"):
+        return "drawing"
+    if b'"akap-recording"' in data[:200]:
+        return "recording"
+    if f'"{POSE_FORMAT}"'.encode() in data[:200]:
+        return "pose"
+    return "mesh" if data.startswith(b"glTF") else None
+
+
+def _inspect_picture(data: bytes) -> tuple[Facts, list[str]]:
+    image = decode_image(data)
+    kind = next(name for magic, name in _PICTURES.items() if data.startswith(magic))
+    facts: Facts = {"format": kind, "width": image.shape[1], "height": image.shape[0]}
+    facts["transparent"] = has_transparency(image)
+    try:
+        cut = mesh_picture(image[..., 3])
+    except InputError as error:
+        return facts, [str(error)]
+    facts |= {"parts": cut.parts, "holes": cut.holes, "specks left out": cut.specks}
+    return facts, []
+
+
+def _inspect_drawing(data: bytes) -> tuple[Facts, list[str]]:
+    document = project_file.decode(data)
+    drawing, state = document.drawing, document.state
+    measured = distortion(drawing.mesh, state.positions)
+    facts = {
+        "name": drawing.name,
+        "width": drawing.size[0],
+        "height": drawing.size[1],
+        "vertices": len(drawing.mesh.vertices),
+        "faces": len(drawing.mesh.faces),
+        "parts": int(drawing.mesh.component.max()) + 1,
+        "pins": len(state.pins),
+        "method": state.settings.method,
+        "area distortion": round(measured.area, 6),
+        "angle distortion": round(measured.angle, 6),
+        "flipped faces": measured.flipped,
+    }
+    return facts, []
+
+
+def _inspect_pose(data: bytes) -> tuple[Facts, list[str]]:
+    record = parse_record(data)
+    header = get(record, "drawing", dict)
+    count, positions = get(header, "vertices", int), pairs(get(record, "positions", list), "positions")
+    pins = read_pins(get(record, "pins", list))
+    facts = {"drawing": get(header, "name", str), "vertices": count, "pins": len(pins)}
+    if len(positions) != count:
+        return facts, [f"expected positions of {count} vertices, got {len(positions)}"]
+    return facts, []
+
+
+def _inspect_recording(data: bytes) -> tuple[Facts, list[str]]:
+    try:
+        recording = parse_recording(data.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise InputError("expected a recording, which is text, got other bytes") from error
+    done = [event["do"] for event in recording.events]
+    facts = {
+        "drawing": recording.header.get("name"),
+        "vertices": recording.header.get("vertices"),
+        "seconds": recording.duration,
+        "events": len(done),
+        "gestures": done.count("commit"),
+        "steps": done.count("step"),
+        "drawing inside": "akap" in recording.header,
+    }
+    return facts, []
+
+
+def _inspect_mesh(data: bytes) -> tuple[Facts, list[str]]:
+    mesh = decode_mesh(data)
+    facts = {
+        "format": mesh.kind,
+        "vertices": len(mesh.vertices),
+        "faces": len(mesh.faces),
+        "parts": count_parts(mesh),
+        "low": mesh.vertices.min(axis=0).tolist(),
+        "high": mesh.vertices.max(axis=0).tolist(),
+    }
+    return facts, mesh_problems(mesh)
+
+
+_INSPECTORS: dict[str, Callable[[bytes], tuple[Facts, list[str]]]] = {
+    "picture": _inspect_picture,
+    "drawing": _inspect_drawing,
+    "pose": _inspect_pose,
+    "recording": _inspect_recording,
+    "mesh": _inspect_mesh,
+}

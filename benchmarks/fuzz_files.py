@@ -1,0 +1,437 @@
+"""Opens many thousands of damaged and malicious files: each must open, or be refused in one sentence.
+
+Run from the project's root: python benchmarks/fuzz_files.py [--cases N] [--seed S]
+Makes .akap, .pose.json and .akaprec files, each with something wrong on the outside (a byte, the length, the
+zip directory) or, with all checksums right again, on the inside (numbers, JSON, PNG, sizes, names, bombs),
+and opens them in memory, with all Python warnings as errors. What opens is saved and opened again, and must
+be the same.
+Prints how many opened and how many were refused, the slowest case and the process's peak memory. Exit code 1
+on any other exception, a case of over 20 seconds, or a gigabyte of memory. A failing case prints its seed;
+--seed S --cases 1 runs it alone.
+"""
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import argparse
+import json
+import resource
+import signal
+import struct
+import sys
+import time
+import warnings
+import zipfile
+import zlib
+from collections import Counter
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+
+from akap_editor.editor.document import Document, Drawing, EditState, Pin
+from akap_editor.editor.editor import Editor
+from akap_editor.editor.poses import NamedPose
+from akap_editor.editor.replay import replay
+from akap_editor.errors import AkapError, InputError
+from akap_editor.geometry.mesh import TriMesh
+from akap_editor.io.pose_file import decode_pose, encode_pose
+from akap_editor.io.project_file import decode, encode
+from akap_editor.io.recordings import decode_recording
+
+MOST_SECONDS = 20.0  # of work on one case: the largest pictures that are allowed take several
+MOST_BYTES = 2**30
+BOMB_SHARE = 1 / 8000
+
+Rng = np.random.Generator
+Entries = list[tuple[str, bytes]]
+
+JUNK = [
+    *(None, True, False, -1, 0, 1, 2, 7, 2**31 - 1, 2**31, 2**53, 2**64, 10**400, 0.5, -0.0, 1e308, -1e308),
+    *(float("nan"), float("inf"), "", "x", "../../etc/passwd", "/etc/passwd", "\ud800", "a" * 5000),
+    *([], [1, 2], [1e308] * 3, [[]], [[0, 0]] * 3, {}, {"id": 1}),
+]
+NUMBERS = [0.0, -0.0, 1.0, -1.0, np.nan, np.inf, -np.inf, 1e300, -1e300, 5e-324, 1e9, 2e9]
+INDICES = [-(2**31), -1, 0, 1, 2, 3, 4, 1000, 2**31 - 1]
+NAMES = ["", "/", "../x", "/etc/passwd", "mesh", "mesh/", "mesh/../mimetype", "MIMETYPE", "a\\b", "x" * 3000]
+
+
+def seed_documents() -> list[Document]:
+    """Small drawings with pins and a pose: two triangles, and a strip of triangles."""
+    documents = []
+    for columns in (2, 5):
+        x = np.repeat(np.arange(columns), 2)
+        vertices = np.stack([2.0 * x, 4.0 * np.tile([0, 1], columns)], axis=1)
+        left = 2 * np.arange(columns - 1)
+        faces = np.concatenate(
+            [np.stack([left, left + 2, left + 1], axis=1), np.stack([left + 1, left + 2, left + 3], axis=1)]
+        )
+        mesh = TriMesh(vertices, faces)
+        width = 2 * (columns - 1)
+        image = np.random.default_rng(columns).integers(0, 256, (4, width, 4), dtype=np.uint8)
+        uv = (vertices / [width, 4]).astype(np.float32)
+        pins = Pin(1, 0, [0.25, 0.25, 0.5], [0.1 + 0.2, -3.0]), Pin(7, 1, [1.0, 0.0, 0.0], [1e3, 5e-3])
+        poses = NamedPose("Wave", vertices + 1.0), NamedPose("Rest", vertices)
+        state = EditState(pins, vertices * 1.25 + 0.5, poses=poses)
+        documents.append(Document(Drawing(image, mesh, uv, "seed"), state))
+    return documents
+
+
+def seed_recording(document: Document) -> bytes:
+    """A short session with a bit of everything."""
+    editor = Editor(clock=lambda: 0.0)
+    editor.open(Document(document.drawing, EditState((), document.drawing.mesh.vertices)))
+    session = editor.session
+    assert session is not None
+    for at in ((1.0, 1.0), (1.5, 3.0)):
+        editor.add_pin(at)
+    session.begin("Drag")
+    session.set_targets({1: (1.2, 0.8)})
+    for _ in range(3):
+        session.step()
+    session.commit()
+    editor.apply_pose(session.state.pins, session.state.positions * 1.01)
+    editor.reset_pose()
+    editor.undo()
+    editor.redo()
+    editor.remove_pins({2})
+    return session.recording.to_text().encode()
+
+
+# -- what can be wrong ---------------------------------------------------------------------------------------
+
+
+def pick(rng: Rng, values: Any) -> Any:
+    """One of the values."""
+    return values[int(rng.integers(len(values)))]
+
+
+def change_bytes(rng: Rng, data: bytes) -> bytes:
+    """One to three other bytes."""
+    if not data:
+        return bytes(rng.integers(0, 256, 3, dtype=np.uint8))
+    array = np.frombuffer(data, np.uint8).copy()
+    array[rng.integers(0, len(array), rng.integers(1, 4))] = pick(
+        rng, [0, 1, 127, 128, 255, rng.integers(256)]
+    )
+    return array.tobytes()
+
+
+def cut(rng: Rng, data: bytes) -> bytes:
+    """A part is missing at the end, in the middle, or is there twice."""
+    a, b = sorted(int(place) for place in rng.integers(0, len(data) + 1, 2))
+    return pick(rng, [data[:b], data[:a] + data[b:], data[:b] + data[a:]])
+
+
+def change_json(rng: Rng, text: bytes) -> bytes:
+    """Another value, or none, at a random place of a JSON object."""
+    try:
+        record = json.loads(text)
+    except ValueError:
+        return change_bytes(rng, text)
+    place = record
+    while isinstance(place, dict | list) and place:
+        key = pick(rng, list(place) if isinstance(place, dict) else range(len(place)))
+        if not place[key] or not isinstance(place[key], dict | list) or rng.random() < 0.2:
+            break
+        place = place[key]
+    if not isinstance(place, dict | list) or not place:
+        return json.dumps(pick(rng, JUNK)).encode()
+    if rng.random() < 0.15:
+        del place[key]
+    elif isinstance(place, dict) and rng.random() < 0.1:
+        place[pick(rng, NAMES)] = pick(rng, JUNK)
+    else:
+        place[key] = pick(rng, JUNK)
+    return json.dumps(record).encode()
+
+
+def change_numbers(rng: Rng, name: str, data: bytes) -> bytes:
+    """Other numbers in an array, in its own type."""
+    if name == "mesh/faces":
+        array: Any = np.frombuffer(data[: len(data) // 4 * 4], "<i4").copy()
+        values: Any = INDICES
+    else:
+        size = 4 if name == "mesh/uv" else 8
+        array = np.frombuffer(data[: len(data) // size * size], f"<f{size}").copy()
+        values = NUMBERS
+    if len(array):
+        with np.errstate(over="ignore"):
+            array[rng.integers(0, len(array), rng.integers(1, 4))] = pick(rng, values)
+    return bytes(array.tobytes())
+
+
+def png_chunks(data: bytes) -> list[tuple[bytes, bytes]]:
+    """Kind and content of each chunk."""
+    chunks, at = [], 8
+    while at + 12 <= len(data):
+        (length,) = struct.unpack(">I", data[at : at + 4])
+        chunks.append((data[at + 4 : at + 8], data[at + 8 : at + 8 + length]))
+        at += 12 + length
+    return chunks
+
+
+def png(chunks: list[tuple[bytes, bytes]]) -> bytes:
+    """A PNG file whose checksums are right."""
+    parts = [b"\x89PNG\r\n\x1a\n"]
+    for kind, content in chunks:
+        parts.append(struct.pack(">I", len(content)) + kind + content)
+        parts.append(struct.pack(">I", zlib.crc32(kind + content)))
+    return b"".join(parts)
+
+
+def change_png(rng: Rng, data: bytes) -> bytes:
+    """A damaged chunk, pixel stream or header, or chunks that do not belong there, with right checksums."""
+    chunks = png_chunks(data) or [(b"IHDR", data)]
+    index = int(rng.integers(len(chunks)))
+    kind, content = chunks[index]
+    match int(rng.integers(5)):
+        case 0:
+            chunks[index] = kind, change_bytes(rng, content)
+        case 1 if kind == b"IDAT":
+            with suppress(zlib.error):  # it may have been damaged before
+                chunks[index] = kind, zlib.compress(change_bytes(rng, zlib.decompress(content)), 1)
+        case 2:
+            chunks.pop(index)
+        case 3:
+            extra = pick(
+                rng, [b"tRNS", b"PLTE", b"eXIf", b"zTXt", b"iCCP", b"acTL", b"fcTL", b"IDAT", b"gAMA"]
+            )
+            chunks.insert(index, (extra, rng.integers(0, 256, rng.integers(0, 30), dtype=np.uint8).tobytes()))
+        case _:
+            chunks.insert(index, pick(rng, chunks))
+    return png(chunks)
+
+
+def change_directory(rng: Rng, data: bytes) -> bytes:
+    """Other sizes, methods, flags, offsets or names in the zip's own tables."""
+    array = bytearray(data)
+    signature = pick(rng, [b"PK\x01\x02", b"PK\x03\x04", b"PK\x05\x06"])
+    places = [at for at in range(len(data)) if data.startswith(signature, at)]
+    if places:
+        at = pick(rng, places) + 4 + 2 * int(rng.integers(21))
+        value = pick(rng, [0, 1, 8, 12, 14, 99, 0x7FFF, 0xFFFF, int(rng.integers(2**16))])
+        array[at : at + 2] = struct.pack("<H", value)
+    return bytes(array)
+
+
+def pack(entries: Entries, method: int) -> bytes:
+    """A zip archive, whatever the names."""
+    buffer = BytesIO()
+    with warnings.catch_warnings(), zipfile.ZipFile(buffer, "w") as archive:
+        warnings.simplefilter("ignore")  # of duplicate names
+        for name, content in entries:
+            info = zipfile.ZipInfo(name or "x")
+            info.compress_type = method
+            archive.writestr(info, content, compresslevel=1)
+    return buffer.getvalue()
+
+
+def bomb(rng: Rng, entries: Entries) -> Entries:
+    """A small file that would become a large one."""
+    contents = dict(entries)
+    record = json.loads(contents["document.json"])
+    match int(rng.integers(6)):
+        case 0:
+            contents[pick(rng, list(contents))] = bytes(2**26)
+        case 1:
+            contents["document.json"] = b'{"pins":[' + b"{}," * 5_000_000 + b"{}]}"
+        case 2:
+            contents["document.json"] = b"[" * 2**24
+        case 3:
+            count = 1_000_000
+            record["mesh"] = {"vertices": count, "faces": 2 * count}
+            contents |= {"mesh/vertices": bytes(16 * count), "pose/positions": bytes(16 * count)}
+            contents |= {"mesh/faces": bytes(24 * count), "mesh/uv": bytes(8 * count)}
+            contents["document.json"] = json.dumps(record).encode()
+        case 4:
+            record["pins"] = [
+                {"id": i, "face": 0, "weights": [1, 0, 0], "target": [0, 0]} for i in range(10**5)
+            ]
+            contents["document.json"] = json.dumps(record).encode()
+        case _:
+            side = 6000
+            record["picture"] = {"width": side, "height": side}
+            contents["document.json"] = json.dumps(record).encode()
+            header = struct.pack(">IIBBBBB", side, side, 8, 6, 0, 0, 0)
+            pixels = zlib.compress(bytes(side * (1 + 4 * side)), 1)
+            contents["picture.png"] = png([(b"IHDR", header), (b"IDAT", pixels), (b"IEND", b"")])
+    return list(contents.items())
+
+
+def damaged_drawing(rng: Rng, files: list[Entries]) -> bytes:
+    """An .akap file with one to three things wrong."""
+    entries = list(pick(rng, files))
+    method = pick(rng, [zipfile.ZIP_STORED, zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
+    if rng.random() < BOMB_SHARE:
+        return pack(bomb(rng, entries), zipfile.ZIP_DEFLATED)
+    for _ in range(int(rng.integers(1, 3))):
+        index, other = rng.integers(0, len(entries), 2)
+        name, content = entries[index]
+        match int(rng.integers(12)):
+            case 0:
+                return change_bytes(rng, pack(entries, method))
+            case 1:
+                return cut(rng, pack(entries, method))
+            case 2:
+                return change_directory(rng, pack(entries, method))
+            case 3:
+                entries[index] = name, entries[other][1]
+            case 4:
+                entries[index] = name, cut(rng, content)
+            case 5:
+                entries.pop(index)
+            case 6:
+                entries.insert(index, (pick(rng, [name, *NAMES]), content))
+            case 7:
+                entries[index] = name, pick(rng, files)[other % 6][1]
+            case 8 | 9:
+                entries = [(n, change_json(rng, c) if n.endswith(".json") else c) for n, c in entries]
+            case 10:
+                entries = [(n, change_png(rng, c) if n == "picture.png" and c else c) for n, c in entries]
+            case _:
+                change: Callable[..., bytes] = change_numbers if "/" in name else change_bytes
+                entries[index] = name, change(rng, name, content) if "/" in name else change(rng, content)
+        if not entries:
+            break
+    return pack(entries, method)
+
+
+def damaged_pose(rng: Rng, poses: list[bytes]) -> bytes:
+    """A .pose.json file with something wrong."""
+    return pick(rng, [change_json, change_json, change_bytes, cut])(rng, pick(rng, poses))
+
+
+def damaged_recording(rng: Rng, recordings: list[bytes]) -> bytes:
+    """An .akaprec file with something wrong, in one of its lines or among them."""
+    data = pick(rng, recordings)
+    if rng.random() < 0.2:
+        return pick(rng, [change_bytes, cut])(rng, data)
+    lines = data.split(b"\n")
+    for _ in range(int(rng.integers(1, 3))):
+        index, other = rng.integers(0, len(lines), 2)
+        match int(rng.integers(6)):
+            case 0:
+                lines[index], lines[other] = lines[other], lines[index]
+            case 1:
+                lines.pop(index)
+            case 2:
+                lines.insert(index, lines[other])
+            case _:
+                lines[index] = change_json(rng, lines[index])
+        if not lines:
+            break
+    return b"\n".join(lines)
+
+
+# -- what must hold ------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Fuzzer:
+    """Makes a case from each seed. counts: by kind and outcome; slowest: seconds, kind, seed."""
+
+    counts: Counter[str] = field(default_factory=Counter)
+    messages: set[str] = field(default_factory=set)
+    slowest: tuple[float, str, int] = (0.0, "", 0)
+
+    def __post_init__(self) -> None:
+        self.documents = seed_documents()
+        self.files = []
+        for document in self.documents:
+            with zipfile.ZipFile(BytesIO(encode(document))) as archive:
+                self.files.append([(name, archive.read(name)) for name in archive.namelist()])
+        self.poses = [encode_pose(document) for document in self.documents]
+        self.recordings = [seed_recording(document) for document in self.documents]
+
+    def run(self, seed: int) -> None:
+        """One case. Raises what is neither a good file nor an `InputError` of one line."""
+        rng = np.random.default_rng(seed)
+        kind = pick(rng, ["akap", "akap", "akap", "pose", "akaprec"])
+        started = time.process_time()
+        try:
+            getattr(self, f"_open_{kind}")(rng)
+            outcome = "opened"
+        except InputError as error:
+            message = str(error)
+            if "\n" in message or not message or len(message) > 600:
+                raise AssertionError(f"no sentence: {message!r}") from error
+            self.messages.add(message)
+            outcome = "refused"
+        self.counts[f"{kind} {outcome}"] += 1
+        self.slowest = max(self.slowest, (time.process_time() - started, kind, seed))
+
+    def _open_akap(self, rng: Rng) -> None:
+        document = decode(damaged_drawing(rng, self.files))
+        data = encode(document)
+        assert encode(decode(data)) == data
+
+    def _open_pose(self, rng: Rng) -> None:
+        document = pick(rng, self.documents)
+        pose = decode_pose(damaged_pose(rng, self.poses), document.drawing)
+        data = encode_pose(document.with_state(EditState(pose.pins, pose.positions)))
+        assert decode_pose(data, document.drawing).positions.tobytes() == pose.positions.tobytes()
+
+    def _open_akaprec(self, rng: Rng) -> None:
+        recording = decode_recording(damaged_recording(rng, self.recordings))
+        assert decode_recording(recording.to_text().encode()).events == recording.events
+        if rng.random() < 0.02 and len(recording.events) < 100:  # takes much longer than reading
+            try:
+                for _ in replay(recording, pick(rng, self.documents).drawing):
+                    pass
+            except AkapError as error:
+                raise InputError(str(error)) from error
+
+
+def give_up(*_: object) -> None:
+    """For the alarm clock."""
+    raise TimeoutError(f"over {MOST_SECONDS:g} s")
+
+
+def main() -> None:
+    """Run the cases, tell how it went."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--cases", type=int, default=100_000)
+    parser.add_argument("--seed", type=int, default=1, help="of the first case; each next one is one higher")
+    options = parser.parse_args()
+    warnings.simplefilter("error")
+    signal.signal(signal.SIGPROF, give_up)
+    fuzzer, failed = Fuzzer(), 0
+    started = time.process_time()
+    for seed in range(options.seed, options.seed + options.cases):
+        signal.setitimer(signal.ITIMER_PROF, MOST_SECONDS)
+        try:
+            fuzzer.run(seed)
+        except Exception as error:
+            failed += 1
+            print(f"FAILED --seed {seed}: {type(error).__name__}: {error}", flush=True)
+            if options.cases == 1:
+                raise
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        if (seed + 1 - options.seed) % 10_000 == 0:
+            tell(fuzzer, failed, started)
+    tell(fuzzer, failed, started)
+    sys.exit(bool(failed) or peak_memory() > MOST_BYTES)
+
+
+def peak_memory() -> int:
+    """The most that this process has ever had, in bytes."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+
+
+def tell(fuzzer: Fuzzer, failed: int, started: float) -> None:
+    """Print how it went so far."""
+    seconds, kind, seed = fuzzer.slowest
+    count = fuzzer.counts.total() + failed
+    print(f"{count} files, {failed} failed, {time.process_time() - started:.0f} s of work")
+    print(", ".join(f"{name}: {number}" for name, number in sorted(fuzzer.counts.items())))
+    print(f"{len(fuzzer.messages)} different messages; slowest {1000 * seconds:.0f} ms ({kind}, seed {seed})")
+    print(f"peak memory {peak_memory() / 1e6:.0f} MB", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,222 @@
+"""A long session, compressed: thousands of random operations on one drawing, without a window.
+
+Run from the project's root: python benchmarks/session_soak.py [--operations N] [--drawing FILE] [--seed S]
+Presses, drags, lets go, cancels, adds and removes pins, undoes, redoes, goes to another density, bakes,
+carries poses, saves, exports and autosaves as an artist does in two hours, and prints every tenth of the way
+the number of undo entries and the process's memory in MB. In the end the saved file must equal the live
+document, and the second half must have added less than 20 MB. Exit code 1 where that does not hold or
+anything is raised.
+"""
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import argparse
+import gc
+import sys
+import tempfile
+import time
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from akap_editor.editor.document import Document, make_drawing, new_document
+from akap_editor.editor.editor import Editor
+from akap_editor.editor.events import PointerEvent
+from akap_editor.editor.remesh import remeshed
+from akap_editor.editor.session import Session
+from akap_editor.errors import InputError, SolverError
+from akap_editor.io.autosave import Autosave
+from akap_editor.io.export import ExportOptions, export
+from akap_editor.io.images import read_image
+from akap_editor.io.pose_file import load_pose, save_pose
+from akap_editor.io.project_file import encode, load, save
+from akap_editor.io.recordings import write_recording
+from akap_editor.render.offscreen import OffscreenRenderer
+from akap_editor.resources import resource
+
+MOST_GROWTH = 20e6  # bytes, in the second half
+MOST_PINS = 12
+EXPORTS = (".svg", ".glb", ".obj", ".spine.json", ".json")
+
+# Operations and how often each is done, as a share of all.
+SHARES = {
+    "drag": 0.50,
+    "cancelled drag": 0.06,
+    "add pin": 0.12,
+    "remove pin": 0.07,
+    "undo": 0.10,
+    "redo": 0.04,
+    "save": 0.04,
+    "export": 0.02,
+    "reset": 0.02,
+    "pose": 0.02,
+    "density": 0.002,
+    "bake": 0.008,
+}
+
+
+def resident() -> int:
+    """Bytes of memory that the process has now."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+class Soak:
+    """An editor, a hand that does not know what it wants, and a folder for files."""
+
+    def __init__(self, document: Document, folder: Path, seed: int) -> None:
+        self.rng = np.random.default_rng(seed)
+        self.now = 0.0
+        self.editor = Editor(clock=lambda: self.now)
+        self.editor.open(document)
+        self.folder, self.path = folder, folder / "drawing.akap"
+        self.autosave = Autosave(folder / "state", clock=lambda: self.now)
+        self.painter = OffscreenRenderer()
+        self.done: Counter[str] = Counter()
+
+    @property
+    def session(self) -> Session:
+        """The open one."""
+        assert self.editor.session is not None
+        return self.editor.session
+
+    def operate(self) -> None:
+        """One operation, then a short while in which the pose may settle."""
+        name = str(self.rng.choice(list(SHARES), p=list(SHARES.values())))
+        try:
+            getattr(self, "_" + name.replace(" ", "_"))()
+            self._frames(int(self.rng.random() < 0.2))
+        except (InputError, SolverError) as error:  # e.g. what was baked keeps its mesh
+            self.done[f"{name}: {type(error).__name__}"] += 1
+        self.done[name] += 1
+
+    def _frames(self, count: int) -> None:
+        for _ in range(count):
+            self.now += 1 / 60
+            self.editor.advance(budget=0.0)
+            session = self.session
+            self.autosave.watch(session.document, self.editor.modified, session.history.last)
+        self.now += 0.2
+
+    def _screen(self, pin: int) -> tuple[float, float]:
+        return self.editor.pins_on_screen()[pin]
+
+    def _press(self) -> tuple[float, float] | None:
+        pins = [pin.id for pin in self.session.state.pins]
+        if not pins:
+            self._add_pin()
+            return None
+        at = self._screen(int(self.rng.choice(pins)))
+        self.editor.handle_event(PointerEvent("press", at))
+        for _ in range(int(self.rng.integers(1, 5))):
+            at = at[0] + self.rng.normal(0, 12), at[1] + self.rng.normal(0, 12)
+            self.editor.handle_event(PointerEvent("move", at))
+        self._frames(1)
+        return at
+
+    def _drag(self) -> None:
+        at = self._press()
+        if at is not None:
+            self.editor.handle_event(PointerEvent("release", at))
+
+    def _cancelled_drag(self) -> None:
+        self._press()
+        self.editor.cancel()
+
+    def _add_pin(self) -> None:
+        mesh, state = self.session.drawing.mesh, self.session.state
+        if len(state.pins) < MOST_PINS:
+            corners = state.positions[mesh.faces[self.rng.integers(len(mesh.faces))]]
+            x, y = corners.mean(axis=0)
+            self.editor.add_pin((float(x), float(y)))
+
+    def _remove_pin(self) -> None:
+        pins = [pin.id for pin in self.session.state.pins]
+        if pins:
+            self.editor.remove_pins({int(self.rng.choice(pins))})
+
+    def _undo(self) -> None:
+        for _ in range(int(self.rng.integers(1, 4))):
+            self.editor.undo()
+
+    def _redo(self) -> None:
+        self.editor.redo()
+
+    def _reset(self) -> None:
+        self.editor.reset_pose()
+
+    def _bake(self) -> None:
+        self.editor.bake_pose()
+        self.editor.undo()  # else the drawing gets out of shape, bake by bake
+
+    def _pose(self) -> None:
+        path = self.folder / "a.pose.json"
+        save_pose(self.session.document, path)
+        pose = load_pose(path, self.session.drawing)
+        self.editor.apply_pose(pose.pins, pose.positions)
+
+    def _density(self) -> None:
+        drawing = self.session.drawing
+        assert drawing.meshing is not None
+        meshing = replace(drawing.meshing, vertices=int(self.rng.integers(80, 200)))
+        self.editor.cancel()
+        made = remeshed(drawing, meshing)
+        self.session.begin("Change density")
+        self.session.set_drawing(made)
+        self.session.commit()
+
+    def _save(self) -> None:
+        save(self.session.document, self.path)
+        self.editor.mark_saved(self.path)
+
+    def _export(self) -> None:
+        name = f"out{self.rng.choice(EXPORTS)}"
+        export(self.session.document, self.folder / name, ExportOptions(), self.painter)
+
+    def finish(self) -> None:
+        """The file and the recording hold what is there."""
+        self._save()
+        assert encode(load(self.path)) == encode(self.session.document), "the file differs from the document"
+        write_recording(self.session.recording, self.folder / "session.akaprec")
+        self.autosave.close()
+        assert not list((self.folder / "state").glob("*")), "a copy of saved work is left"
+
+
+def main() -> None:
+    """Run it, print a table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--operations", type=int, default=20_000)
+    parser.add_argument("--drawing", type=Path, default=resource("assets", "drawings", "elephant.png"))
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    image = read_image(options.drawing)
+    document = new_document(make_drawing(image, vertices=120, name=options.drawing.stem))
+    with tempfile.TemporaryDirectory() as folder:
+        soak = Soak(document, Path(folder), options.seed)
+        sizes: list[int] = []
+        print("operations  undo entries  events recorded  memory MB  seconds", flush=True)
+        started = time.perf_counter()
+        for count in range(1, options.operations + 1):
+            soak.operate()
+            if count % max(options.operations // 10, 1) == 0:
+                gc.collect()
+                sizes.append(resident())
+                events, depth = len(soak.session.recording.events), soak.session.history.depth
+                seconds = time.perf_counter() - started
+                print(f"{count:10} {depth:13} {events:16} {sizes[-1] / 1e6:10.1f} {seconds:8.0f}", flush=True)
+        soak.finish()
+        recording = (Path(folder) / "session.akaprec").stat().st_size
+    growth = sizes[-1] - sizes[len(sizes) // 2 - 1]
+    print(", ".join(f"{name}: {number}" for name, number in sorted(soak.done.items())))
+    print(f"{soak.now / 60:.0f} minutes; recording {recording / 1e6:.1f} MB; the file equals the document")
+    print(f"memory of the second half {growth / 1e6:+.1f} MB")
+    sys.exit(growth > MOST_GROWTH)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,115 @@
+"""From hand to picture: what one frame takes in is on the screen at its end."""
+
+from imgui_bundle import imgui  # isort: skip
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from akap_editor.app import window as window_module
+from akap_editor.editor.editor import FRAME_BUDGET
+
+
+def one_frame(ui):
+    """(h, w, 3): the picture of exactly one frame."""
+    shots, frames = [], ui.window.frames
+    ui.window.after_draw.append(lambda: shots.append(ui.window.screenshot()))
+    ui.frame()
+    ui.window.after_draw.clear()
+    assert ui.window.frames == frames + 1
+    return shots[0]
+
+
+def canvas(ui, shot):
+    left, top, right, bottom = map(round, ui.editor.canvas)
+    return shot[top:bottom, left:right]
+
+
+class Frames:
+    """What each frame of a drag of pin 3 saw and showed: the pointer, the picture, the steps made so far."""
+
+    def __init__(self, ui, way, steps=()):
+        self.ui, self.steps, self.seen = ui, steps, []
+        x, y = self.start = ui.screen(ui.pin_place(3))
+        self.end = x, y + way
+        ui.window.after_draw.append(self._look)
+        ui.do(self._drag)
+        ui.window.after_draw.clear()
+        self.first = next(i for i, (pointer, *_) in enumerate(self.seen) if pointer == self.end)
+
+    def _look(self):
+        at = imgui.get_io().mouse_pos
+        self.seen.append(((at.x, at.y), self.ui.window.screenshot(), len(self.steps), self.ui.pin_place(3)))
+
+    def _drag(self, hand):
+        x, y = self.start
+        self.ui.begin_drag(hand, self.start)
+        hand.mouse_teleport_to_pos(imgui.ImVec2(x, y - 20))
+        while self.ui.editor.moving:
+            hand.yield_()
+        hand.yield_(3)
+        hand.mouse_teleport_to_pos(imgui.ImVec2(*self.end))
+        hand.yield_(3)
+        hand.mouse_up(0)
+
+
+def test_a_moved_pin_is_seen_moved_in_the_very_frame_that_sees_the_pointer_move(pinned):
+    frames = Frames(pinned, -32)
+    before, earlier, now = (frames.seen[frames.first + i] for i in (-2, -1, 0))
+    np.testing.assert_array_equal(before[1], earlier[1])
+    zoom = pinned.editor.camera.zoom
+    assert np.linalg.norm(now[3] - earlier[3]) * zoom > 6, "most of the way already"
+    x, y = map(round, frames.end)
+    around = slice(y - 30, y + 30), slice(x - 30, x + 30)
+    assert (now[1][around] != earlier[1][around]).any(axis=2).mean() > 0.05
+
+
+def test_a_frame_stops_stepping_when_its_time_is_over(pinned, monkeypatch):
+    """However slow a step is, the next frame, and the next event, come after one step over the budget."""
+    steps, now, step = [], [0.0], pinned.session.step
+
+    def slow():
+        steps.append(now[0])
+        now[0] += 0.6 * FRAME_BUDGET
+        return step()
+
+    clock = SimpleNamespace(perf_counter=lambda: now[0], monotonic=time.monotonic)
+    monkeypatch.setattr(pinned.session, "step", slow)
+    monkeypatch.setattr("akap_editor.editor.editor.time", clock)
+    frames = Frames(pinned, -300, steps)
+    counts = [count for _, _, count, _ in frames.seen[frames.first - 1 :]]
+    assert counts[1] - counts[0] in (1, 2)
+    assert max(np.diff(counts)) == 2
+
+
+@pytest.mark.parametrize("press", ["wheel", "key"])
+def test_view_changes_are_seen_in_the_very_next_frame(ui, press):
+    io = imgui.get_io()
+    io.add_mouse_pos_event(*ui.beside)
+    ui.settle()
+    before = one_frame(ui)
+    if press == "wheel":
+        io.add_mouse_wheel_event(0.0, 1.0)
+    else:
+        io.add_key_event(imgui.Key.m, True)
+    after = one_frame(ui)
+    io.add_key_event(imgui.Key.m, False)
+    assert (canvas(ui, after) != canvas(ui, before)).any(axis=2).mean() > 0.01
+
+
+def test_a_key_that_closes_a_page_does_nothing_else(pinned):
+    pinned.editor.select({2})
+    pinned.space.keys = True
+    pinned.settle()
+    pinned.key(window_module.commands.KEYS.chords[0])
+    assert not pinned.space.keys
+
+
+@pytest.mark.parametrize("changed", [False, True])
+def test_the_title_tells_what_is_open_and_whether_it_is_saved(pinned, changed):
+    if changed:
+        start = pinned.screen(pinned.pin_place(3))
+        pinned.drag(start, (start[0], start[1] - 60))
+    pinned.settle()
+    assert pinned.window._title == f"figure{' *' if changed else ''} - akap-editor"

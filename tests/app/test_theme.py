@@ -1,0 +1,106 @@
+"""Contrast by the formulas of WCAG 2.2, and colors as those see them who see fewer."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+imgui = pytest.importorskip("imgui_bundle").imgui
+
+from akap_editor.app import theme  # noqa: E402
+
+GROUNDS = ("PANEL", "DARK", "POPUP", "FRAME", "HOVER")
+TEXT_AA, PARTS_AA = 4.5, 3.0  # success criteria 1.4.3 and 1.4.11
+
+# Machado, Oliveira and Fernandes 2009, severity 1: linear RGB as seen without one kind of cones.
+DEFICIENCIES = {
+    "protanopia": [
+        [0.152286, 1.052583, -0.204868],
+        [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+    "deuteranopia": [
+        [0.367322, 0.860646, -0.227968],
+        [0.280085, 0.672501, 0.047413],
+        [-0.011820, 0.042940, 0.968881],
+    ],
+    "tritanopia": [
+        [1.255528, -0.076749, -0.178779],
+        [-0.078411, 0.930809, 0.147602],
+        [0.004733, 0.691367, 0.303900],
+    ],
+}
+
+
+def linear(color):
+    values = np.asarray(color[:3])
+    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+
+
+def luminance(rgb):
+    return float(np.clip(rgb, 0, 1) @ (0.2126, 0.7152, 0.0722))
+
+
+def contrast(one, other):
+    low, high = sorted((luminance(linear(one)), luminance(linear(other))))
+    return (high + 0.05) / (low + 0.05)
+
+
+def over(color, ground):
+    """What is seen of a color that lets some of the ground through."""
+    return tuple(color[3] * c + (1 - color[3]) * g for c, g in zip(color[:3], ground[:3], strict=True))
+
+
+def of(name):
+    return getattr(theme, name)
+
+
+def test_black_on_white_is_21_to_1():
+    assert contrast((0, 0, 0), (1, 1, 1)) == pytest.approx(21)
+    assert contrast(theme._hex("#767676"), (1, 1, 1)) == pytest.approx(4.54, abs=0.005)
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("text", ["TEXT", "QUIET", "ACCENT"])
+def test_text(text, ground):
+    assert contrast(of(text), of(ground)) >= TEXT_AA
+
+
+@pytest.mark.parametrize("ground", ["PANEL", "POPUP"])
+def test_text_on_a_chosen_line(ground):
+    chosen = over(theme._COLORS[imgui.Col_.header], of(ground))
+    for text in ("TEXT", "QUIET"):
+        assert contrast(of(text), chosen) >= TEXT_AA
+
+
+@pytest.mark.parametrize("accent", ["ACCENT", "ACCENT_HOVER", "ACCENT_ACTIVE"])
+def test_text_on_the_button_that_enter_presses(accent):
+    assert contrast(theme.DARK, of(accent)) >= TEXT_AA
+
+
+def test_keys_in_menus_which_imgui_writes_as_disabled_text():
+    for ground in ("POPUP", "HOVER"):
+        needed = TEXT_AA if ground == "POPUP" else PARTS_AA
+        assert contrast(theme._COLORS[imgui.Col_.text_disabled], of(ground)) >= needed
+
+
+@pytest.mark.parametrize("part", [imgui.Col_.check_mark, imgui.Col_.slider_grab, imgui.Col_.nav_cursor])
+def test_parts_that_show_a_state(part):
+    ground = theme.ACCENT if part == imgui.Col_.check_mark else theme.FRAME
+    assert contrast(theme._COLORS[part], ground) >= PARTS_AA
+
+
+@pytest.mark.parametrize("ground", ["PANEL", "DARK", "POPUP", "FRAME"])
+def test_lines_that_alone_show_where_something_is(ground):
+    assert contrast(theme.STRONG_LINE, of(ground)) >= PARTS_AA
+    assert contrast(theme._COLORS[imgui.Col_.scrollbar_grab], of(ground)) >= PARTS_AA
+
+
+@pytest.mark.parametrize("name", DEFICIENCIES)
+def test_what_is_on_differs_from_what_is_off_for_everybody(name):
+    """A chosen pin from another one, a tool or a box that is on from one that is off."""
+    seen = np.array(DEFICIENCIES[name])
+    pairs = itertools.product(["ACCENT"], ["DARK", "FRAME", "PANEL"])
+    for on, off in pairs:
+        low, high = sorted(luminance(seen @ linear(of(color))) for color in (on, off))
+        assert (high + 0.05) / (low + 0.05) >= PARTS_AA

@@ -1,0 +1,66 @@
+"""Runs the program in an empty folder, without display."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from akap_editor import cli
+from akap_editor.editor.document import EditState
+from akap_editor.io.documents import open_document
+from akap_editor.io.images import write_png
+from akap_editor.io.project_file import save
+
+Result = tuple[int, str, str]
+
+
+@pytest.fixture
+def run(monkeypatch, capfd, tmp_path) -> Callable[..., Result]:
+    """Calls the program: (exit code, stdout, stderr)."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+
+    def call(*arguments: object) -> Result:
+        monkeypatch.setattr(sys, "argv", ["akap-editor", *map(str, arguments)])
+        code = 0
+        try:
+            cli.main()
+        except SystemExit as leaving:
+            code = leaving.code or 0
+        return code, *capfd.readouterr()
+
+    return call
+
+
+@pytest.fixture
+def picture(tmp_path) -> Path:
+    """A file of 90 × 60 pixels: an orange bar with a soft rim."""
+    y, x = np.mgrid[0:60, 0:90] + 0.5
+    alpha = np.clip(np.minimum(20 - abs(y - 30), 36 - abs(x - 45)), 0, 1)
+    rgba = np.zeros((60, 90, 4), dtype=np.uint8)
+    rgba[..., 3] = np.rint(255 * alpha)
+    rgba[alpha > 0, :3] = (250, 130, 20)
+    write_png(tmp_path / "bar.png", rgba)
+    return tmp_path / "bar.png"
+
+
+@pytest.fixture
+def posed(tmp_path, picture) -> Path:
+    """A saved drawing, sheared out of its frame."""
+    document = open_document(picture)
+    pose = document.state.positions @ [[1.0, 0.4], [0.3, 1.0]] - [20.0, 5.0]
+    save(document.with_state(EditState((), pose, document.state.settings)), tmp_path / "posed.akap")
+    return tmp_path / "posed.akap"
+
+
+def assert_one_line(result: Result, *parts: str) -> None:
+    """Exit code 2, and one line on stderr that holds all ``parts``."""
+    code, _, errors = result
+    assert code == 2
+    assert errors.startswith("akap-editor: ")
+    assert errors.count("\n") == 1
+    for part in parts:
+        assert part in errors

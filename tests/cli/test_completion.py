@@ -1,0 +1,64 @@
+"""Help and shell completion of all commands."""
+
+import click
+import pytest
+from click.shell_completion import BashComplete, FishComplete, ZshComplete
+
+from akap_editor.cli import cli
+
+
+@pytest.fixture
+def complete():
+    """What the shell is offered after some words, as pairs of kind and value."""
+
+    def call(*words, incomplete=""):
+        shell = BashComplete(cli, {}, "akap-editor", "_AKAP_EDITOR_COMPLETE")
+        return [(item.type, item.value) for item in shell.get_completions(list(words), incomplete)]
+
+    return call
+
+
+def test_commands_and_files_come_first(complete):
+    offered = complete()
+    assert {value for kind, value in offered if kind == "plain"} == set(cli.commands)
+    assert ("file", "") in offered
+
+
+def test_a_command_that_has_begun(complete):
+    assert ("plain", "export") in complete(incomplete="ex")
+    assert ("plain", "info") not in complete(incomplete="ex")
+
+
+def test_options_and_their_values(complete):
+    assert ("plain", "--crop") in complete("export", "cat.akap", incomplete="--")
+    assert complete("export", "--crop") == [("plain", "none"), ("plain", "frame"), ("plain", "pose")]
+    assert complete("export", incomplete="ca") == [("file", "ca")]
+
+
+def test_a_file_without_a_command_is_no_dead_end(complete):
+    assert complete("cat.png") is not None
+
+
+@pytest.mark.parametrize("shell", [ZshComplete, FishComplete])
+def test_scripts_of_other_shells_name_the_program(shell):
+    script = shell(cli, {}, "akap-editor", "_AKAP_EDITOR_COMPLETE").source()
+    assert "_AKAP_EDITOR_COMPLETE" in script
+    assert "akap-editor" in script
+
+
+def test_the_shell_gets_its_list_from_the_program(run, monkeypatch):
+    monkeypatch.setenv("_AKAP_EDITOR_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", "akap-editor ")
+    monkeypatch.setenv("COMP_CWORD", "1")
+    code, said, errors = run()
+    assert (code, errors) == (0, "")
+    assert {f"plain,{name}" for name in cli.commands} <= set(said.splitlines())
+
+
+@pytest.mark.parametrize("name", sorted(cli.commands))
+def test_each_command_has_help_with_an_example(run, name):
+    code, said, errors = run(name, "--help")
+    assert (code, errors) == (0, "")
+    assert f"Example: akap-editor {name}" in " ".join(said.split())
+    for parameter in cli.commands[name].params:
+        assert not isinstance(parameter, click.Option) or parameter.help, parameter.name

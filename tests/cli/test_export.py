@@ -1,0 +1,100 @@
+"""`akap-editor export`: what it writes, what it says, and what it refuses."""
+
+import json
+
+import numpy as np
+import pygltflib
+import pytest
+import trimesh
+
+from akap_editor.editor.framing import CROPS, crop_box
+from akap_editor.io.documents import open_document
+from akap_editor.io.export import FORMATS
+from akap_editor.io.images import read_image, write_png
+from akap_editor.render.offscreen import OffscreenRenderer
+
+from .conftest import assert_one_line
+
+SUFFIXES = [each.suffix for each in FORMATS]
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_each_format_is_written_into_a_new_folder(run, posed, tmp_path, suffix):
+    output = tmp_path / "new" / f"cat{suffix}"
+    code, said, errors = run("export", posed, "-o", output)
+    assert (code, errors) == (0, "")
+    assert said.startswith(f"{output}: ")
+    assert said.count("\n") == 1
+    assert output.stat().st_size
+    for path in output.parent.iterdir():
+        assert path.name in said
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_facts_as_json(run, posed, tmp_path, suffix):
+    code, said, _ = run("export", posed, "-o", f"cat{suffix}", "--json")
+    facts = json.loads(said)
+    assert code == 0
+    assert {tmp_path / name for name in facts["files"]} == {*tmp_path.iterdir()} - {
+        posed,
+        tmp_path / "bar.png",
+    }
+    assert facts["files"][-1] == f"cat{suffix}"
+    assert ("width" in facts) == (suffix in (".png", ".svg"))
+
+
+@pytest.mark.parametrize("crop", CROPS)
+@pytest.mark.parametrize("rest", [False, True])
+def test_png_is_what_the_renderer_draws(run, posed, tmp_path, crop, rest):
+    options = ["--scale", "1.5", "--background", "#336699", "--crop", crop, *(["--rest"] if rest else [])]
+    code, said, errors = run("export", posed, "-o", "a.png", *options)
+    assert (code, errors) == (0, "")
+    document = open_document(posed)
+    pose = document.drawing.mesh.vertices if rest else document.state.positions
+    with OffscreenRenderer() as renderer:
+        box = crop_box(document.drawing, pose, crop)
+        expected = renderer.render(document.drawing, pose, box, 1.5, (0x33 / 255, 0x66 / 255, 0x99 / 255))
+    np.testing.assert_array_equal(read_image(tmp_path / "a.png"), expected)
+    assert said == f"a.png: {expected.shape[1]} × {expected.shape[0]} pixels\n"
+
+
+def test_a_picture_is_exported_at_rest(run, picture, tmp_path):
+    assert run("export", picture, "-o", "bar.glb")[0] == 0
+    assert run("export", picture, "-o", "bar.obj")[0] == 0
+    count = len(open_document(picture).drawing.mesh.vertices)
+    assert pygltflib.GLTF2().load("bar.glb").accessors[0].count == count
+    assert len(trimesh.load("bar.obj", process=False, maintain_order=True).vertices) == count
+    assert read_image(picture)[0, 0].tolist() == [0, 0, 0, 0], "it is still there"
+
+
+@pytest.mark.parametrize(
+    ("options", "parts"),
+    [
+        (["-o", "a.jpg"], ["a.jpg", ".png, .svg, .glb, .obj, .spine.json or .json", "got .jpg"]),
+        (["-o", "a"], ["got none"]),
+        (["-o", "a.glb", "--scale", "2"], ["--scale", ".glb"]),
+        (["-o", "a.json", "--crop", "pose"], ["--crop", ".json"]),
+        (["-o", "a.obj", "--background", "#000000"], ["--background", ".obj"]),
+        (["-o", "a.png", "--scale", "0"], ["scale", "positive"]),
+        (["-o", "a.svg", "--scale", "1e4"], ["8192", "smaller scale"]),
+        (["-o", "a.png", "--crop", "tight"], ["--crop", "'tight'"]),
+        (["-o", "a.png", "--background", "red"], ["--background", "#RRGGBB"]),
+        ([], ["--output"]),
+    ],
+)
+def test_bad_options(run, posed, tmp_path, options, parts):
+    before = sorted(tmp_path.iterdir())
+    assert_one_line(run("export", posed, *options), *parts)
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_the_largest_picture(run, tmp_path):
+    """8192 pixels wide, in tiles: a flat color is flat across all seams."""
+    image = np.zeros((12, 256, 4), dtype=np.uint8)
+    image[2:10, 8:248] = (250, 130, 20, 255)
+    write_png(tmp_path / "bar.png", image)
+    code, said, _ = run("export", "bar.png", "-o", "a.png", "--scale", "32", "--crop", "frame")
+    assert (code, said) == (0, "a.png: 8192 × 384 pixels\n")
+    image = read_image(tmp_path / "a.png")
+    assert (image[90:300, 300:7900] == [250, 130, 20, 255]).all()
+    assert not image[:, :190].any()
