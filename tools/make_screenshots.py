@@ -19,9 +19,9 @@ from akap_editor.app.preferences import Preferences
 from akap_editor.app.window import SIZE, Window
 from akap_editor.app.workspace import Palette, Workspace
 from akap_editor.editor.document import Document, make_drawing, new_document
-from akap_editor.editor.editor import PinRequest
-from akap_editor.editor.events import PointerEvent
+from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
 from akap_editor.editor.replay import replay
+from akap_editor.editor.tool_turning import RING
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.recordings import read_recording
 from akap_editor.resources import resource
@@ -104,6 +104,38 @@ def pins(window: Window) -> None:
     chosen = [pin.id for pin in posed_elephant().state.pins][-2:]
     space.editor.select(chosen)
     space.editor.request = PinRequest("values", chosen[-1])
+
+
+@shot("ring")
+def ring(window: Window) -> None:
+    """The drawing while it is turned around a pin, and another pin that holds its angle."""
+    editor = window.space.editor
+    pins = [pin.id for pin in posed_elephant().state.pins]
+    editor.edit("Hold angle", lambda session: session.hold_angles(pins[:1]))
+    x, y = editor.pins_on_screen()[pins[-1]]
+    way = [(RING * np.cos(turn), RING * np.sin(turn)) for turn in np.radians((0, 15, 30, 35))]
+    at = [(x + window.scale * dx, y + window.scale * dy) for dx, dy in way]
+    editor.handle_event(KeyEvent("alt"))
+    editor.handle_event(PointerEvent("move", at[0]))
+    editor.handle_event(PointerEvent("press", at[0], alt=True))
+    for place in at[1:]:
+        editor.handle_event(PointerEvent("move", place, alt=True))
+
+
+@shot("brush")
+def brush(window: Window) -> None:
+    """The back and a tusk of the elephant made stiff, and the brush."""
+    rest(window)
+    editor = window.space.editor
+    editor.chosen_tool = "brush"
+    width, height = posed_elephant().drawing.size
+    for factor, places in (
+        (1000.0, [(0.30, 0.35), (0.36, 0.42)]),
+        (10.0, [(0.70, 0.55), (0.78, 0.50)]),
+    ):
+        dabs = [(x * width, y * height) for x, y in places]
+        editor.edit("Stiffen", lambda session, f=factor, d=dabs: session.paint_stiffness(d, 110.0, f))
+    editor.handle_event(PointerEvent("move", editor.camera.to_screen((0.5 * width, 0.4 * height))))
 
 
 @shot("field")

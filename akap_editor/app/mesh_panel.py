@@ -87,15 +87,12 @@ def _slider(
     imgui.text_colored(ImVec4(*QUIET), label)
     widgets.explain(tooltip)
     imgui.same_line(_LABEL * imgui.get_font_size())
-    imgui.set_next_item_width(-1)
-    moved, chosen = imgui.slider_float(
-        f"##{label}", value, low, high, text, imgui.SliderFlags_.always_clamp | flags
-    )
-    if imgui.is_item_deactivated():
+    moved, chosen, released = widgets.slider(f"##{label}", value, (low, high), text, flags)
+    if released:
         space.remesher.let_go()
     if moved:
         space.notice = ""
-    return float(chosen) if moved else None
+    return chosen if moved else None
 
 
 def _rounded(count: float) -> int:

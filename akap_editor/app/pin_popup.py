@@ -5,7 +5,7 @@ import math
 from imgui_bundle import ImVec2, imgui
 
 from ..editor.document import Pin
-from ..editor.editor import PinRequest
+from ..editor.events import PinRequest
 from ..editor.tool_turning import set_angle
 from . import commands, widgets
 from .commands import Command

@@ -111,13 +111,12 @@ def _mixer(space: Workspace, scale: float) -> None:
     other, end = imgui.combo("##mix to", end, names)
     if changed or other:
         mixer.start, mixer.end, mixer.share = names[start], names[end], 0.0
-    imgui.set_next_item_width(-1)
-    moved, share = imgui.slider_float("##mix", 100 * mixer.share, 0, 100, "%.0f %% of the way")
-    widgets.explain("The pose between the two: every edge turns and grows at a constant rate")
+    tooltip = "The pose between the two: every edge turns and grows at a constant rate"
+    moved, share, released = widgets.slider("##mix", 100 * mixer.share, (0, 100), "%.0f %%", tooltip=tooltip)
     if moved:
         mixer.share = min(max(share / 100, 0.0), 1.0)
         mixer.show(session)
-    if imgui.is_item_deactivated_after_edit():
+    if released:
         session.leave()
         pose = mixer.pose(session)
         if pose is not None:

@@ -134,11 +134,14 @@ def export(space: Workspace, path: Path) -> None:
     def work() -> None:
         export_kind(path)
         frames = space.player.frames(EXPORT_FPS)
-        boxes = np.array([frame_box(drawing, [pose]) for drawing, pose in frames])
+        boxes = np.array([frame_box(frame.drawing, [frame.pose]) for frame in frames])
         low, high = boxes.min(axis=0), boxes.max(axis=0)
         box = (int(low[0]), int(low[1]), int(high[2]), int(high[3]))
         scale = min(1.0, EXPORT_SIZE / max(box[2] - box[0], box[3] - box[1]))
-        pictures = (space.exporter.render(drawing, pose, box, scale) for drawing, pose in frames)
+        pictures = (
+            space.exporter.render(frame.drawing, frame.pose, box, scale, order=frame.order)
+            for frame in frames
+        )
         written = export_frames(path, pictures, EXPORT_FPS)
         space.notice = f"Exported {path.name}, {len(frames)} frames, {written}"
 

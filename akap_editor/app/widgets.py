@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document import Settings
 from .commands import Command
-from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE
+from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT
 from .workspace import Workspace
 
 _BAR = (
@@ -49,6 +49,29 @@ def row(label: str, value: str, tooltip: str = "") -> None:
         imgui.get_content_region_avail().x - imgui.calc_text_size(value).x + imgui.get_cursor_pos_x()
     )
     imgui.text(value)
+
+
+def slider(
+    name: str, value: float, limits: tuple[float, float], form: str, flags: int = 0, tooltip: str = ""
+) -> tuple[bool, float, bool]:
+    """A slider with its number beside it; whether it was moved, its value, and whether it was let go changed.
+
+    ImGui writes the number where the knob is.
+    """
+    room = imgui.calc_text_size(form % limits[1]).x + 0.6 * imgui.get_font_size()
+    imgui.set_next_item_width(-room)
+    typing = imgui.internal.temp_input_is_active(imgui.get_id(name))
+    imgui.push_style_color(imgui.Col_.text, ImVec4(*TEXT) if typing else ImVec4(0, 0, 0, 0))
+    moved, value = imgui.slider_float(name, value, *limits, form, imgui.SliderFlags_.always_clamp | flags)
+    imgui.pop_style_color()
+    released = imgui.is_item_deactivated_after_edit()
+    explain(tooltip)
+    imgui.same_line(0, 0)
+    text = form % value
+    left = imgui.get_content_region_avail().x - imgui.calc_text_size(text).x
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + left)
+    imgui.text(text)
+    return bool(moved), float(value), bool(released)
 
 
 def quiet(text: str) -> None:

@@ -108,16 +108,17 @@ def replay_recording(
     frames = _bend(recording, drawing, change, times)
     if ping_pong:
         frames += frames[-2:0:-1]
-    boxes = [frame_box(bent, [pose]) for bent, pose in frames]
+    boxes = [frame_box(frame.drawing, [frame.pose]) for frame in frames]
     box = (*np.min(boxes, axis=0)[:2].tolist(), *np.max(boxes, axis=0)[2:].tolist())
     scale = min(1.0, size / max(box[2] - box[0], box[3] - box[1]))
     make_folder_of(output)
     with OffscreenRenderer() as renderer:
         with click.progressbar(frames, label="Drawing") as bar:
-            pictures = (renderer.render(bent, each, box, scale, behind) for bent, each in bar)
+            pictures = (renderer.render(at.drawing, at.pose, box, scale, behind, at.order) for at in bar)
             written = export_frames(output, pictures, fps, plays, sheet)
         if pose is not None:
-            write_picture(pose, renderer.render(*frames[-1], background=behind))
+            last_frame = frames[-1]
+            write_picture(pose, renderer.render(*last_frame[:2], background=behind, order=last_frame.order))
             click.echo(f"Wrote {pose}, the last pose")
     click.echo(f"Wrote {output}, {len(frames)} frames, {written}")
 

@@ -52,6 +52,17 @@ def stopped(mesh: TriMesh, pins: Sequence[Pin], positions: Floats) -> tuple[Pin,
     )
 
 
+def holding(
+    mesh: TriMesh, pins: Sequence[Pin], positions: Floats, ids: Container[int], hold: bool
+) -> tuple[Pin, ...]:
+    """Pins of which those with these ids hold the angles that they have in a pose (n, 2), or none."""
+    angles = pin_angles(mesh, pins, positions, ids if hold else ())
+    return tuple(
+        replace(pin, angle=float(angle) if hold else None) if pin.id in ids else pin
+        for pin, angle in zip(pins, angles, strict=True)
+    )
+
+
 class Turns:
     """Counts full turns, of which a pose says nothing, from one step to the next."""
 

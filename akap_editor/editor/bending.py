@@ -1,5 +1,6 @@
 """What bends a drawing as its state says, and how far one step goes."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,15 +13,15 @@ from .document import EditState
 
 REACH = 0.02  # longest way of a pin in one step, as a share of √area: no step keeps the caller waiting
 MOST_TURN = 0.2  # radians that a pin turns in one step
-WOBBLE = 0.1  # pixels: a pose so near to that of two steps ago only goes to and fro
+NEAR = 0.25  # steps to where pins should be
+AWAY = 0.02  # radians
 
 
 class Bending:
     """The deformer of a mesh, made for the settings and the stiffness of a state, with that state's pins.
 
     turns: full turns of pins since it was told to forget them; last_way: of pins that moved, the pose before
-    and their velocities, for `fields`; wobbles: whether the last step only led back to where the one before
-    it began, as where pins hold angles that cannot all be met. Raises InputError on settings that no method knows.
+    and their velocities, for `fields`. Raises InputError on settings that no method knows.
     """
 
     def __init__(self, mesh: TriMesh, state: EditState) -> None:
@@ -35,8 +36,6 @@ class Bending:
         self.holds_angles = holds_angles(method)
         self.turns = Turns()
         self.last_way: tuple[Floats, Floats] | None = None
-        self.wobbles = False
-        self._last_two: tuple[Floats, ...] = ()
         self._reach = REACH * float(np.sqrt(mesh.rest_areas.sum()))
 
     def fits(self, mesh: TriMesh, state: EditState) -> bool:
@@ -71,17 +70,26 @@ class Bending:
         goals = state.targets if share == 1.0 else here + share * (state.targets - here)
         angles = (state.angles - (1.0 - share) * turn,) if np.isfinite(turn).any() else ()
         result: StepResult = self.deformer.step(state.positions, goals, *angles)
-        self.wobbles = bool(angles) and self._returned(result.positions)
-        self._last_two = self._last_two[-1:] + (result.positions,)
-        return result
+        if not angles or not self._leads_away(state, result.positions):
+            return result
+        pose = state.positions
+        return StepResult(pose, result.field, result.report, lambda _: pose)
 
-    def _returned(self, positions: Floats) -> bool:
-        """Whether a pose (n, 2) is that of two steps ago."""
-        return len(self._last_two) == 2 and bool(np.abs(positions - self._last_two[0]).max() < WOBBLE)
+    def holding(self, state: EditState) -> bool:
+        """Whether pins hold angles."""
+        return self.holds_angles and any(pin.angle is not None for pin in state.pins)
 
-    def fields(self) -> tuple[Floats, Floats] | None:
-        """U_opt and U°, (n, 2) each, of the last way of pins; None without one."""
-        if self.last_way is None:
+    def _leads_away(self, state: EditState, positions: Floats) -> bool:
+        """Whether pins near their places and angles are turned away from those in a new pose (n, 2).
+
+        Fields and memory may pull to and fro there; such a step is not taken.
+        """
+        after = replace(state, positions=positions)
+        return self.steps_left(state) < NEAR and self.turn_error(after) > self.turn_error(state) + AWAY
+
+    def fields(self, pins: int) -> tuple[Floats, Floats] | None:
+        """U_opt and U°, (n, 2) each, of the last way of so many pins; None without one."""
+        if self.last_way is None or len(self.last_way[1]) != pins:
             return None
         optimal, smooth = self.deformer.vector_fields(*self.last_way)
         return optimal, smooth

@@ -67,9 +67,11 @@ class Beside:
 
     @staticmethod
     def _aim(own: Session, pins: tuple[Pin, ...]) -> None:
-        own.hold_angles([pin.id for pin in pins if pin.angle is None], False)
+        held = {pin.id: pin.angle for pin in pins if pin.angle is not None}
+        if freed := {pin.id for pin in own.state.pins if pin.angle is not None} - set(held):
+            own.hold_angles(freed, False)
         own.set_targets({pin.id: (float(pin.target[0]), float(pin.target[1])) for pin in pins})
-        own.turn_pins({pin.id: pin.angle for pin in pins if pin.angle is not None})
+        own.turn_pins(held)
 
 
 def _place(pin: Pin) -> tuple[object, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from ..errors import InputError
 from ..geometry.checks import Floats, Ints, frozen
 from ..geometry.mesh import MeshPoints, TriMesh
 
@@ -19,6 +20,14 @@ if TYPE_CHECKING:
 MOST = 999  # as far in front or behind as a pin can be
 STEPS = 4  # levels in a depth of 1: faces of one level keep the order of the mesh, limbs as wholes
 _NEAR = 1e-6  # share of the size of the mesh: nearer than this to a pin its depth is that of the pin
+
+
+def check_depths(depths: Mapping[int, int]) -> None:
+    """Raise InputError on depths, by a pin's id, that are out of range."""
+    for pin_id, depth in depths.items():
+        if not -MOST <= depth <= MOST:
+            expected = f"a whole number from -{MOST} to {MOST}"
+            raise InputError(f"depth of pin {pin_id}: expected {expected}, got {depth}")
 
 
 def face_order(mesh: TriMesh, pins: Sequence[Pin]) -> Ints | None:

@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -10,7 +9,7 @@ from ..errors import SolverError
 from ..geometry.checks import Floats
 from .camera import Camera, Point, fit
 from .document import Document, Pin, Settings
-from .events import Event, KeyEvent, PointerEvent, ScrollEvent
+from .events import Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
 from .history import Entry
 from .poses import free_name
 from .session import Session
@@ -25,14 +24,6 @@ NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
 SERIES_PAUSE = 1.0  # seconds: arrow keys pressed in a row without a longer pause are one gesture
 ARROWS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}
 HELD_KEYS = ("space", "alt", "shift", "h")  # what they mean lasts as long as they are held
-
-
-@dataclass(frozen=True)
-class PinRequest:
-    """What the pointer asked the window to open for a pin."""
-
-    kind: Literal["values", "menu"]
-    pin: int
 
 
 class Editor:

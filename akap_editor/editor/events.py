@@ -40,4 +40,12 @@ class KeyEvent:
     shift: bool = False
 
 
+@dataclass(frozen=True)
+class PinRequest:
+    """What the pointer asked the window to open for a pin."""
+
+    kind: Literal["values", "menu"]
+    pin: int
+
+
 Event = PointerEvent | ScrollEvent | KeyEvent

@@ -5,9 +5,10 @@ from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..geometry.checks import Floats
+from .depth import face_order
 from .document import Drawing, EditState
 from .session import Session
+from .timeline import Frame
 
 LONGEST_PAUSE = 1.0  # seconds: pauses between edits are not shown for longer
 MOST_BYTES = 2**28  # of poses; beyond, every second of the older ones is forgotten
@@ -151,9 +152,12 @@ class Player:
         high = high if end is None else min(end, self.duration)
         self.cut = (low, high) if low < high else None
 
-    def frames(self, fps: float) -> list[tuple[Drawing, Floats]]:
-        """Drawing and pose (n, 2) of each frame of the range."""
+    def frames(self, fps: float) -> list[Frame]:
+        """What is seen in each frame of the range."""
         start, end = self.range
         count = int((end - start) * fps + 1e-6)
         shots = [self.shot(start + number / fps) for number in range(count + 1)]
-        return [(shot.drawing, shot.state.positions) for shot in shots]
+        return [
+            Frame(shot.drawing, shot.state.positions, face_order(shot.drawing.mesh, shot.state.pins))
+            for shot in shots
+        ]

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 from ..deform.deformer import StepResult
 from ..errors import InputError, SolverError
 from ..geometry.checks import Floats, as_number, as_points
-from .angles import MOST_ANGLE, pin_angles, stopped
+from .angles import MOST_ANGLE, holding, pin_angles, stopped
 from .bake import baked_state
 from .bending import Bending
-from .depth import MOST, depth_at
+from .depth import check_depths, depth_at
 from .document import Document, Drawing, EditState, Pin, Settings
 from .event_log import EventLog
 from .history import History
@@ -26,6 +26,7 @@ from .stiffness import as_stiffness, coverage, painted
 PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
 STILL = 0.02  # pixels: a step that moves no vertex farther has come to rest
 MOST_SETTLING = 400  # steps after the last change of a target, should a pose never come to rest
+MOST_SETTLING_TURNED = 20  # those once pins that hold angles are near: angles are met softly
 ANGLE_TOLERANCE = 0.002  # radians: a pin turned more nearly than this has arrived
 
 Target = tuple[float, float]
@@ -101,7 +102,7 @@ class Session:
 
     @property
     def turns(self) -> bool:
-        """Whether pins can hold angles, which depends on the method."""
+        """Whether the method lets pins hold angles."""
         return self._bending.holds_angles
 
     def pin_angle(self, pin_id: int) -> float:
@@ -203,10 +204,7 @@ class Session:
 
     def set_depths(self, depths: Mapping[int, int]) -> None:
         """Bring pins to the front or back, by id; moves nothing. Raises InputError on depths out of range."""
-        for pin_id, depth in depths.items():
-            if not -MOST <= depth <= MOST:
-                expected = f"a whole number from -{MOST} to {MOST}"
-                raise InputError(f"depth of pin {pin_id}: expected {expected}, got {depth}")
+        check_depths(depths)
         self.set_pins(tuple(replace(pin, depth=depths.get(pin.id, pin.depth)) for pin in self.state.pins))
 
     def set_pins(self, pins: tuple[Pin, ...]) -> None:
@@ -222,10 +220,7 @@ class Session:
 
     def set_targets(self, targets: Mapping[int, Target]) -> None:
         """Say where pins should be, by id; `step` moves them. Raises InputError on unknown ids or NaN."""
-        known = {pin.id for pin in self.state.pins}
-        for pin_id in targets:
-            if pin_id not in known:
-                raise InputError(f"targets: expected ids of pins {sorted(known)}, got {pin_id}")
+        self._check_ids("targets", targets)
         places = dict(zip(targets, as_points(list(targets.values()), "targets", len(targets)), strict=True))
         pins = tuple(
             replace(pin, target=places[pin.id]) if pin.id in places else pin for pin in self.state.pins
@@ -237,13 +232,11 @@ class Session:
     def turn_pins(self, angles: Mapping[int, float]) -> None:
         """Let pins hold angles, by id, in radians from rest; `step` turns the drawing around them.
 
-        Beyond π they are full turns where that is the nearer way from how far it is turned already. Raises
-        InputError on angles out of range.
+        In one gesture full turns count. Raises InputError on unknown ids and angles out of range.
         """
-        held = {
-            pin_id: as_number(angle, f"angle of pin {pin_id}", -MOST_ANGLE, MOST_ANGLE)
-            for pin_id, angle in angles.items()
-        }
+        self._check_ids("angles", angles)
+        limits = -MOST_ANGLE, MOST_ANGLE
+        held = {pin: as_number(angle, f"angle of pin {pin}", *limits) for pin, angle in angles.items()}
         pins = tuple(replace(pin, angle=held.get(pin.id, pin.angle)) for pin in self.state.pins)
         self._set_state(replace(self.state, pins=pins))
         self._begin_settling()
@@ -251,11 +244,7 @@ class Session:
 
     def hold_angles(self, ids: Iterable[int], hold: bool = True) -> None:
         """Let pins hold the angles that they have, or turn as they will again; moves nothing."""
-        mesh, chosen = self.drawing.mesh, set(ids)
-        found = pin_angles(mesh, self.state.pins, self.state.positions, chosen if hold else ())
-        angles = zip(self.state.pins, found.tolist(), strict=True)
-        held = {pin.id: angle if hold else None for pin, angle in angles if pin.id in chosen}
-        self.set_pins(tuple(replace(pin, angle=held.get(pin.id, pin.angle)) for pin in self.state.pins))
+        self.set_pins(holding(self.drawing.mesh, self.state.pins, self.state.positions, set(ids), hold))
 
     def hold_pins(self) -> None:
         """Before a new drag: pins that were stopped on their way, by undo or Escape, stay where they are."""
@@ -319,9 +308,8 @@ class Session:
 
     def forget_pose(self, name: str) -> None:
         """Forget a pose, if there is one of that name."""
-        self._set_state(
-            replace(self.state, poses=tuple(pose for pose in self.state.poses if pose.name != name))
-        )
+        others = tuple(pose for pose in self.state.poses if pose.name != name)
+        self._set_state(replace(self.state, poses=others))
         self._record("forget", name=name)
 
     def go_back(self, state: EditState, line: int) -> None:
@@ -344,17 +332,16 @@ class Session:
         self._set_state(replace(self.state, positions=result.positions))
         self._record("step")
         moved = float(np.abs(result.positions - before).max())
-        turned = self._bending.turn_error(self.state) < ANGLE_TOLERANCE
-        arrived = self.pin_error() < PIN_TOLERANCE and turned
-        still = self._bending.wobbles or moved < (STILL if arrived else 0.1 * STILL)
-        self._settling = 0 if still else max(self._settling - 1, 0)
+        arrived = self.pin_error() < PIN_TOLERANCE and self._bending.turn_error(self.state) < ANGLE_TOLERANCE
+        still = moved < (STILL if arrived else 0.1 * STILL)
+        most = MOST_SETTLING_TURNED if self.near and self._bending.holding(self.state) else self._settling
+        self._settling = 0 if still else max(min(self._settling - 1, most), 0)
         self.last_step = result
         return result
 
     def fields(self) -> tuple[Floats, Floats] | None:
         """U_opt and U°, (n, 2) each, of the last step that moved pins; None for a method without fields."""
-        way = self.last_way
-        return None if way is None or len(way[1]) != len(self.state.pins) else self._bending.fields()
+        return self._bending.fields(len(self.state.pins))
 
     @property
     def last_way(self) -> tuple[Floats, Floats] | None:
@@ -385,12 +372,19 @@ class Session:
         self._set_state(state)
         self._settling = 0
 
+    def _check_ids(self, name: str, ids: Iterable[int]) -> None:
+        known = [pin.id for pin in self.state.pins]
+        for pin_id in ids:
+            if pin_id not in known:
+                raise InputError(f"{name}: expected ids of pins {sorted(known)}, got {pin_id}")
+
     def _begin_settling(self) -> None:
         self._settling = MOST_SETTLING + int(self._bending.steps_left(self.state))
 
     def _put(self, pose: Floats) -> None:
-        pins = stopped(self.drawing.mesh, self.state.pins, pose)
-        self._set_state(replace(self.state, pins=pins, positions=pose))
+        self._set_state(
+            replace(self.state, pins=stopped(self.drawing.mesh, self.state.pins, pose), positions=pose)
+        )
         self._settling = 0
 
     def _set_state(self, state: EditState) -> None:

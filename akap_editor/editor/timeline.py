@@ -4,18 +4,30 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import groupby
 from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 
 from ..deform.deformer import StepResult
 from ..errors import InputError
-from ..geometry.checks import Floats, as_number
+from ..geometry.checks import Floats, Ints, as_number
+from .depth import face_order
 from .document import Drawing
 from .inbetween import Inbetween
 from .recording import LATEST, Recording
 from .replay import Moment
 
-Frame = tuple[Drawing, Floats]  # what is bent, and its pose (n, 2)
+
+class Frame(NamedTuple):
+    """What is seen at one moment: a drawing, its pose (n, 2), and the order (m,) in which faces are drawn.
+
+    None is the order of the mesh.
+    """
+
+    drawing: Drawing
+    pose: Floats
+    order: Ints | None = None
+
 
 LONGEST_MOVE = 0.25  # seconds: what moved after a longer pause moved in the last of it
 
@@ -86,7 +98,7 @@ class Motion:
     def __init__(self, drawing: Drawing, moments: Iterable[Moment]) -> None:
         self._drawing = drawing
         self._groups = (list(group) for _, group in groupby(moments, key=attrgetter("time")))
-        rest = drawing, drawing.mesh.vertices
+        rest = Frame(drawing, drawing.mesh.vertices)
         self._stretch = _Stretch(0.0, 0.0, rest, (), rest)
         self._inbetween: tuple[Drawing, Inbetween] | None = None
 
@@ -99,9 +111,10 @@ class Motion:
 
     def _next(self, group: list[Moment]) -> _Stretch:
         before, last = self._stretch.after, group[-1]
-        drawing, pose = before
-        after = last.state.drawing or self._drawing, last.state.positions
-        if after[0] is not drawing or any(moment.jumped for moment in group):
+        drawing, pose, _ = before
+        bent = last.state.drawing or self._drawing
+        after = Frame(bent, last.state.positions, face_order(bent.mesh, last.state.pins))
+        if bent is not drawing or any(moment.jumped for moment in group):
             return _Stretch(last.time, last.time, before, (), after)
         moved: list[tuple[Floats, StepResult, float]] = []
         for moment in group:
@@ -120,14 +133,14 @@ class Motion:
         if time <= stretch.start:
             return stretch.before
         local = (time - stretch.start) / (stretch.end - stretch.start)
-        drawing = stretch.before[0]
+        drawing, order = stretch.after.drawing, stretch.after.order
         for began, step, share in stretch.steps:  # noqa: B007
             if local <= share:
                 break
             local -= share
         local = min(local / share, 1.0)
         if step.flow is not None:
-            return drawing, step.at(local)
+            return Frame(drawing, step.at(local), order)
         if self._inbetween is None or self._inbetween[0] is not drawing:
             self._inbetween = drawing, Inbetween(drawing.mesh)
-        return drawing, self._inbetween[1].between(began, step.positions)(local)
+        return Frame(drawing, self._inbetween[1].between(began, step.positions)(local), order)

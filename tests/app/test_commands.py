@@ -126,7 +126,7 @@ CASES = {
     "Smaller Brush": (with_tool("brush"), lambda ui: ui.editor.brush.radius < Brush().radius),
     "Larger Brush": (with_tool("brush"), lambda ui: ui.editor.brush.radius > Brush().radius),
     "Remove All Stiffness": (stiffened, lambda ui: ui.session.state.stiffness is None),
-    "Hold Angle": (one_selected, lambda ui: [pin.angle for pin in ui.pins] == [None, 0.0, None]),
+    "Hold Angle": (one_selected, lambda ui: [pin.angle is None for pin in ui.pins] == [True, False, True]),
 }
 
 
@@ -166,6 +166,7 @@ def test_by_key(pinned, command, chord):
 BUTTONS = [
     commands.PIN_TOOL,
     commands.HAND_TOOL,
+    commands.BRUSH_TOOL,
     commands.UNDO,
     commands.REDO,
     commands.REMOVE,

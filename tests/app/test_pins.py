@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app import commands
-from akap_editor.editor.editor import PinRequest
+from akap_editor.editor.events import PinRequest
 
 Key = imgui.Key
 

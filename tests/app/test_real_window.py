@@ -382,3 +382,34 @@ def test_pins_by_keys_alt_and_the_right_button(start, picture):
 
     program.hand("mousemove", *pins[0], "keydown", "alt", "click", 1, "keyup", "alt", "mousemove", *CORNER)
     program.until(lambda shot: (canvas(shot) == bare).all(), "the pin is cut off")
+
+
+def test_an_alt_drag_of_the_ring_turns_the_drawing_and_the_pin_stays(start, picture, tmp_path):
+    alpha = read_image(picture)[..., 3]
+    program = start(picture)
+    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    pins = np.rint(far_apart(alpha, 2) * zoom + offset).astype(int).tolist()
+    for pin in pins:
+        program.click(pin)
+    pinned = canvas(program.grab())
+    x, y = pins[0]
+    turns = np.radians(np.linspace(0, 60, 13))
+    ring = [(round(x + 28 * np.cos(turn)), round(y + 28 * np.sin(turn))) for turn in turns]
+    program.hand("mousemove", *ring[0], "keydown", "alt", "mousedown", 1)
+    for place in ring[1:]:
+        program.hand("mousemove", *place)
+        time.sleep(0.02)
+    program.hand("mouseup", 1, "keyup", "alt", "mousemove", *CORNER)
+    turned = program.until(lambda shot: (canvas(shot) != pinned).any(), "the drawing has turned")
+    saved = tmp_path / "turned.akap"
+    program.key("ctrl+shift+s", "the file dialog is open")
+    program.hand("type", "--delay", 10, str(saved))
+    program.press("Return")
+    program.until(lambda _: saved.is_file(), f"the file is saved; see {program.keep(turned)}")
+    program.press("ctrl+q")
+    assert program.ended() == 0
+    state = akap_editor.load(saved).state
+    held, free = (pin.angle for pin in state.pins)
+    assert np.degrees(held) == pytest.approx(60, abs=4)
+    assert free is None
+    assert np.linalg.norm(state.targets - (pins - offset) / zoom, axis=1).max() * zoom < 2.0

@@ -181,7 +181,9 @@ def test_other_methods_keep_it_and_bend_without(pinned):
     assert pinned.state.stiffness is factors
 
 
-def test_a_replay_paints_the_same_on_the_same_mesh_and_the_same_place_on_another(pinned, drawing, finer_drawing):
+def test_a_replay_paints_the_same_on_the_same_mesh_and_the_same_place_on_another(
+    pinned, drawing, finer_drawing
+):
     stroke(pinned, NECK)
     pinned.editor.chosen_tool = "pins"
     pinned.drag(pinned.where(3), (90.0, 60.0))

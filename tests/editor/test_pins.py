@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.document import new_document
-from akap_editor.editor.editor import PinRequest
-from akap_editor.editor.events import KeyEvent, PointerEvent
+from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
 from akap_editor.editor.replay import replay
 from akap_editor.editor.tool import DRAG_DISTANCE
 from akap_editor.errors import InputError

@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from akap_editor.editor.document import Settings
+from akap_editor.editor.document import Settings, new_document
 from akap_editor.editor.recording import Recording
 from akap_editor.editor.replay import replay
+from akap_editor.editor.session import Session
 from akap_editor.editor.timeline import EASINGS, LONGEST_MOVE, Motion, frame_times, shorten_pauses
 from akap_editor.errors import InputError
 
@@ -15,7 +18,7 @@ def motion(recording, drawing, change=None):
 
 
 def poses(recording, drawing, times, change=None):
-    return [pose for _, pose in motion(recording, drawing, change).frames(times)]
+    return [frame.pose for frame in motion(recording, drawing, change).frames(times)]
 
 
 @pytest.fixture
@@ -123,3 +126,18 @@ def test_frame_times():
 def test_bad_frame_times_are_named(options, name):
     with pytest.raises(InputError, match=f"^{name}: expected"):
         frame_times(**{"start": 0.0, "end": 1.0, **options})
+
+
+def test_frames_are_drawn_in_the_order_that_depths_ask_for(drawing):
+    session = Session(new_document(drawing))
+    session.begin("Pins")
+    left, right = drawing.mesh.vertices.min(axis=0), drawing.mesh.vertices.max(axis=0)
+    middle = drawing.mesh.vertices[drawing.mesh.faces].mean(axis=1)
+    near = [middle[np.argmin(np.hypot(*(middle - place).T))] for place in (left, right)]
+    ids = [session.add_pin(tuple(place)) for place in near]
+    session.set_pins(tuple(replace(pin, depth=2 * (pin.id == ids[0])) for pin in session.state.pins))
+    session.commit()
+    recorded = session.recording
+    frames = list(motion(recorded, drawing, None).frames([0.0, recorded.duration + 1.0]))
+    assert frames[0].order is None
+    assert frames[1].order.tolist() == session.document.order.tolist()

@@ -223,3 +223,24 @@ def test_a_second_method_beside_turns_as_well(pinned):
     set_angle(pinned.editor, 2, None)
     beside.follow(pinned.session)
     assert beside.session.state.pin(2).angle is None
+
+
+def test_held_angles_come_to_rest_soon_also_where_parts_are_stiff(pinned):
+    pinned.session.begin("Stiffen")
+    pinned.session.paint_stiffness([(62.0, 40.0)], 20.0, 300.0)
+    pinned.session.commit()
+    pinned.session.begin("Turn")
+    pinned.session.turn_pins({1: 1.0, 3: -0.8})
+    steps = 0
+    while pinned.session.moving:
+        pinned.session.step()
+        steps += 1
+    pinned.session.commit()
+    assert steps < 60
+    assert pinned.session.pin_angle(1) == pytest.approx(1.0, abs=2 * NEAR)
+    assert pinned.session.pin_angle(3) == pytest.approx(-0.8, abs=2 * NEAR)
+
+
+def test_unknown_pins_cannot_be_turned(pinned):
+    with pytest.raises(InputError, match=r"angles: expected ids of pins \[1, 2, 3\], got 7"):
+        pinned.session.turn_pins({7: 0.1})
