@@ -20,7 +20,7 @@ run:
 # Without DISPLAY the tests open their windows on an Xvfb of their own, never on the user's screen.
 test:
 	@sh tools/setup.sh test
-	env -u DISPLAY -u WAYLAND_DISPLAY .venv/bin/python -m pytest $(ARGS)
+	env -u DISPLAY -u WAYLAND_DISPLAY .venv/bin/python -m pytest -n auto --dist worksteal $(ARGS)
 
 lint:
 	@sh tools/setup.sh lint

@@ -10,7 +10,6 @@ from ..editor.tool_brush import LARGEST, SMALLEST
 from . import commands, widgets
 from .workspace import Workspace
 
-_EVEN = imgui.SliderFlags_.always_clamp | imgui.SliderFlags_.logarithmic
 _LABELS = 6.0  # times the font's size: width of the labels
 
 
@@ -41,5 +40,4 @@ def _slider(label: str, value: float, limits: tuple[float, float], form: str, to
     imgui.text(label)
     widgets.explain(tooltip)
     imgui.same_line(_LABELS * imgui.get_font_size())
-    imgui.set_next_item_width(-1)
-    return float(imgui.slider_float(f"##{label}", value, *limits, form, _EVEN)[1])
+    return widgets.slider(f"##{label}", value, limits, form, imgui.SliderFlags_.logarithmic, tooltip)[1]
