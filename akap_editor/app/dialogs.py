@@ -13,8 +13,9 @@ from imgui_bundle import portable_file_dialogs as native
 from .. import __version__
 from . import export_dialog, keys_overlay, widgets
 from .recovery import Recovery
+from .requests import FileRequest
 from .theme import ACCENT, QUIET
-from .workspace import FileRequest, Workspace
+from .workspace import Workspace
 
 
 def has_native_dialogs() -> bool:

@@ -4,7 +4,8 @@ from functools import partial
 from pathlib import Path
 
 from ..io.pose_file import POSE_SUFFIX, load_pose, save_pose
-from .workspace import FileRequest, Workspace
+from .requests import FileRequest
+from .workspace import Workspace
 
 
 def ask_save(space: Workspace) -> None:

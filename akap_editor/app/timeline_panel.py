@@ -10,8 +10,9 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..editor.framing import frame_box
 from ..io.frames import export_frames, export_kind
 from . import widgets
+from .requests import FileRequest
 from .theme import ACCENT, FRAME, QUIET, TEXT, packed
-from .workspace import FileRequest, Workspace
+from .workspace import Workspace
 
 HEIGHT = 44  # design points, as all sizes here
 EXPORT_FPS = 30

@@ -34,7 +34,7 @@ _THINNEST = 1e-2  # a face may not shrink below this share of its rest area in o
 # shares of √area. Errors of the method without memory add up along the way, with memory they are forgotten.
 _MAX_STEP, _MAX_STEP_WITH_MEMORY = 0.007, 0.05
 _TOLERANCE, _TOLERANCE_WITH_MEMORY = 3e-7, 4e-6
-_TURNED = 1e-4  # radians: a pin turned so nearly is left to the rest memory alone
+_TURNED = 1e-3  # radians: a pin turned so nearly is left to the rest memory alone
 _SOFTEST, _STIFFEST = 1e-3, 1e6
 _SAFE = 0.9  # share of the way to the first flip that memory may go
 _CUT = 0.05  # a step of memory shorter than this share of its length was in the wrong metric

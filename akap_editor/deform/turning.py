@@ -8,7 +8,7 @@ from ..geometry.mesh import MeshPoints, TriMesh
 from ..geometry.operators import hat_gradients
 
 _RADIUS = 0.04  # share of √area: how far around a pin faces turn with it
-_WEIGHT = 100.0  # c of the energy c A ω² of a face that turns too fast or too slowly by ω
+_WEIGHT = 1e4  # c of the energy c A ω² of a face that turns too fast or too slowly by ω
 
 
 class Turning:

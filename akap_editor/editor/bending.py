@@ -1,6 +1,5 @@
 """What bends a drawing as its state says, and how far one step goes."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,6 @@ from .document import EditState
 
 REACH = 0.02  # longest way of a pin in one step, as a share of √area: no step keeps the caller waiting
 MOST_TURN = 0.2  # radians that a pin turns in one step
-NEAR = 0.25  # steps to where pins should be
-AWAY = 0.02  # radians
 
 
 class Bending:
@@ -70,22 +67,7 @@ class Bending:
         goals = state.targets if share == 1.0 else here + share * (state.targets - here)
         angles = (state.angles - (1.0 - share) * turn,) if np.isfinite(turn).any() else ()
         result: StepResult = self.deformer.step(state.positions, goals, *angles)
-        if not angles or not self._leads_away(state, result.positions):
-            return result
-        pose = state.positions
-        return StepResult(pose, result.field, result.report, lambda _: pose)
-
-    def holding(self, state: EditState) -> bool:
-        """Whether pins hold angles."""
-        return self.holds_angles and any(pin.angle is not None for pin in state.pins)
-
-    def _leads_away(self, state: EditState, positions: Floats) -> bool:
-        """Whether pins near their places and angles are turned away from those in a new pose (n, 2).
-
-        Fields and memory may pull to and fro there; such a step is not taken.
-        """
-        after = replace(state, positions=positions)
-        return self.steps_left(state) < NEAR and self.turn_error(after) > self.turn_error(state) + AWAY
+        return result
 
     def fields(self, pins: int) -> tuple[Floats, Floats] | None:
         """U_opt and U°, (n, 2) each, of the last way of so many pins; None without one."""

@@ -26,7 +26,6 @@ from .stiffness import as_stiffness, coverage, painted
 PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
 STILL = 0.02  # pixels: a step that moves no vertex farther has come to rest
 MOST_SETTLING = 400  # steps after the last change of a target, should a pose never come to rest
-MOST_SETTLING_TURNED = 20  # those once pins that hold angles are near: angles are met softly
 ANGLE_TOLERANCE = 0.002  # radians: a pin turned more nearly than this has arrived
 
 Target = tuple[float, float]
@@ -222,9 +221,7 @@ class Session:
         """Say where pins should be, by id; `step` moves them. Raises InputError on unknown ids or NaN."""
         self._check_ids("targets", targets)
         places = dict(zip(targets, as_points(list(targets.values()), "targets", len(targets)), strict=True))
-        pins = tuple(
-            replace(pin, target=places[pin.id]) if pin.id in places else pin for pin in self.state.pins
-        )
+        pins = tuple(replace(pin, target=places.get(pin.id, pin.target)) for pin in self.state.pins)
         self._set_state(replace(self.state, pins=pins))
         self._begin_settling()
         self._record("targets", targets={str(pin_id): at.tolist() for pin_id, at in places.items()})
@@ -249,8 +246,8 @@ class Session:
     def hold_pins(self) -> None:
         """Before a new drag: pins that were stopped on their way, by undo or Escape, stay where they are."""
         if not self.moving and self.pin_error() > PIN_TOLERANCE:
-            places = zip(self.state.pins, self.pin_positions().tolist(), strict=True)
-            self.set_targets({pin.id: (x, y) for pin, (x, y) in places})
+            here = self.pin_positions().tolist()
+            self.set_targets({pin.id: (x, y) for pin, (x, y) in zip(self.state.pins, here, strict=True)})
 
     def set_settings(self, settings: Settings) -> None:
         """Bend differently from now on; moves nothing. Raises InputError, and then nothing has changed."""
@@ -334,8 +331,7 @@ class Session:
         moved = float(np.abs(result.positions - before).max())
         arrived = self.pin_error() < PIN_TOLERANCE and self._bending.turn_error(self.state) < ANGLE_TOLERANCE
         still = moved < (STILL if arrived else 0.1 * STILL)
-        most = MOST_SETTLING_TURNED if self.near and self._bending.holding(self.state) else self._settling
-        self._settling = 0 if still else max(min(self._settling - 1, most), 0)
+        self._settling = 0 if still else max(self._settling - 1, 0)
         self.last_step = result
         return result
 
@@ -382,9 +378,8 @@ class Session:
         self._settling = MOST_SETTLING + int(self._bending.steps_left(self.state))
 
     def _put(self, pose: Floats) -> None:
-        self._set_state(
-            replace(self.state, pins=stopped(self.drawing.mesh, self.state.pins, pose), positions=pose)
-        )
+        pins = stopped(self.drawing.mesh, self.state.pins, pose)
+        self._set_state(replace(self.state, pins=pins, positions=pose))
         self._settling = 0
 
     def _set_state(self, state: EditState) -> None:

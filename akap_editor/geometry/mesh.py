@@ -170,8 +170,8 @@ class TriMesh:
     ) -> MeshPoints | None:
         """The point of the drawing seen at ``point`` in the pose ``positions`` (default: at rest), or None.
 
-        Where faces overlap, the one drawn last is seen: order (m,) are the faces as they are drawn, by default
-        by their index.
+        Where faces overlap, the one drawn last is seen: order (m,) are the faces as they are drawn, by
+        default by their index.
         """
         q = as_points([point], "point", 1)[0]  # type: ignore[arg-type]
         return self._find(q, self._pose(positions), order)

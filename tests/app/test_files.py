@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from akap_editor.app.commands import CTRL, SHIFT, Key
-from akap_editor.app.workspace import FileRequest
+from akap_editor.app.requests import FileRequest
 from akap_editor.editor.document import make_drawing, new_document
 from akap_editor.io.documents import open_document
 from akap_editor.io.images import read_image, write_png

@@ -48,9 +48,9 @@ def test_rates_of_a_rotation(mesh, shapes):
     field = 0.3j * (to_complex(mesh.vertices) - 7.0)
     turning.place(mesh.vertices)
     area = mesh.rest_areas[turning.faces].sum()
-    assert turning.energy(field) == pytest.approx(100 * area * 0.09, rel=1e-9)
+    assert turning.energy(field) == pytest.approx(1e4 * area * 0.09, rel=1e-9)
     pull = turning.pull(np.full(len(turning.faces), 0.5))
-    assert np.vdot(pull, field).real == pytest.approx(100 * area * 0.3 * 0.5, rel=1e-9)
+    assert np.vdot(pull, field).real == pytest.approx(1e4 * area * 0.3 * 0.5, rel=1e-9)
 
 
 def test_misfit_and_its_gradient(mesh, shapes):
