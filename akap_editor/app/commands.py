@@ -12,7 +12,8 @@ from ..editor.tool_turning import toggle_hold
 from ..resources import bundled_drawings
 from . import poses
 from .overlays import Measure
-from .workspace import Palette, Workspace
+from .requests import Palette
+from .workspace import Workspace
 
 CTRL, SHIFT = imgui.Key.mod_ctrl, imgui.Key.mod_shift
 Key = imgui.Key

@@ -33,7 +33,7 @@ _THINNEST = 1e-2  # a face may not shrink below this share of its rest area in o
 # Longest way of a pin in one substep and how near a field comes to the exact one (in the energy norm), as
 # shares of √area. Errors of the method without memory add up along the way, with memory they are forgotten.
 _MAX_STEP, _MAX_STEP_WITH_MEMORY = 0.007, 0.05
-_TOLERANCE, _TOLERANCE_WITH_MEMORY = 3e-7, 4e-6
+_TOLERANCE, _TOLERANCE_WITH_MEMORY = 1e-7, 4e-6
 _TURNED = 1e-3  # radians: a pin turned so nearly is left to the rest memory alone
 _SOFTEST, _STIFFEST = 1e-3, 1e6
 _SAFE = 0.9  # share of the way to the first flip that memory may go
@@ -175,7 +175,7 @@ class AkapDeformer:
         wanted = _as_angles(angles, len(goals))
         if (np.isfinite(wanted) != self._holding).any():
             self._hold(np.isfinite(wanted))
-        way, blocked = [_Substep(pose, np.zeros_like(pose), 1.0, pose)], False
+        way = [_Substep(pose, np.zeros_like(pose), 1.0, pose)]
         if len(goals):
             starts = self._pin_positions(pose)
             turns = self._still_to_turn(pose, wanted)
@@ -193,8 +193,6 @@ class AkapDeformer:
                     way.append(self._substep(way[-1].end, aims))
                     if way[-1].share == 1:
                         break
-                else:
-                    blocked = True
             del way[0]
         way[-1] = replace(way[-1], end=self._corrected(way[-1], pose, goals))
         result, field = to_points(way[-1].end.copy()), way[-1].field
@@ -207,7 +205,7 @@ class AkapDeformer:
                 energy=self._system.energy(field) if field.any() else 0.0,
                 flipped=int((signed_areas(result, self._mesh.faces) <= 0).sum()),
                 pin_error=float(np.abs(goals - self._pin_positions(way[-1].end)).max(initial=0.0)),
-                blocked=blocked,
+                blocked=way[-1].share < 1,
             ),
             flow=lambda t: to_points(self._along(way, t)),
         )

@@ -18,7 +18,7 @@ class StepReport:
 
     seconds; substeps; energy: Killing energy of the last field at the pose it was made for, square pixels, 0
     without a field; flipped: faces with a negative area afterwards; pin_error: largest distance of a pin from
-    its target, pixels; blocked: whether a move was cut short because it would have flipped a face.
+    its target, pixels; blocked: whether the last move was cut short because it would have flipped a face.
     """
 
     seconds: float

@@ -73,12 +73,13 @@ def mesh_digest(mesh: TriMesh) -> str:
 
 def drawing_header(drawing: Drawing) -> dict[str, Any]:
     """What a recording says about its drawing."""
-    return {
+    header = {
         "name": drawing.name,
         "size": list(drawing.size),
         "vertices": len(drawing.mesh.vertices),
         "mesh": mesh_digest(drawing.mesh),
     }
+    return header if drawing.meshing is None else {**header, "wanted": drawing.meshing.vertices}
 
 
 def settings_to_json(settings: Settings) -> dict[str, Any]:

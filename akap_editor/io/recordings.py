@@ -72,7 +72,7 @@ def recorded_drawing(recording: Recording) -> Drawing:
         )
     image = read_image(bundled[name])
     drawing = make_drawing(image, name=name)
-    count = header.get("vertices")
+    count = header.get("wanted", header.get("vertices"))
     if header.get("mesh") != mesh_digest(drawing.mesh) and type(count) is int:
         drawing = make_drawing(image, vertices=count, name=name)
     return drawing

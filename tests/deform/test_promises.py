@@ -326,10 +326,10 @@ def test_going_back_frees_a_blocked_drag(mesh, shapes, memory, far):
 
 
 def test_some_of_these_drags_are_blocked(shapes):
-    for memory in (0.0, 1.0):
-        results = pulled_away_and_back(shapes.SHAPES["ring"], shapes, memory, [140.0, -8.0], 80)
-        assert results[0].report.blocked
-        assert results[0].report.pin_error > 1
+    """Without memory, which opens faces again before they are in the way."""
+    results = pulled_away_and_back(shapes.SHAPES["ring"], shapes, 0.0, [140.0, -8.0], 80)
+    assert results[0].report.blocked
+    assert results[0].report.pin_error > 1
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])

@@ -51,7 +51,12 @@ class Piecewise:
 
 def kill_at(chance: int) -> None:
     """SIGKILL to this process at its n-th line of the code that writes files."""
-    Path.open = lambda path, mode: Piecewise(path, mode)  # a class would not be bound
+    whole = Path.open
+
+    def pieces(path, mode="r", *options, **more):
+        return Piecewise(path, mode) if "b" in mode and mode != "rb" else whole(path, mode, *options, **more)
+
+    Path.open = pieces
     left = chance
     code = {atomic.__file__, __file__}
 
