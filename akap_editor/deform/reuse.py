@@ -6,7 +6,7 @@ cost of a solution, and the solution by no more than its tolerance.
 """
 
 import numpy as np
-from scipy.sparse import csc_array
+from scipy.sparse import csr_array
 
 from ..geometry.checks import Complexes, Floats
 from .cholesky import SparseCholesky, SymmetricPattern
@@ -15,6 +15,7 @@ _MOST_ITERATIONS = 60
 # Unknowns below which factorizations are simplicial: three times as slow to make, solves twice as fast.
 _SIMPLICIAL_BELOW = 40_000
 _KEPT = 2  # earlier solutions from which the next one begins
+_SAME = 1e-11  # of two that differ by less than this share of their energies one is enough
 # A factorization costs about as much as so many iterations; when they were spent beyond the two that each
 # solution takes with new factors, it is time for these.
 _AFFORDED = 30
@@ -31,11 +32,17 @@ class ReusedCholesky:
     def __init__(self, pattern: SymmetricPattern, exact: bool) -> None:
         size = pattern.size
         self._cholesky = SparseCholesky(pattern, supernodal=exact or size > _SIMPLICIAL_BELOW)
-        starts = np.searchsorted(pattern.columns, np.arange(size + 1))
-        rows = pattern.rows.astype(np.int32)
-        self._lower = csc_array((np.zeros(pattern.count), rows, starts.astype(np.int32)), shape=(size, size))
-        self._upper = self._lower.T
-        self._diagonal_slots = np.flatnonzero(pattern.rows == pattern.columns)
+        # Both triangles, and which nonzero of the lower one each entry is.
+        upper = np.flatnonzero(pattern.rows != pattern.columns)
+        slots = np.concatenate([np.arange(pattern.count), upper])
+        rows = np.concatenate([pattern.rows, pattern.columns[upper]])
+        columns = np.concatenate([pattern.columns, pattern.rows[upper]])
+        order = np.lexsort((columns, rows))
+        starts = np.searchsorted(rows[order], np.arange(size + 1)).astype(np.int32)
+        self._slots = slots[order]
+        self._matrix = csr_array(
+            (np.zeros(len(order)), columns[order].astype(np.int32), starts), shape=(size, size)
+        )
         self._exact = exact
         self._frame = self._turn = np.ones(size // 2, dtype=np.complex128)
         self._then = self._frame  # the frame of the factorized pose
@@ -54,9 +61,7 @@ class ReusedCholesky:
         frame: (n,) of unit size, how each vertex is turned from rest.
         """
         self._nonzeros = nonzeros
-        halved = nonzeros.copy()  # half of the diagonal for each triangle
-        halved[self._diagonal_slots] *= 0.5
-        self._lower.data = self._upper.data = halved
+        np.take(nonzeros, self._slots, out=self._matrix.data)
         self._frame, self._fresh = frame, False
         if self._exact or not self._usable or self._spent >= _AFFORDED:
             self._factorize()
@@ -84,10 +89,7 @@ class ReusedCholesky:
 
     def multiply(self, values: Complexes) -> Complexes:
         """A x with the matrix last set."""
-        flat = values.view(np.float64)
-        product = self._lower @ flat
-        product += self._upper @ flat
-        return product.view(np.complex128)
+        return np.asarray(self._matrix @ values.view(np.float64)).view(np.complex128)
 
     def _factorize(self) -> None:
         self._usable = False
@@ -126,16 +128,24 @@ class ReusedCholesky:
         (Fischer 1998, "Projection techniques for iterative solution of Ax = b with successive right-hand
         sides".)
         """
-        if not earlier:
-            return np.zeros_like(right), right
-        basis = [self._frame * values for values in earlier]
-        images = [self.multiply(values) for values in basis]
-        products = np.array([[_dot(a, b) for b in images] for a in basis])
-        shares = np.linalg.lstsq(products, np.array([_dot(a, right) for a in basis]), rcond=1e-12)[0]
         solution, residual = np.zeros_like(right), right
-        for share, values, image in zip(shares.tolist(), basis, images, strict=True):
-            solution = solution + share * values
+        previous: tuple[Complexes, Complexes, float] | None = None
+        for values in earlier:
+            turned = self._frame * values
+            image = self.multiply(turned)
+            before = _dot(turned, image)
+            if previous is not None:  # the second one is made orthogonal to the first
+                first, first_image, size = previous
+                share = _dot(first_image, turned) / size
+                turned = turned - share * first
+                image = image - share * first_image
+            size = _dot(turned, image)
+            if size <= _SAME * before:
+                continue
+            share = _dot(turned, residual) / size
+            solution = solution + share * turned
             residual = residual - share * image
+            previous = turned, image, size
         return solution, residual
 
 
