@@ -22,12 +22,12 @@ from timing import Clock
 
 from akap_editor.deform.akap import AkapDeformer
 from akap_editor.deform.akvf import KillingSystem
-from akap_editor.deform.cholesky import SparseCholesky, SymmetricPattern
+from akap_editor.deform.cholesky import SparseCholesky
 from akap_editor.deform.reuse import ReusedCholesky
 from akap_editor.editor.document import make_drawing
 from akap_editor.geometry.distortion import distortion
+from akap_editor.geometry.killing_matrix import KillingMatrix
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
-from akap_editor.geometry.operators import KillingMatrix
 from akap_editor.geometry.outline import Outline
 from akap_editor.geometry.triangulate import triangulate
 from akap_editor.io.images import read_image
@@ -136,7 +136,6 @@ def instrument() -> Clock:
     """Sort the engine's time by part."""
     clock = Clock(PARTS)
     clock.wrap(KillingMatrix, "nonzeros", "assemble")
-    clock.wrap(SymmetricPattern, "summed", "assemble")
     clock.wrap(SparseCholesky, "factorize", "factor")
     clock.wrap(ReusedCholesky, "solve", "solve")
     clock.wrap(KillingSystem, "field", "solve")

@@ -52,6 +52,7 @@ RULES = {
 WRAPPED = {
     "triangle": {"geometry/triangulate.py", "geometry/triangle_worker.py"},
     "cvxopt": {"deform/cholesky.py"},
+    "numba": {"geometry/jit.py"},
 }
 
 

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError, SolverError
-from ..geometry.checks import Complexes, Floats, as_indices, as_number, as_points
+from ..geometry.checks import Complexes, Floats, Ints, as_indices, as_number, as_points
+from ..geometry.jit import compiled
 from ..geometry.mesh import MeshPoints, TriMesh, signed_areas
-from ..geometry.operators import element_pattern, to_complex, to_points
+from ..geometry.operators import to_complex, to_points
 from .akvf import KillingSystem
-from .cholesky import SparseCholesky, SymmetricPattern
+from .cholesky import SparseCholesky
 from .deformer import StepReport, StepResult
 from .log_spiral import LogSpirals, linear_flow
 from .rest_memory import SymmetricDirichlet, descend
@@ -30,10 +31,11 @@ _CORRECTIONS = 2  # most of them in one step
 _LONGEST = 4.0  # times its field: as far as a correction may go
 _LEVER = 10.0  # times the velocity of a pin: as far as others may go where that is more than √area
 _THINNEST = 1e-2  # a face may not shrink below this share of its rest area in one move
-# Longest way of a pin in one substep and how near a field comes to the exact one (in the energy norm), as
-# shares of √area. Errors of the method without memory add up along the way, with memory they are forgotten.
+# Longest way of a pin in one substep, how near a field comes to the exact one at every vertex, and how near
+# the direction of a descent, as shares of √area. Without memory errors add up along the way.
 _MAX_STEP, _MAX_STEP_WITH_MEMORY = 0.007, 0.05
-_TOLERANCE, _TOLERANCE_WITH_MEMORY = 1e-7, 4e-6
+_TOLERANCE, _TOLERANCE_WITH_MEMORY = 2e-8, 1e-6
+_TOLERANCE_OF_DESCENT = 1e-5
 _TURNED = 1e-3  # radians: a pin turned so nearly is left to the rest memory alone
 _SOFTEST, _STIFFEST = 1e-3, 1e6
 _SAFE = 0.9  # share of the way to the first flip that memory may go
@@ -114,11 +116,12 @@ class AkapDeformer:
         self._hard = constraints == "hard"
         tolerance = length * (_TOLERANCE_WITH_MEMORY if memory else _TOLERANCE)
         self._system = KillingSystem(mesh, pin_weight, bool(exact), self._hard, tolerance, stiff)
-        self._newton: tuple[SymmetricPattern, SparseCholesky] | None = None
+        self._newton: SparseCholesky | None = None
         self._stiffness = stiff
         self._exact_system: KillingSystem | None = None
         self._flow = LogSpirals(mesh).flow if trajectory == "spiral" else linear_flow
         self._rest = SymmetricDirichlet(mesh, stiff)
+        self._faces, self._least_areas = mesh.faces.copy(), _THINNEST * mesh.rest_areas
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
     def set_pins(self, points: MeshPoints) -> None:
@@ -285,15 +288,12 @@ class AkapDeformer:
         Faces that are flipped already, by another method, move freely. A part that hangs on the pins by a
         collapsed face is flung away by a small velocity: no vertex goes farther than the drawing is large.
         """
-        mesh = self._mesh
-        areas = signed_areas(to_points(pose), mesh.faces)
-        least = np.where(areas > 0, np.minimum(_THINNEST * mesh.rest_areas, 0.9 * areas), -np.inf)
         farthest = max(self._length, _LEVER * float(np.abs(velocities).max()))
         t = 1.0
         while t >= _SHORTEST:
             moved = self._flow(pose, field, t)
             near = np.abs(moved - pose).max() <= farthest
-            if near and (signed_areas(to_points(moved), mesh.faces) > least).all():
+            if near and _keeps_faces(pose, moved, self._faces, self._least_areas):
                 return moved, t
             t /= 2
         return pose, 0.0
@@ -329,7 +329,8 @@ class AkapDeformer:
             return pose + far * direction, far
 
         if moving:
-            near, far = descended(-0.5 * self._system.solve(gradient, "memory"))
+            tolerance = _TOLERANCE_OF_DESCENT * self._length
+            near, far = descended(-0.5 * self._system.solve(gradient, tolerance, "memory"))
             if far >= _CUT * length:
                 return near
         return descended(self._newton_direction(pose, columns, gradient))[0]
@@ -342,20 +343,34 @@ class AkapDeformer:
         if not gradient.any():
             return gradient
         if self._newton is None:
-            pattern = SymmetricPattern(*element_pattern(self._mesh.faces), self._system.pattern.size)
-            self._newton = pattern, SparseCholesky(pattern)
-        pattern, cholesky = self._newton
+            self._newton = SparseCholesky(self._system.pattern)
         spin = None if self._turning is None else self._turning.spin
         for convex in (False, True):  # far from a minimum the Hessian has negative eigenvalues
-            nonzeros = pattern.summed(self._rest.half_hessian(columns, convex, spin))
+            nonzeros = self._rest.half_hessian(columns, convex, self._system.blocks, spin)
             self._system.add_pins(nonzeros, to_points(pose))
             try:
-                cholesky.factorize(nonzeros)
+                self._newton.factorize(nonzeros)
                 break
             except SolverError:
                 if convex:
                     raise
-        return -0.5 * to_complex(cholesky.solve(gradient.view(np.float64)).reshape(-1, 2))
+        return -0.5 * to_complex(self._newton.solve(gradient.view(np.float64)).reshape(-1, 2))
+
+
+@compiled
+def _keeps_faces(before: Complexes, after: Complexes, faces: Ints, least: Floats) -> bool:
+    """Whether no face comes below its least area (m,) or, where that is less, below 0.9 times what it has.
+
+    Faces that are flipped before do not count.
+    """
+    for f in range(len(faces)):
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        a, b = before[j] - before[i], before[k] - before[i]
+        c, d = after[j] - after[i], after[k] - after[i]
+        was, is_now = 0.5 * (a.real * b.imag - a.imag * b.real), 0.5 * (c.real * d.imag - c.imag * d.real)
+        if was > 0 and not is_now > min(least[f], 0.9 * was):
+            return False
+    return True
 
 
 def _as_angles(angles: ArrayLike | None, count: int) -> Floats:

@@ -2,11 +2,12 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from ..geometry.checks import Complexes, Floats, Ints
+from ..geometry.jit import compiled
+from ..geometry.killing_matrix import KillingMatrix
 from ..geometry.mesh import MeshPoints, TriMesh
-from ..geometry.operators import KillingMatrix, to_complex, to_points
+from ..geometry.operators import to_complex, to_points
 from .cholesky import SymmetricPattern
 from .reuse import ReusedCholesky
 from .turning import Turning
@@ -26,7 +27,7 @@ class KillingSystem:
     mean velocity of its pins, or to zero, which moves it without turning.
 
     With ``exact`` both matrices are factorized at every pose; otherwise now and then (see `ReusedCholesky`),
-    and fields are as near as ``tolerance`` in the energy norm, in pixels. ``stiffness`` (m,) multiplies the
+    and fields are as near as ``tolerance``, in pixels. ``stiffness`` (m,) multiplies the
     energies of faces. With ``hard`` U° has exactly the
     pins' velocities, and (7) is always factorized, since many solves go into one field.
     """
@@ -48,6 +49,7 @@ class KillingSystem:
         self._tolerance, self._stiffness = tolerance, stiffness
         self._turning: Turning | None = None
         self._killing = KillingMatrix(mesh)
+        self.blocks = self._killing.blocks
         self.pattern = SymmetricPattern(self._killing.rows, self._killing.columns, size)
         self._pinned = ReusedCholesky(self.pattern, exact or hard)
         on_boundary = np.zeros(len(mesh.vertices), dtype=bool)
@@ -119,8 +121,9 @@ class KillingSystem:
         if self._turning is not None:
             self._turning.place(positions)
             spin = self._turning.spin
-        nonzeros = self._killing.nonzeros(positions, self._stiffness, spin)
-        frames = self._frames(to_complex(positions))
+        pose = to_complex(positions)
+        nonzeros = self._killing.nonzeros(pose, self._stiffness, spin)
+        frames = self._frames(pose)
         if self._inner is not None and self._needs_interior:
             self._inner.prepare(nonzeros[self._inner_nonzeros], frames[self._interior])
         np.add.at(nonzeros, self._pin_slots, self._pin_entries)
@@ -136,9 +139,9 @@ class KillingSystem:
         if (free != self._free).any():
             self._constrain(free)
 
-    def solve(self, right: Complexes, like: str) -> Complexes:
+    def solve(self, right: Complexes, tolerance: float, like: str) -> Complexes:
         """(K + λ² WᵀW)⁻¹ applied to a vector (n,), at the pose last prepared; see `ReusedCholesky.solve`."""
-        return self._pinned.solve(right, self._tolerance, like)
+        return self._pinned.solve(right, tolerance, like)
 
     def pull(self, offsets: Complexes) -> Complexes:
         """λ² Wᵀ applied to offsets (k,) of the pins: half the gradient of λ² ‖W p − targets‖², (n,)."""
@@ -215,19 +218,25 @@ class _VertexFrames:
     """How far each vertex is turned from rest: the rotation that fits its edges best."""
 
     def __init__(self, mesh: TriMesh) -> None:
-        start, end = mesh.edges.T
         rest = to_complex(mesh.vertices)
-        edges = (rest[start] - rest[end]).conj()
-        n = len(rest)
-        ends, others = mesh.edges.T.ravel(), mesh.edges.T[::-1].ravel()
-        # Σ over the edges of vertex i of (pᵢ − pⱼ) conj(rᵢ − rⱼ)
-        entries, rows = np.concatenate([edges, -edges]), np.concatenate([ends, ends])
-        self._sums = csr_array(
-            (np.concatenate([entries, -entries]), (rows, np.concatenate([ends, others]))), shape=(n, n)
-        )
+        self._edges = mesh.edges.copy()
+        self._rest = (rest[mesh.edges[:, 0]] - rest[mesh.edges[:, 1]]).conj()
 
     def __call__(self, positions: Complexes) -> Complexes:
         """Complex numbers of unit size, (n,), for a pose (n,)."""
-        sums = self._sums @ positions
-        sizes = np.abs(sums)
-        return np.where(sizes > 0, sums / np.where(sizes > 0, sizes, 1.0), 1.0)
+        return _turns(self._edges, self._rest, positions)
+
+
+@compiled
+def _turns(edges: Ints, rest: Complexes, positions: Complexes) -> Complexes:
+    """Σ over the edges of vertex i of (pᵢ − pⱼ) conj(rᵢ − rⱼ), made of unit size."""
+    result = np.zeros_like(positions)
+    for e in range(len(edges)):
+        i, j = edges[e, 0], edges[e, 1]
+        product = (positions[i] - positions[j]) * rest[e]
+        result[i] += product
+        result[j] += product
+    for i in range(len(result)):
+        size = abs(result[i])
+        result[i] = result[i] / size if size > 0 else 1.0 + 0.0j
+    return result

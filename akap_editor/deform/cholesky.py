@@ -48,7 +48,7 @@ class SparseCholesky:
     """A symmetric positive definite matrix of fixed pattern: factorize often, solve more often.
 
     Supernodal factorizations are several times faster to make on large meshes. With ``supernodal`` off,
-    solves are up to twice as fast.
+    solves in a row are up to twice as fast.
     """
 
     def __init__(self, pattern: SymmetricPattern, supernodal: bool = True) -> None:

@@ -1,44 +1,45 @@
 """Logarithmic-spiral trajectories of a vector field (paper, section 2.3)."""
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
-from ..geometry.checks import Complexes
+from ..geometry.checks import Complexes, Ints
+from ..geometry.jit import compiled
 from ..geometry.mesh import TriMesh
 
 _SERIES_BELOW = 0.25
 _ROUNDING = 1e-17
 
 
+@compiled
 def spiral_factor(s: Complexes) -> Complexes:
     """φ(s) = (eˢ − 1) / s with φ(0) = 1: a point with velocity u on a spiral of rate s moves by φ(s) u.
 
-    Where all rates are small, as they are in a substep, by as many terms of Σ sᵏ / (k + 1)! as count.
+    s: (e,). Small rates, as they are in a substep, by as many terms of Σ sᵏ / (k + 1)! as the largest needs.
     """
-    largest = float(np.abs(s).max(initial=0.0))
-    if largest > _SERIES_BELOW:
-        small = np.abs(s) < _SERIES_BELOW
-        return np.where(small, _series(np.where(small, s, 0.0), _SERIES_BELOW), _closed(s, small))
-    return _series(s, largest)
-
-
-def _closed(s: Complexes, small: NDArray[np.bool_]) -> Complexes:
-    safe = np.where(small, 1.0, s)
-    return np.asarray(np.expm1(safe) / safe, dtype=np.complex128)
-
-
-def _series(s: Complexes, largest: float) -> Complexes:
-    """Horner's rule, with terms up to the last that rounding does not swallow."""
-    count, term = 1, largest / 2
+    largest = 0.0
+    for rate in s:
+        size = rate.real * rate.real + rate.imag * rate.imag
+        if largest < size < _SERIES_BELOW**2:
+            largest = size
+    largest = np.sqrt(largest)
+    terms, term = 1, largest / 2
     while term > _ROUNDING:
-        count += 1
-        term *= largest / (count + 1)
-    result = np.ones_like(s)
-    for k in range(count, 1, -1):
-        result *= s
-        result *= 1.0 / k
-        result += 1.0
+        terms += 1
+        term *= largest / (terms + 1)
+    shares = 1.0 / np.arange(1.0, terms + 1.0)
+    result = np.empty_like(s)
+    for e in range(len(s)):
+        x, y = s[e].real, s[e].imag
+        if x * x + y * y < _SERIES_BELOW**2:
+            real, imaginary = 1.0, 0.0
+            for k in range(terms - 1, 0, -1):  # Horner's rule
+                real, imaginary = (
+                    (real * x - imaginary * y) * shares[k] + 1.0,
+                    (real * y + imaginary * x) * shares[k],
+                )
+            result[e] = complex(real, imaginary)
+        else:
+            result[e] = (np.exp(s[e]) - 1.0) / s[e]
     return result
 
 
@@ -51,19 +52,34 @@ class LogSpirals:
     """
 
     def __init__(self, mesh: TriMesh) -> None:
-        self._start, self._end = mesh.edges.T
-        e, n = len(self._start), len(mesh.vertices)
-        ends = mesh.edges.T.ravel()
-        degree = np.bincount(ends, minlength=n)
-        edge = np.tile(np.arange(e), 2)
-        # Complex, as the factors are: a mixed product would be slower.
-        self._mean = csr_array((1.0 / degree[ends] + 0j, (ends, edge)), shape=(n, e))
+        self._edges = mesh.edges.copy()
+        self._shares = 1.0 / np.bincount(mesh.edges.ravel(), minlength=len(mesh.vertices))
 
     def flow(self, positions: Complexes, field: Complexes, t: float = 1.0) -> Complexes:
         """Where the vertices (n,) are at time ``t`` (1: the whole step) if they start with ``field`` (n,)."""
-        i, j = self._start, self._end
-        s = t * (field[i] - field[j]) / (positions[i] - positions[j])
-        return positions + t * field * (self._mean @ spiral_factor(s))
+        moves = t * field
+        factors = spiral_factor(_rates(self._edges, positions, moves))
+        return positions + moves * (self._shares * _sums_at_ends(self._edges, factors, len(positions)))
+
+
+@compiled
+def _rates(edges: Ints, positions: Complexes, moves: Complexes) -> Complexes:
+    result = np.empty(len(edges), dtype=np.complex128)
+    for e in range(len(edges)):
+        i, j = edges[e, 0], edges[e, 1]
+        d, u = positions[i] - positions[j], moves[i] - moves[j]
+        size = d.real * d.real + d.imag * d.imag
+        result[e] = complex(u.real * d.real + u.imag * d.imag, u.imag * d.real - u.real * d.imag) / size
+    return result
+
+
+@compiled
+def _sums_at_ends(edges: Ints, values: Complexes, count: int) -> Complexes:
+    result = np.zeros(count, dtype=np.complex128)
+    for e in range(len(edges)):
+        result[edges[e, 0]] += values[e]
+        result[edges[e, 1]] += values[e]
+    return result
 
 
 def linear_flow(positions: Complexes, field: Complexes, t: float = 1.0) -> Complexes:

@@ -6,43 +6,33 @@ cost of a solution, and the solution by no more than its tolerance.
 """
 
 import numpy as np
-from scipy.sparse import csr_array
 
-from ..geometry.checks import Complexes, Floats
+from ..geometry.checks import Complexes, Floats, Ints
+from ..geometry.jit import compiled
 from .cholesky import SparseCholesky, SymmetricPattern
 
-_MOST_ITERATIONS = 60
-# Unknowns below which factorizations are simplicial: three times as slow to make, solves twice as fast.
-_SIMPLICIAL_BELOW = 40_000
+# Iterations between two factorizations, beyond the one that each solution takes. A factorization costs as
+# much as five to eight; frames take the same on average with a dozen as with two, and with two are more even.
+_AFFORDED = 24
+_MOST_ITERATIONS = 12  # of one solution; then the matrix at hand is factorized
 _KEPT = 2  # earlier solutions from which the next one begins
 _SAME = 1e-11  # of two that differ by less than this share of their energies one is enough
-# A factorization costs about as much as so many iterations; when they were spent beyond the two that each
-# solution takes with new factors, it is time for these.
-_AFFORDED = 30
 
 
 class ReusedCholesky:
     """Solves A x = b for a matrix that changes a little from pose to pose.
 
-    Unknowns are complex, one for each vertex; the matrix is real, with interleaved x and y. With ``exact``
-    every matrix is factorized. Otherwise one is now and then, and solutions are as near as asked for; where
-    iterations do not come that near, the matrix at hand is factorized after all.
+    Unknowns are complex, one for each vertex; the matrix is real, with interleaved x and y, and where two
+    vertices are coupled, all four entries are in the pattern. With ``exact`` every matrix is factorized.
+    Otherwise one is now and then, and solutions are as near as asked for; where iterations do not come that
+    near soon, the matrix at hand is factorized after all.
     """
 
     def __init__(self, pattern: SymmetricPattern, exact: bool) -> None:
         size = pattern.size
-        self._cholesky = SparseCholesky(pattern, supernodal=exact or size > _SIMPLICIAL_BELOW)
-        # Both triangles, and which nonzero of the lower one each entry is.
-        upper = np.flatnonzero(pattern.rows != pattern.columns)
-        slots = np.concatenate([np.arange(pattern.count), upper])
-        rows = np.concatenate([pattern.rows, pattern.columns[upper]])
-        columns = np.concatenate([pattern.columns, pattern.rows[upper]])
-        order = np.lexsort((columns, rows))
-        starts = np.searchsorted(rows[order], np.arange(size + 1)).astype(np.int32)
-        self._slots = slots[order]
-        self._matrix = csr_array(
-            (np.zeros(len(order)), columns[order].astype(np.int32), starts), shape=(size, size)
-        )
+        self._cholesky = SparseCholesky(pattern)
+        self._starts = np.searchsorted(pattern.columns, np.arange(size + 1)).astype(np.int32)
+        self._vertices = (pattern.rows // 2).astype(np.int32)
         self._exact = exact
         self._frame = self._turn = np.ones(size // 2, dtype=np.complex128)
         self._then = self._frame  # the frame of the factorized pose
@@ -60,16 +50,17 @@ class ReusedCholesky:
 
         frame: (n,) of unit size, how each vertex is turned from rest.
         """
-        self._nonzeros = nonzeros
-        np.take(nonzeros, self._slots, out=self._matrix.data)
-        self._frame, self._fresh = frame, False
+        self._nonzeros, self._frame, self._fresh = nonzeros, frame, False
         if self._exact or not self._usable or self._spent >= _AFFORDED:
             self._factorize()
         else:
             self._turn = frame * self._then.conj()
 
     def solve(self, right: Complexes, tolerance: float, like: str = "") -> Complexes:
-        """A⁻¹ b, as near as ``tolerance`` in the energy norm, or exact where the matrix was just factorized.
+        """A⁻¹ b, each value as near as ``tolerance``, or exact where the matrix was just factorized.
+
+        The error of an iterate is estimated as what the preconditioner makes of its residual, and that is
+        then taken off.
 
         like: a name for solutions that are alike from pose to pose: each begins with the last ones.
         """
@@ -89,7 +80,7 @@ class ReusedCholesky:
 
     def multiply(self, values: Complexes) -> Complexes:
         """A x with the matrix last set."""
-        return np.asarray(self._matrix @ values.view(np.float64)).view(np.complex128)
+        return _product(self._starts, self._vertices, self._nonzeros, values)
 
     def _factorize(self) -> None:
         self._usable = False
@@ -110,9 +101,9 @@ class ReusedCholesky:
         for count in range(_MOST_ITERATIONS):
             step = self._precondition(residual)
             square = _dot(residual, step)
-            if square <= tolerance**2:
+            if _largest(step) <= tolerance:
                 self.iterations += count + 1
-                self._spent += max(count - 1, 0)
+                self._spent += count
                 return solution + step
             direction = step + (square / previous) * direction
             image = self.multiply(direction)
@@ -149,5 +140,29 @@ class ReusedCholesky:
         return solution, residual
 
 
+@compiled
+def _product(starts: Ints, vertices: Ints, nonzeros: Floats, values: Complexes) -> Complexes:
+    """Of a symmetric matrix, given by its lower triangle in columns, and one value for each pair of them."""
+    result = np.zeros_like(values)
+    for j in range(len(values)):
+        own, other, x = starts[2 * j], starts[2 * j + 1], values[j]
+        real = nonzeros[own] * x.real + nonzeros[own + 1] * x.imag
+        imaginary = nonzeros[own + 1] * x.real + nonzeros[other] * x.imag
+        shift = other - own - 1  # from an entry to the one beside it in the next column
+        for k in range(own + 2, other, 2):
+            i = vertices[k]
+            a, b, c, d = nonzeros[k], nonzeros[k + 1], nonzeros[k + shift], nonzeros[k + shift + 1]
+            y = values[i]
+            real += a * y.real + b * y.imag
+            imaginary += c * y.real + d * y.imag
+            result[i] += complex(a * x.real + c * x.imag, b * x.real + d * x.imag)
+        result[j] += complex(real, imaginary)
+    return result
+
+
 def _dot(a: Complexes, b: Complexes) -> float:
     return float(np.vdot(a, b).real)
+
+
+def _largest(values: Complexes) -> float:
+    return float(np.abs(values).max())

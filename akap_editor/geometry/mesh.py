@@ -17,8 +17,9 @@ _ROUNDING = 1e-12  # share by which a point may lie beyond a face and still be o
 
 def signed_areas(positions: Floats, faces: Ints) -> Floats:
     """Signed area of each face in square pixels, (m,); positive as stored in a `TriMesh` (y down)."""
-    x, y = positions[:, 0][faces.T], positions[:, 1][faces.T]
-    return 0.5 * ((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]))
+    corners = np.ascontiguousarray(positions, dtype=np.float64).view(np.complex128)[:, 0].take(faces)
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return 0.5 * (a.real * b.imag - a.imag * b.real)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,11 +2,13 @@ import numpy as np
 import pytest
 from scipy.sparse import coo_array
 
+from akap_editor.deform import reuse
 from akap_editor.deform.akap import AkapDeformer
 from akap_editor.deform.cholesky import SymmetricPattern
 from akap_editor.deform.reuse import ReusedCholesky
 from akap_editor.geometry.distortion import distortion
-from akap_editor.geometry.operators import KillingMatrix, element_pattern, to_complex, to_points
+from akap_editor.geometry.killing_matrix import KillingMatrix
+from akap_editor.geometry.operators import to_complex, to_points
 
 TOLERANCE = 1e-6
 
@@ -16,14 +18,11 @@ class System:
 
     def __init__(self, mesh):
         self.mesh, self.size = mesh, 2 * len(mesh.vertices)
-        rows, columns = element_pattern(mesh.faces)
-        every = np.arange(self.size)
-        self.rows, self.columns = np.append(rows, every), np.append(columns, every)
-        self.pattern = SymmetricPattern(self.rows, self.columns, self.size)
         self.killing = KillingMatrix(mesh)
+        self.pattern = SymmetricPattern(self.killing.rows, self.killing.columns, self.size)
 
     def nonzeros(self, positions):
-        return self.killing.nonzeros(positions) + (self.pattern.rows == self.pattern.columns)
+        return self.killing.nonzeros(to_complex(positions)) + (self.pattern.rows == self.pattern.columns)
 
     def matrix(self, positions):
         rows, columns = self.pattern.rows, self.pattern.columns
@@ -38,11 +37,6 @@ def bent(mesh, angle):
     radius = np.ptp(x) / angle - (y - y.mean())
     turn = angle * share
     return np.stack([radius * np.sin(turn), -radius * np.cos(turn)], axis=1), np.exp(1j * turn)
-
-
-def energy_norm(matrix, values):
-    flat = to_points(values).ravel()
-    return np.sqrt(flat @ matrix @ flat)
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +71,7 @@ def test_solutions_at_later_poses_are_as_near_as_asked_for(system, like, toleran
         solver.prepare(system.nonzeros(positions), frame)
         right = right_side(system, seed)
         off = solver.solve(right, tolerance, like) - solved(system, positions, right)
-        assert energy_norm(system.matrix(positions), off) < 2 * tolerance
+        assert np.abs(off).max() < tolerance
     assert solver.iterations > 5
 
 
@@ -91,8 +85,9 @@ def test_a_turned_drawing_costs_one_iteration(system):
     assert solver.iterations <= 2  # the second one finds that nothing is left
 
 
-def test_solutions_like_earlier_ones_cost_fewer_iterations(system):
-    """Of a pull that turns with the drawing and changes its size."""
+def test_solutions_like_earlier_ones_cost_fewer_iterations(system, monkeypatch):
+    """Of a pull that turns with the drawing and changes its size, with the first factors throughout."""
+    monkeypatch.setattr(reuse, "_AFFORDED", 1000)
     counts = []
     for like in ("", "pull"):
         solver = prepared(system)
@@ -101,8 +96,7 @@ def test_solutions_like_earlier_ones_cost_fewer_iterations(system):
             solver.prepare(system.nonzeros(positions), frame)
             right = (1 + angle) * frame * right_side(system, 3)
             found = solver.solve(right, TOLERANCE, like)
-            off = energy_norm(system.matrix(positions), found - solved(system, positions, right))
-            assert off < 2 * TOLERANCE
+            assert np.abs(found - solved(system, positions, right)).max() < TOLERANCE
         counts.append(solver.iterations)
     assert counts[1] < 0.7 * counts[0]
 
@@ -118,17 +112,23 @@ def test_a_pose_too_far_away_is_factorized(system):
 
 
 def test_many_iterations_call_for_a_factorization(system):
+    """Not for each pose, but for one of several, and from then on there are fewer again."""
     solver = prepared(system)
-    positions, frame = bent(system.mesh, 0.8)
+    positions, frame = bent(system.mesh, 0.25)
     counts = []
-    for seed in range(40):
+    while solver.factorizations == 1:
         before = solver.iterations
         solver.prepare(system.nonzeros(positions), frame)
-        solver.solve(right_side(system, seed), TOLERANCE)
+        right = right_side(system, len(counts))
+        found = solver.solve(right, TOLERANCE)
+        assert np.abs(found - solved(system, positions, right)).max() < TOLERANCE
         counts.append(solver.iterations - before)
-    assert solver.factorizations == 2
-    assert counts[0] > 5
-    assert max(counts[-10:]) <= 2
+    assert len(counts) > 3
+    assert counts[0] > 3
+    solver.prepare(system.nonzeros(positions), frame)
+    before = solver.iterations
+    solver.solve(right_side(system, 99), TOLERANCE)
+    assert solver.iterations - before <= 2
 
 
 def test_what_is_forgotten_is_factorized_again(system):

@@ -7,8 +7,9 @@ from akap_editor.deform.akap import AkapDeformer
 from akap_editor.deform.turning import Turning
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
+from akap_editor.geometry.killing_matrix import KillingMatrix
 from akap_editor.geometry.mesh import MeshPoints
-from akap_editor.geometry.operators import KillingMatrix, to_complex, to_points
+from akap_editor.geometry.operators import to_complex, to_points
 
 FREE = np.nan
 MEMORIES = pytest.mark.parametrize("memory", [0.0, 1.0])
@@ -32,7 +33,8 @@ def test_turning_fields_cost_what_the_matrix_says(mesh, shapes):
     pose = mesh.vertices @ [[1.1, 0.2], [-0.1, 0.9]]
     turning.place(pose)
     killing = KillingMatrix(mesh)
-    difference = killing.nonzeros(pose, spin=turning.spin) - killing.nonzeros(pose)
+    there = to_complex(pose)
+    difference = killing.nonzeros(there, spin=turning.spin) - killing.nonzeros(there)
     matrix = np.zeros((2 * len(pose),) * 2)
     matrix[killing.rows, killing.columns] = difference
     matrix += np.tril(matrix, -1).T

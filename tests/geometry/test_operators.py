@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from akap_editor.geometry.operators import (
-    KillingMatrix,
-    element_pattern,
     gradient_matrices,
     hat_gradients,
     jacobians,
@@ -13,14 +11,6 @@ from akap_editor.geometry.operators import (
     to_complex,
     to_points,
 )
-
-
-def assembled(mesh, positions):
-    """The Killing matrix at a pose as a dense one."""
-    killing = KillingMatrix(mesh)
-    matrix = np.zeros((2 * len(positions),) * 2)
-    matrix[killing.rows, killing.columns] = killing.nonzeros(positions)
-    return matrix + np.tril(matrix, -1).T
 
 
 def test_complex_and_points_are_the_same_numbers():
@@ -50,40 +40,6 @@ def test_jacobians_of_affine_maps(mesh):
     assert np.abs(jacobians(mesh, pose) - matrix).max() < 1e-11
 
 
-def test_killing_matrix_is_that_of_the_stacked_rows(mesh, dense):
-    rows = dense.killing_rows(mesh.vertices, mesh.faces)
-    assert np.abs(assembled(mesh, mesh.vertices) - rows.T @ rows).max() < 1e-11
-
-
-def test_killing_matrix_at_a_pose(mesh, dense):
-    pose = mesh.vertices @ [[1.1, 0.3], [-0.2, 0.8]] + 2 * np.sin(mesh.vertices[:, ::-1] / 20)
-    rows = dense.killing_rows(pose, mesh.faces)
-    assert np.abs(assembled(mesh, pose) - rows.T @ rows).max() < 1e-11
-
-
-def test_nonzeros_are_in_the_order_of_columns_and_within_the_pattern(mesh):
-    killing = KillingMatrix(mesh)
-    keys = killing.columns * 2 * len(mesh.vertices) + killing.rows
-    assert (np.diff(keys) > 0).all()
-    rows, columns = element_pattern(mesh.faces)
-    known = np.minimum(rows, columns) * 2 * len(mesh.vertices) + np.maximum(rows, columns)
-    assert np.unique(known).tolist() == keys.tolist()
-
-
-def test_killing_energy_is_the_quadratic_form(mesh):
-    field = np.random.default_rng(6).normal(size=mesh.vertices.shape)
-    matrix = assembled(mesh, mesh.vertices)
-    energy = killing_energy(mesh.vertices, mesh.faces, field)
-    assert energy == pytest.approx(field.ravel() @ matrix @ field.ravel(), rel=1e-12)
-
-
-def test_null_space_is_the_rigid_motions_of_each_part(mesh):
-    parts = mesh.component.max() + 1
-    spectrum = np.linalg.eigvalsh(assembled(mesh, mesh.vertices))
-    assert (spectrum < 1e-10 * spectrum[-1]).sum() == 3 * parts
-    assert spectrum[3 * parts] > 1e-6 * spectrum[-1]
-
-
 @pytest.mark.parametrize("turn", [0.0, 1.0, -3.0])
 def test_rigid_fields_have_no_energy(mesh, turn):
     field = mesh.vertices @ [[0.0, turn], [-turn, 0.0]] + [4.0, 9.0]
@@ -103,13 +59,3 @@ def test_energy_of_linear_fields(mesh, jacobian, density):
     field = mesh.vertices @ np.transpose(jacobian)
     energy = killing_energy(mesh.vertices, mesh.faces, field)
     assert energy == pytest.approx(density * mesh.rest_areas.sum(), rel=1e-12)
-
-
-def test_flipped_faces_count_by_their_size(mesh, dense):
-    """A pose from elsewhere may have flipped faces: a mirrored one has the mirrored energy."""
-    mirrored = mesh.vertices * [-1.0, 1.0]
-    field = np.random.default_rng(7).normal(size=mirrored.shape)
-    energy = killing_energy(mesh.vertices, mesh.faces, field)
-    assert killing_energy(mirrored, mesh.faces, field * [-1.0, 1.0]) == pytest.approx(energy, rel=1e-12)
-    rows = dense.killing_rows(mirrored, mesh.faces)
-    assert np.abs(assembled(mesh, mirrored) - rows.T @ rows).max() < 1e-11
