@@ -50,7 +50,7 @@ class KillingSystem:
         self._turning: Turning | None = None
         self._killing = KillingMatrix(mesh)
         self.blocks = self._killing.blocks
-        self.pattern = SymmetricPattern(self._killing.rows, self._killing.columns, size)
+        self.pattern = SymmetricPattern(self.blocks.rows, self.blocks.columns, size)
         self._pinned = ReusedCholesky(self.pattern, exact or hard)
         on_boundary = np.zeros(len(mesh.vertices), dtype=bool)
         on_boundary[mesh.boundary_vertices] = True
@@ -111,8 +111,6 @@ class KillingSystem:
         inside = interior_vertex[self._corners] & (weights != 0)
         self._needs_interior = bool(inside.any()) or self._turning is not None
         self._pinned.forget()
-        if self._inner is not None:
-            self._inner.forget()
 
     def prepare(self, positions: Floats) -> None:
         """Prepare both systems at the pose ``positions`` (n, 2). Raises SolverError."""
@@ -210,7 +208,7 @@ class KillingSystem:
         return result
 
     def _slots(self, rows: Ints, columns: Ints) -> Ints:
-        keys = self.pattern.columns * self.pattern.size + self.pattern.rows
+        keys = self.pattern.columns.astype(np.int64) * self.pattern.size + self.pattern.rows
         return np.searchsorted(keys, columns.astype(np.int64) * self.pattern.size + rows)
 
 

@@ -26,7 +26,7 @@ from ..errors import InputError
 from ..geometry.checks import Complexes, as_number, as_points
 from ..geometry.mesh import TriMesh
 from ..geometry.operators import gradient_matrices, to_complex, to_points
-from .cholesky import SparseCholesky, SymmetricPattern
+from .cholesky import SparseCholesky, SummedPattern
 from .rest_based import RestBasedDeformer, product
 
 Rotations = Literal["faces", "spokes-and-rims"]
@@ -92,7 +92,7 @@ class ArapDeformer(RestBasedDeformer):
         pinned = self._weights.T @ self._weights
         matrix = (self._laplacian + pinned + diags_array(self._held.astype(np.float64))).tocoo()
         lower = matrix.row >= matrix.col
-        pattern = SymmetricPattern(matrix.row[lower], matrix.col[lower], matrix.shape[0])
+        pattern = SummedPattern(matrix.row[lower], matrix.col[lower], matrix.shape[0])
         self._cholesky = SparseCholesky(pattern, supernodal=False)
         self._cholesky.factorize(pattern.summed(matrix.data[lower]))
         rows = self._weights.toarray()

@@ -1,5 +1,6 @@
 """Sparse Cholesky factorization by CHOLMOD, symbolic and numeric phases apart (paper, section 3.1)."""
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,36 +13,44 @@ _SIMPLICIAL, _SUPERNODAL = 0, 2  # values of CHOLMOD's option
 
 
 class SymmetricPattern:
-    """Where the entries of a symmetric sparse matrix are, given by entries that are to be summed.
+    """Where the nonzeros of a symmetric sparse matrix are.
 
-    rows, columns: (q,) indices, either triangle; nonzeros are those of the lower triangle, by columns.
+    rows, columns: (count,) int32, those of the lower triangle, by columns and within them by rows.
     """
 
     def __init__(self, rows: Ints, columns: Ints, size: int) -> None:
-        low, high = np.maximum(rows, columns).astype(np.int64), np.minimum(rows, columns).astype(np.int64)
-        keys, slots = np.unique(high * size + low, return_inverse=True)
-        self.size = size
-        self.rows, self.columns = keys % size, keys // size
-        self.slots = slots.astype(np.int64)
+        self.rows, self.columns, self.size = rows.astype(np.int32), columns.astype(np.int32), size
 
     @property
     def count(self) -> int:
         """Number of nonzeros."""
         return len(self.rows)
 
-    def summed(self, entries: Floats) -> Floats:
-        """Nonzeros (count,) from entries (q,) in the order in which the pattern was given."""
-        return np.bincount(self.slots, weights=entries, minlength=self.count).astype(np.float64, copy=False)
+    @cached_property
+    def matrix(self) -> Any:
+        """A sparse matrix for the values of whoever factorizes next."""
+        indices = (matrix(index.astype(np.int64)) for index in (self.rows, self.columns))
+        return spmatrix(1.0, *indices, (self.size, self.size))
 
     def restricted(self, kept: Ints) -> tuple["SymmetricPattern", Ints]:
-        """The pattern of the rows and columns ``kept`` alone, and which of the nonzeros are its own."""
-        number = np.full(self.size, -1, dtype=np.int64)
+        """The pattern of the rows and columns ``kept``, ascending, and which of the nonzeros are its own."""
+        number = np.full(self.size, -1, dtype=np.int32)
         number[kept] = np.arange(len(kept))
-        chosen = np.flatnonzero((number[self.rows] >= 0) & (number[self.columns] >= 0))
-        part = SymmetricPattern(number[self.rows[chosen]], number[self.columns[chosen]], len(kept))
-        nonzeros = np.empty(part.count, dtype=np.int64)
-        nonzeros[part.slots] = chosen
-        return part, nonzeros
+        chosen = np.flatnonzero((number[self.rows] >= 0) & (number[self.columns] >= 0)).astype(np.int32)
+        return SymmetricPattern(number[self.rows[chosen]], number[self.columns[chosen]], len(kept)), chosen
+
+
+class SummedPattern(SymmetricPattern):
+    """The pattern of entries (q,) in any order and either triangle, those at one place to be summed."""
+
+    def __init__(self, rows: Ints, columns: Ints, size: int) -> None:
+        low, high = np.maximum(rows, columns).astype(np.int64), np.minimum(rows, columns).astype(np.int64)
+        keys, self._slots = np.unique(high * size + low, return_inverse=True)
+        super().__init__(keys % size, keys // size, size)
+
+    def summed(self, entries: Floats) -> Floats:
+        """Nonzeros (count,) from the entries (q,)."""
+        return np.bincount(self._slots, weights=entries, minlength=self.count).astype(np.float64, copy=False)
 
 
 class SparseCholesky:
@@ -52,19 +61,17 @@ class SparseCholesky:
     """
 
     def __init__(self, pattern: SymmetricPattern, supernodal: bool = True) -> None:
-        self._matrix: Any = spmatrix(
-            1.0, matrix(pattern.rows), matrix(pattern.columns), (pattern.size, pattern.size)
-        )
+        self._pattern = pattern
         cholmod.options["supernodal"] = _SUPERNODAL if supernodal else _SIMPLICIAL
-        self._factor: Any = cholmod.symbolic(self._matrix, uplo="L")
+        self._factor: Any = cholmod.symbolic(pattern.matrix, uplo="L")
 
     def factorize(self, nonzeros: Floats) -> None:
         """Numeric phase. Raises SolverError where the matrix is not positive definite or not finite."""
         if not np.isfinite(nonzeros).all():
             raise SolverError("the linear system has entries that are not finite")
-        self._matrix.V = matrix(nonzeros)
+        self._pattern.matrix.V = matrix(nonzeros)
         try:
-            cholmod.numeric(self._matrix, self._factor)
+            cholmod.numeric(self._pattern.matrix, self._factor)
         except ArithmeticError as error:
             raise SolverError(
                 "the linear system is singular: a face has collapsed or a part is free"

@@ -22,7 +22,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from ..geometry.checks import Complexes, Floats, as_number
 from ..geometry.mesh import TriMesh
 from ..geometry.operators import to_complex, to_points
-from .cholesky import SparseCholesky, SymmetricPattern
+from .cholesky import SparseCholesky, SummedPattern
 from .rest_based import RestBasedDeformer, product
 
 _NEXT, _AFTER = [1, 2, 0], [2, 0, 1]
@@ -111,7 +111,7 @@ def _factorized(matrix: csr_array | coo_array) -> SparseCholesky:
     """The factorization of a real symmetric matrix."""
     entries = matrix.tocoo()
     lower = entries.row >= entries.col
-    pattern = SymmetricPattern(entries.row[lower], entries.col[lower], matrix.shape[0])
+    pattern = SummedPattern(entries.row[lower], entries.col[lower], matrix.shape[0])
     cholesky = SparseCholesky(pattern, supernodal=False)
     values: Floats = entries.data[lower]
     cholesky.factorize(pattern.summed(values))

@@ -11,9 +11,9 @@ from ..geometry.checks import Complexes, Floats, Ints
 from ..geometry.jit import compiled
 from .cholesky import SparseCholesky, SymmetricPattern
 
-# Iterations between two factorizations, beyond the one that each solution takes. A factorization costs as
-# much as five to eight; frames take the same on average with a dozen as with two, and with two are more even.
-_AFFORDED = 24
+# A factorization costs as much as five to eight iterations. When so many were spent beyond those that gained
+# a digit each, which new factors do, it is time for another.
+_AFFORDED = 5
 _MOST_ITERATIONS = 12  # of one solution; then the matrix at hand is factorized
 _KEPT = 2  # earlier solutions from which the next one begins
 _SAME = 1e-11  # of two that differ by less than this share of their energies one is enough
@@ -38,7 +38,7 @@ class ReusedCholesky:
         self._then = self._frame  # the frame of the factorized pose
         self._earlier: dict[str, list[Complexes]] = {}
         self._usable = self._fresh = False
-        self._spent = 0
+        self._spent = 0.0
         self.iterations = self.factorizations = 0
 
     def forget(self) -> None:
@@ -87,7 +87,7 @@ class ReusedCholesky:
         self._cholesky.factorize(self._nonzeros)
         self._usable = self._fresh = True
         self._then, self._turn = self._frame, np.ones_like(self._frame)
-        self._spent = 0
+        self._spent = 0.0
         self.factorizations += 1
 
     def _precondition(self, right: Complexes) -> Complexes:
@@ -97,13 +97,15 @@ class ReusedCholesky:
     def _iterate(self, right: Complexes, tolerance: float, earlier: list[Complexes]) -> Complexes | None:
         solution, residual = self._best_of(right, earlier)
         direction = np.zeros_like(residual)
-        previous = np.inf
+        previous, first = np.inf, 0.0
         for count in range(_MOST_ITERATIONS):
             step = self._precondition(residual)
             square = _dot(residual, step)
-            if _largest(step) <= tolerance:
+            size = _largest(step)
+            first = first or size
+            if size <= tolerance:
                 self.iterations += count + 1
-                self._spent += count
+                self._spent += max(count - float(np.log10(max(first / tolerance, 1.0))), 0.0)
                 return solution + step
             direction = step + (square / previous) * direction
             image = self.multiply(direction)

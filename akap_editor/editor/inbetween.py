@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
-from ..deform.cholesky import SparseCholesky, SymmetricPattern
+from ..deform.cholesky import SparseCholesky, SummedPattern
 from ..geometry.checks import Complexes, Floats, Ints, as_number, as_points
 from ..geometry.mesh import TriMesh
 from ..geometry.operators import to_complex, to_points
@@ -31,7 +31,7 @@ class Inbetween:
         self._start, self._end = i, j
         self._weights = 1.0 / np.abs(self._along(to_complex(mesh.vertices))) ** 2
         _, anchors = np.unique(mesh.component, return_index=True)
-        pattern = SymmetricPattern(np.concatenate([i, j, i, anchors]), np.concatenate([i, j, j, anchors]), n)
+        pattern = SummedPattern(np.concatenate([i, j, i, anchors]), np.concatenate([i, j, j, anchors]), n)
         ones = np.full(len(anchors), self._weights.mean())
         entries = np.concatenate([self._weights, self._weights, -self._weights, ones])
         self._laplacian = SparseCholesky(pattern)

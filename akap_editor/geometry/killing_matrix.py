@@ -13,7 +13,7 @@ class VertexBlocks:
     Unknowns are interleaved: 2 i and 2 i + 1 are x and y of vertex i. Nonzeros are those of the lower
     triangle, column by column: below the block of a vertex come those of its neighbors with higher numbers.
 
-    rows, columns: (z,) int64 of the nonzeros. For loops over faces, int32: own (n, 2), the first nonzero of a
+    All int32. rows, columns: (z,) of the nonzeros. For loops over faces: own (n, 2), the first nonzero of a
     vertex's own block in either column; edges (e, 2), the same for the block of an edge; sides (m, 3), which
     edge leads from each corner of a face to the next, as 2 e, or as 2 e + 1 where to a lower number.
     """
@@ -26,7 +26,7 @@ class VertexBlocks:
         below = np.arange(len(low)) - (np.cumsum(above) - above)[low]  # in the order of the sorted edges
         own = np.stack([first, first + 2 + 2 * above], axis=1)
         edges = np.stack([first[low] + 2, own[low, 1] + 1], axis=1) + 2 * below[:, None]
-        self.rows, self.columns = np.empty((2, ends[-1]), dtype=np.int64)
+        self.rows, self.columns = np.empty((2, ends[-1]), dtype=np.int32)
         each = 2 * np.arange(n)
         for slots, row, column in [
             (own[:, 0], each, each),
@@ -51,12 +51,11 @@ class KillingMatrix:
     the printed eq. 6, the gradient is split into ∂x and ∂y: the whole stacked G would penalize rotations.
     Written out, the entry of component a at corner i and b at corner j is 2 A (∂b hᵢ ∂a hⱼ + δ_ab ∇hᵢ·∇hⱼ).
 
-    blocks: where its nonzeros are; rows, columns: (z,) the same.
+    blocks: where its nonzeros are.
     """
 
     def __init__(self, mesh: TriMesh) -> None:
         self.blocks = VertexBlocks(mesh)
-        self.rows, self.columns = self.blocks.rows, self.blocks.columns
         self._faces = mesh.faces.copy()
         self._alike, self._free = np.ones(len(mesh.faces)), np.zeros(len(mesh.faces))
 
@@ -68,7 +67,7 @@ class KillingMatrix:
         stiffness: (m,) factors of the faces' energies; spin: (m,) weights c of further energies c A ω², where
         ω = (∂x U2 − ∂y U1) / 2 is how fast a field turns on a face.
         """
-        blocks, result = self.blocks, np.zeros(len(self.rows))
+        blocks, result = self.blocks, np.zeros(len(self.blocks.rows))
         _add_faces(
             positions,
             self._faces,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from akap_editor.deform.cholesky import SparseCholesky, SymmetricPattern
+from akap_editor.deform.cholesky import SparseCholesky, SummedPattern, SymmetricPattern
 from akap_editor.errors import SolverError
 
 
@@ -32,7 +32,7 @@ def dense(rows, columns, values, size):
 
 def test_pattern_sums_entries(entries):
     rows, columns, values, size = entries
-    pattern = SymmetricPattern(rows, columns, size)
+    pattern = SummedPattern(rows, columns, size)
     nonzeros = pattern.summed(values)
     assert len(nonzeros) == pattern.count == len(set(zip(pattern.rows, pattern.columns, strict=True)))
     assert np.abs(dense(pattern.rows, pattern.columns, nonzeros, size) - dense(*entries)).max() < 1e-13
@@ -41,7 +41,7 @@ def test_pattern_sums_entries(entries):
 def test_restricted_pattern_is_the_submatrix(entries):
     rows, columns, values, size = entries
     kept = np.array([1, 2, 5, 7, 11])
-    pattern = SymmetricPattern(rows, columns, size)
+    pattern = SummedPattern(rows, columns, size)
     part, chosen = pattern.restricted(kept)
     nonzeros = pattern.summed(values)[chosen]
     expected = dense(*entries)[np.ix_(kept, kept)]
@@ -50,7 +50,7 @@ def test_restricted_pattern_is_the_submatrix(entries):
 
 def test_solution_is_that_of_the_dense_system(entries):
     rows, columns, values, size = entries
-    pattern = SymmetricPattern(rows, columns, size)
+    pattern = SummedPattern(rows, columns, size)
     solver = SparseCholesky(pattern)
     right = np.random.default_rng(1).normal(size=size)
     for scale in (1.0, 3.0):  # factorized again with other numbers
@@ -59,6 +59,17 @@ def test_solution_is_that_of_the_dense_system(entries):
         before = right.copy()
         assert np.abs(solver.solve(right) - expected).max() < 1e-13
         assert right.tolist() == before.tolist()
+
+
+def test_two_factorizations_of_one_pattern_do_not_mix(entries):
+    rows, columns, values, size = entries
+    pattern = SummedPattern(rows, columns, size)
+    solvers = SparseCholesky(pattern), SparseCholesky(pattern)
+    for scale, solver in zip((1.0, 3.0), solvers, strict=True):
+        solver.factorize(scale * pattern.summed(values))
+    right = np.ones(size)
+    once, thrice = (solver.solve(right) for solver in solvers)
+    assert np.abs(once - 3 * thrice).max() < 1e-13
 
 
 PATTERN = SymmetricPattern(np.array([0, 1, 1]), np.array([0, 0, 1]), 2)

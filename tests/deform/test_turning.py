@@ -36,7 +36,7 @@ def test_turning_fields_cost_what_the_matrix_says(mesh, shapes):
     there = to_complex(pose)
     difference = killing.nonzeros(there, spin=turning.spin) - killing.nonzeros(there)
     matrix = np.zeros((2 * len(pose),) * 2)
-    matrix[killing.rows, killing.columns] = difference
+    matrix[killing.blocks.rows, killing.blocks.columns] = difference
     matrix += np.tril(matrix, -1).T
     field = np.random.default_rng(1).normal(size=pose.shape)
     assert turning.energy(to_complex(field)) == pytest.approx(

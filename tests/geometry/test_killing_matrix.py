@@ -18,7 +18,7 @@ def filled(blocks, nonzeros):
 def assembled(mesh, positions, **weights):
     """The Killing matrix at a pose as a dense one."""
     killing = KillingMatrix(mesh)
-    return filled(killing, killing.nonzeros(to_complex(positions), **weights))
+    return filled(killing.blocks, killing.nonzeros(to_complex(positions), **weights))
 
 
 def test_killing_matrix_is_that_of_the_stacked_rows(mesh, dense):
@@ -34,7 +34,7 @@ def test_killing_matrix_at_a_pose(mesh, dense):
 
 def test_nonzeros_are_in_the_order_of_columns_and_those_of_neighbors(mesh):
     blocks = VertexBlocks(mesh)
-    keys = blocks.columns * 2 * len(mesh.vertices) + blocks.rows
+    keys = blocks.columns.astype(int) * 2 * len(mesh.vertices) + blocks.rows
     assert (np.diff(keys) > 0).all()
     coupled = np.eye(len(mesh.vertices), dtype=bool)
     coupled[mesh.edges[:, 0], mesh.edges[:, 1]] = coupled[mesh.edges[:, 1], mesh.edges[:, 0]] = True
