@@ -13,7 +13,7 @@ from .cholesky import SparseCholesky, SymmetricPattern
 
 # A factorization costs as much as five to eight iterations. When so many were spent beyond those that gained
 # a digit each, which new factors do, it is time for another.
-_AFFORDED = 5
+_AFFORDED = 8
 _MOST_ITERATIONS = 12  # of one solution; then the matrix at hand is factorized
 _KEPT = 2  # earlier solutions from which the next one begins
 _SAME = 1e-11  # of two that differ by less than this share of their energies one is enough

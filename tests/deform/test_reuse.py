@@ -114,7 +114,7 @@ def test_a_pose_too_far_away_is_factorized(system):
 def test_many_iterations_call_for_a_factorization(system):
     """Not for each pose, but for one of several, and from then on there are few and no further ones."""
     solver = prepared(system)
-    positions, frame = system.mesh.vertices * [1.4, 0.7], np.ones(system.size // 2, dtype=complex)
+    positions, frame = system.mesh.vertices * [1.3, 0.8], np.ones(system.size // 2, dtype=complex)
     counts, factorizations = [], []
     for seed in range(40):
         before = solver.iterations
