@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import glfw
@@ -34,6 +35,13 @@ SMALLEST = (640, 400)
 PLAIN = Background(color=CANVAS.color)
 SETTLE_FRAMES = 3  # ImGui needs so many frames after an event until everything stands where it belongs
 IDLE_SECONDS = 1.0
+
+
+def _warm_up() -> None:
+    """Load the engine, in a thread of its own: the window is there before."""
+    from ..deform.warm_up import warm_up
+
+    warm_up()
 
 
 def render_imgui() -> None:
@@ -120,6 +128,7 @@ class Window:
 
     def run(self, document: Document | None = None) -> None:
         """Show a document and stay until the window is closed."""
+        Thread(target=_warm_up, name="warm-up", daemon=True).start()
         if document is not None:
             self.space.show(document)
         try:

@@ -58,7 +58,8 @@ def cartoon(request: pytest.FixtureRequest):
         if (name, vertices) not in meshes:
             shared = "/" in name
             folder = request.getfixturevalue("shared_data") if shared else resource("assets", "drawings")
-            alpha = np.array(Image.open(folder / f"{name}.png").convert("RGBA"))[..., 3]
+            image = Image.open(folder / f"{name}.png")
+            alpha = np.array(image.convert("L") if name.endswith("-mask") else image.convert("RGBA").getchannel("A"))
             meshes[name, vertices] = triangulate(outlines(alpha), vertices)
         return meshes[name, vertices]
 

@@ -7,11 +7,16 @@ from akap_editor.deform import akap
 from akap_editor.deform.akap import AkapDeformer
 from akap_editor.deform.reuse import ReusedCholesky
 from akap_editor.geometry.distortion import distortion
-from akap_editor.geometry.mesh import MeshPoints
+from akap_editor.geometry.mesh import MeshPoints, TriMesh
 from akap_editor.resources import bundled_drawings
 
 BUNDLED = [path.stem for path in bundled_drawings()]
-SHARED = [f"noto/{name}" for name in ("cat", "dancer", "elephant", "gecko", "t-rex")]
+SHARED = [f"noto/{name}" for name in ("cat", "dancer", "elephant", "gecko", "t-rex")] + [
+    "gophers/gopher-8",
+    "gophers/gopher-42",
+    "drawings/char1-mask",
+    "drawings/char4-mask",
+]
 ARRIVED = 0.25  # pixels
 
 
@@ -23,6 +28,13 @@ def far_apart(mesh, count=5):
         to_chosen = ((centers[:, None] - centers[chosen]) ** 2).sum(axis=2).min(axis=1)
         chosen.append(int(np.argmax(to_chosen)))
     return MeshPoints(np.array(chosen), np.tile([0.5, 0.3, 0.2], (count, 1)))
+
+
+def largest_part(mesh):
+    """Alone, since ARAP leaves a part without pins undetermined."""
+    part = mesh.component[mesh.faces[:, 0]]
+    used, faces = np.unique(mesh.faces[part == np.bincount(part).argmax()], return_inverse=True)
+    return TriMesh(mesh.vertices[used], faces.reshape(-1, 3))
 
 
 class Drag:
@@ -141,7 +153,7 @@ def test_memory_comes_back_to_rest(cartoon, name, direction):
 @pytest.mark.parametrize(("degrees", "share"), [(40, 0.9), (80, 0.85)])
 @pytest.mark.parametrize("name", BUNDLED + SHARED)
 def test_memory_distorts_no_more_than_converged_arap(cartoon, arap, name, degrees, share):
-    drag = Drag(cartoon(name), memory=1.0)
+    drag = Drag(largest_part(cartoon(name)), memory=1.0)
     for t in np.linspace(0, 1, 61)[1:]:
         drag.to(drag.turned(degrees * t, 1 + (share - 1) * t))
     drag.settle()

@@ -1,0 +1,42 @@
+"""The first drag compiles nothing: all that it needs was made ready."""
+
+import subprocess
+import sys
+
+PROGRAM = """
+import sys
+import numpy as np
+from numba.core.dispatcher import Dispatcher
+import akap_editor as akap
+from akap_editor.deform.warm_up import warm_up
+from akap_editor.resources import resource
+
+def compiled():
+    modules = [module for name, module in list(sys.modules.items()) if name.startswith("akap_editor")]
+    values = [(f"{m.__name__}.{n}", v) for m in modules for n, v in vars(m).items()]
+    return {name: len(value.signatures) for name, value in values if isinstance(value, Dispatcher)}
+
+warm_up()
+before = compiled()
+drawing = akap.make_drawing(akap.read_image(resource("assets", "drawings", "gingerbread.png")), vertices=400)
+stiffness = np.linspace(1, 10, len(drawing.mesh.faces))
+points = drawing.mesh.locate(drawing.mesh.vertices[[5, 200, 300]])
+start = drawing.mesh.vertices[[5, 200, 300]]
+for memory in (0.0, 1.0):
+    for settings in ({}, {"stiffness": stiffness}):
+        deformer = akap.make_deformer("akap", drawing.mesh, memory=memory, **settings)
+        deformer.set_pins(points)
+        pose = drawing.mesh.vertices
+        for move in (0.0, 3.0, 6.0, 6.0, 6.0):
+            pose = deformer.step(pose, start + [0.0, move]).positions
+        deformer.step(pose, start, angles=[0.1, np.nan, np.nan])
+        deformer.vector_field(pose, start)
+assert compiled() == before, (before, compiled())
+print(sum(count == 1 for count in before.values()))
+"""
+
+
+def test_first_drag_compiles_nothing():
+    run = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
+    assert int(run.stdout) > 10
