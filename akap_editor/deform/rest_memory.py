@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry.checks import Complexes, Floats, Ints
 from ..geometry.jit import compiled
-from ..geometry.killing_matrix import VertexBlocks, add_face
+from ..geometry.killing_matrix import Slots, VertexBlocks, add_face
 from ..geometry.mesh import TriMesh
 from ..geometry.operators import hat_gradients
 
@@ -60,18 +60,7 @@ class SymmetricDirichlet:
         """
         spins = np.zeros(len(self._areas)) if spin is None else self._true_areas * spin
         result = np.zeros(len(blocks.rows))
-        _add_half_hessians(
-            columns,
-            self._areas,
-            spins,
-            convex,
-            self._faces,
-            self._hats,
-            blocks.own,
-            blocks.edges,
-            blocks.sides,
-            result,
-        )
+        _add_half_hessians(columns, self._areas, spins, convex, self._faces, self._hats, blocks.slots, result)
         return result
 
 
@@ -151,9 +140,7 @@ def _add_half_hessians(
     convex: bool,
     faces: Ints,
     hats: Complexes,
-    own: Ints,
-    edges: Ints,
-    sides: Ints,
+    slots: Slots,
     result: Floats,
 ) -> None:
     rows, matrix = np.empty((4, 6)), np.empty((6, 6))
@@ -186,7 +173,7 @@ def _add_half_hessians(
                     entry += weights[q] * rows[q, row] * rows[q, column]
                 scales = 0.25 * (rows[0, row] + rows[1, row]) * (rows[0, column] + rows[1, column])
                 matrix[row, column] = entry + spin * (scales + rows[2, row] * rows[2, column])
-        add_face(result, f, faces[f], matrix, own, edges, sides)
+        add_face(result, f, faces[f], matrix, slots)
 
 
 def descend(value: Callable[[float], float], before: float, slope: float, length: float) -> float:

@@ -1,10 +1,25 @@
 """The Killing matrix of a mesh at a pose, and other sums over faces with the same nonzeros."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from .checks import Complexes, Floats, Ints
 from .jit import compiled
 from .mesh import TriMesh
+
+
+class Slots(NamedTuple):
+    """Where the nonzeros are that a loop over faces adds to, all int32.
+
+    own (n, 2): the first nonzero of a vertex's own block, in either column; edges (e, 2): the same for the
+    block of an edge; sides (m, 3): which edge leads from each corner of a face to the next, as 2 e, or as
+    2 e + 1 where to a lower number.
+    """
+
+    own: Ints
+    edges: Ints
+    sides: Ints
 
 
 class VertexBlocks:
@@ -13,9 +28,7 @@ class VertexBlocks:
     Unknowns are interleaved: 2 i and 2 i + 1 are x and y of vertex i. Nonzeros are those of the lower
     triangle, column by column: below the block of a vertex come those of its neighbors with higher numbers.
 
-    All int32. rows, columns: (z,) of the nonzeros. For loops over faces: own (n, 2), the first nonzero of a
-    vertex's own block in either column; edges (e, 2), the same for the block of an edge; sides (m, 3), which
-    edge leads from each corner of a face to the next, as 2 e, or as 2 e + 1 where to a lower number.
+    rows, columns: (z,) int32 of the nonzeros; slots: how a face finds its own.
     """
 
     def __init__(self, mesh: TriMesh) -> None:
@@ -40,8 +53,8 @@ class VertexBlocks:
             self.rows[slots], self.columns[slots] = row, column
         start, end = mesh.faces.astype(np.int64), mesh.faces[:, [1, 2, 0]].astype(np.int64)
         number = np.searchsorted(low * n + high, np.minimum(start, end) * n + np.maximum(start, end))
-        self.own, self.edges = own.astype(np.int32), edges.astype(np.int32)
-        self.sides = (2 * number + (start > end)).astype(np.int32)
+        sides = 2 * number + (start > end)
+        self.slots = Slots(*(indices.astype(np.int32) for indices in (own, edges, sides)))
 
 
 class KillingMatrix:
@@ -67,31 +80,18 @@ class KillingMatrix:
         stiffness: (m,) factors of the faces' energies; spin: (m,) weights c of further energies c A ω², where
         ω = (∂x U2 − ∂y U1) / 2 is how fast a field turns on a face.
         """
-        blocks, result = self.blocks, np.zeros(len(self.blocks.rows))
-        _add_faces(
-            positions,
-            self._faces,
-            self._alike if stiffness is None else stiffness,
-            self._free if spin is None else spin,
-            blocks.own,
-            blocks.edges,
-            blocks.sides,
-            result,
-        )
+        stiff = self._alike if stiffness is None else stiffness
+        free = self._free if spin is None else spin
+        result = np.zeros(len(self.blocks.rows))
+        _add_faces(positions, self._faces, stiff, free, self.blocks.slots, result)
         return result
 
 
 @compiled
 def _add_faces(
-    positions: Complexes,
-    faces: Ints,
-    stiffness: Floats,
-    spin: Floats,
-    own: Ints,
-    edges: Ints,
-    sides: Ints,
-    result: Floats,
+    positions: Complexes, faces: Ints, stiffness: Floats, spin: Floats, slots: Slots, result: Floats
 ) -> None:
+    own, edges, sides = slots
     for f in range(len(faces)):
         p, q, r = positions[faces[f, 0]], positions[faces[f, 1]], positions[faces[f, 2]]
         # gradients of the hat functions, turned by 90° and times twice the area
@@ -118,16 +118,9 @@ def _add_faces(
 
 
 @compiled
-def add_face(
-    result: Floats,
-    f: int,
-    corners: Ints,
-    matrix: Floats,
-    own: Ints,
-    edges: Ints,
-    sides: Ints,
-) -> None:
+def add_face(result: Floats, f: int, corners: Ints, matrix: Floats, slots: Slots) -> None:
     """Add the matrix (6, 6) of the face ``f`` over x0 y0 x1 ... of its ``corners`` to the nonzeros."""
+    own, edges, sides = slots
     for k in range(3):
         here, there = own[corners[k], 0], own[corners[k], 1]
         result[here] += matrix[2 * k, 2 * k]

@@ -59,7 +59,8 @@ def cartoon(request: pytest.FixtureRequest):
             shared = "/" in name
             folder = request.getfixturevalue("shared_data") if shared else resource("assets", "drawings")
             image = Image.open(folder / f"{name}.png")
-            alpha = np.array(image.convert("L") if name.endswith("-mask") else image.convert("RGBA").getchannel("A"))
+            is_mask = name.endswith("-mask")
+            alpha = np.array(image.convert("L") if is_mask else image.convert("RGBA").getchannel("A"))
             meshes[name, vertices] = triangulate(outlines(alpha), vertices)
         return meshes[name, vertices]
 

@@ -49,7 +49,7 @@ def test_matrices_of_faces_add_up(mesh):
     for number, corners in enumerate(mesh.faces):
         half = rng.normal(size=(6, 6))
         matrix = half + half.T
-        add_face(nonzeros, number, corners, matrix, blocks.own, blocks.edges, blocks.sides)
+        add_face(nonzeros, number, corners, matrix, blocks.slots)
         unknowns = (2 * corners[:, None] + np.arange(2)).ravel()
         expected[np.ix_(unknowns, unknowns)] += matrix
     assert np.abs(filled(blocks, nonzeros) - expected).max() < 1e-12
