@@ -1,6 +1,7 @@
 """Sparse Cholesky factorization by CHOLMOD, symbolic and numeric phases apart (paper, section 3.1)."""
 
 from functools import cached_property
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..errors import SolverError
 from ..geometry.checks import Floats, Ints
 
 _SIMPLICIAL, _SUPERNODAL = 0, 2  # values of CHOLMOD's option
+_options = Lock()  # which are those of the whole process
 
 
 class SymmetricPattern:
@@ -62,8 +64,9 @@ class SparseCholesky:
 
     def __init__(self, pattern: SymmetricPattern, supernodal: bool = True) -> None:
         self._pattern = pattern
-        cholmod.options["supernodal"] = _SUPERNODAL if supernodal else _SIMPLICIAL
-        self._factor: Any = cholmod.symbolic(pattern.matrix, uplo="L")
+        with _options:
+            cholmod.options["supernodal"] = _SUPERNODAL if supernodal else _SIMPLICIAL
+            self._factor: Any = cholmod.symbolic(pattern.matrix, uplo="L")
 
     def factorize(self, nonzeros: Floats) -> None:
         """Numeric phase. Raises SolverError where the matrix is not positive definite or not finite."""
