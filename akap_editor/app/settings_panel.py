@@ -39,14 +39,18 @@ def _slider(low: float, high: float, form: str = "%.2f", even: bool = True) -> D
     def draw(value: Any) -> tuple[bool, Any]:
         if value is None:
             return imgui.slider_float("##value", low, low, high, "by itself", flags)
-        return imgui.slider_float("##value", float(value), low, high, form, flags)
+        return widgets.slider("##value", float(value), (low, high), form, flags)[:2]
 
     return draw
 
 
 def _whole(low: int, high: int) -> Draw:
-    flags = imgui.SliderFlags_.always_clamp | imgui.SliderFlags_.logarithmic
-    return lambda value: imgui.slider_int("##value", int(value), low, high, "%d", flags)
+    def draw(value: Any) -> tuple[bool, Any]:
+        flags = imgui.SliderFlags_.logarithmic
+        changed, chosen, _ = widgets.slider("##value", float(value), (low, high), "%.0f", flags)
+        return changed, round(chosen)
+
+    return draw
 
 
 @dataclass(frozen=True)

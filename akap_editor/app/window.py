@@ -345,7 +345,7 @@ def _screens() -> list[tuple[int, int, int, int]]:
 def _remembered_place(
     preferences: Preferences, screens: Sequence[tuple[int, int, int, int]]
 ) -> tuple[int, int] | None:
-    """The window's upper left corner, where there is still a screen to grasp it on; else the system chooses."""
+    """The window's upper left corner, where there is still a screen to grasp it on, else None."""
     remembered: list[object] = preferences.get("place", [])
     match remembered:
         case [int(x), int(y)]:
