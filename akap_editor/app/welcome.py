@@ -171,7 +171,7 @@ def _recent(space: Workspace, column: float) -> None:
     room = int(imgui.get_content_region_avail().y / imgui.get_text_line_height_with_spacing())
     for index, path in enumerate(files[: max(room, 3)]):
         name = widgets.shortened(path.name, 0.4 * column)
-        if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}###recent {index}", False)[0]:
+        if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
             space.open_path(path)
         widgets.explain(str(path))
         folder = widgets.shortened(str(path.parent), 0.55 * column, end=True)
