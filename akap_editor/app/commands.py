@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from ..editor.tool_turning import toggle_hold
 from ..resources import bundled_drawings
-from . import poses
+from . import masking, poses
 from .overlays import Measure
 from .requests import Palette
 from .workspace import Workspace
@@ -188,6 +188,7 @@ _about, _ = _toggle("about")
 _keys, _ = _toggle("keys")
 
 OPEN = Command("Open...", Workspace.ask_open, (CTRL | Key.o,), icons.ICON_FA_FOLDER_OPEN)
+MASK = Command("Cut Out with Mask...", masking.ask_mask, (), "", masking.can_mask)
 SAVE = Command("Save", Workspace.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, has_drawing)
 SAVE_AS = Command("Save As...", Workspace.save_as, (CTRL | SHIFT | Key.s,), "", has_drawing)
 EXPORT = Command("Export...", Workspace.ask_export, (CTRL | Key.e,), icons.ICON_FA_FILE_EXPORT, has_drawing)
@@ -328,6 +329,7 @@ MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
             OPEN,
             OPEN_RECENT,
             OPEN_BUNDLED,
+            MASK,
             CLOSE,
             None,
             SAVE,

@@ -42,7 +42,7 @@ class Dialogs:
         if space.error:
             _message(space, scale)
         elif space.question is not None:
-            _unsaved(space)
+            _unsaved(space, scale)
         elif space.lost:
             self._recovery.draw(space, scale)
         elif space.request is not None:
@@ -92,14 +92,15 @@ def _message(space: Workspace, scale: float) -> None:
         imgui.end_popup()
 
 
-def _unsaved(space: Workspace) -> None:
+def _unsaved(space: Workspace, scale: float) -> None:
     question, document = space.question, space.document
     if question is None or document is None:
         space.question = None
         return
     if widgets.begin_dialog("Unsaved changes"):
         name = document.path.name if document.path is not None else document.drawing.name
-        imgui.text(f"Save the changes to {name} before it is closed?")
+        text = f"Save the changes to {name} before it is closed?"
+        _text(text, min(imgui.calc_text_size(text).x + 1, 420 * scale))
         imgui.spacing()
         if widgets.button("Save", primary=True) or widgets.enter():
             widgets.close(space, "question", None)
@@ -123,7 +124,8 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
     imgui.set_item_tooltip("Parent folder")
     imgui.same_line()
     imgui.align_text_to_frame_padding()
-    imgui.text_colored(imgui.ImVec4(*QUIET), str(request.folder))
+    folder = widgets.shortened(str(request.folder), 470 * scale, end=True)
+    imgui.text_colored(imgui.ImVec4(*QUIET), folder)
     chosen = _list_entries(request, scale)
     imgui.set_next_item_width(520 * scale)
     if is_new:
@@ -131,9 +133,9 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
     _, request.name = imgui.input_text("##name", request.name)
     replaces = request.saving and bool(request.name.strip()) and os.path.isfile(request.path)
     if replaces:
-        imgui.text_colored(
-            imgui.ImVec4(*ACCENT), f"{request.path.name} is there already and would be replaced"
-        )
+        warning = " is there already and would be replaced"
+        room = 520 * scale - imgui.calc_text_size(warning).x
+        imgui.text_colored(imgui.ImVec4(*ACCENT), widgets.shortened(request.path.name, room) + warning)
     accept = ("Replace" if replaces else "Save") if request.saving else "Open"
     imgui.spacing()
     imgui.begin_disabled(not request.name.strip())
@@ -150,7 +152,8 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
 def _list_entries(request: FileRequest, scale: float) -> bool:
     """The folder's content; whether a file was double-clicked."""
     chosen = False
-    imgui.begin_child("##entries", ImVec2(520 * scale, 260 * scale), imgui.ChildFlags_.borders)
+    height = min(260 * scale, imgui.get_main_viewport().size.y - 220 * scale)
+    imgui.begin_child("##entries", ImVec2(520 * scale, height), imgui.ChildFlags_.borders)
     for name, is_folder in request.entries():
         icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
         flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups

@@ -49,12 +49,13 @@ def draw(space: Workspace, scale: float) -> None:
     """The page as a dialog; ?, Esc or Enter closes it."""
     if not widgets.begin_dialog("Keys and mouse"):
         return
-    room = imgui.get_main_viewport().work_size  # ImGui makes no dialog larger
+    room = imgui.get_main_viewport().size  # ImGui makes no dialog larger
     count = max(1, min(_MOST_COLUMNS, int((room.x - 40 * scale) / (_COLUMN * scale))))
     columns = _columns(groups(), count)
     lines = max(sum(len(lines) + 2 for _, lines in column) for column in columns)
     height = min(lines * imgui.get_text_line_height_with_spacing(), room.y - 140 * scale)
-    imgui.begin_child("##all", ImVec2(len(columns) * _COLUMN * scale, height))
+    width = len(columns) * _COLUMN * scale + imgui.get_style().scrollbar_size
+    imgui.begin_child("##all", ImVec2(width, height))
     if imgui.begin_table("##columns", len(columns)):
         imgui.table_next_row()
         for column in columns:

@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -31,13 +32,15 @@ SPACING = 30.0  # points of the screen between arrows
 LONGEST = 1.6  # times the spacing: the longest arrow
 SHARE = 0.2  # of the time that fields may take while something moves
 COLORS: dict[Measure, Floats] = {"area": diverging(), "angle": sequential()}
+SWITCHES = ("vectors", "ghost", "trails", "show_reference")  # fields that are remembered between runs
 
 
 @dataclass
 class ViewState:
     """Which overlays are on.
 
-    vectors: the fields of the drag; heat: what the map of distortion shows, if on; heat_range: see RANGES.
+    vectors: the fields of the drag; heat: what the map of distortion shows, if on; heat_range: see RANGES;
+    reference_path: the file of the reference picture, None where it came from none.
     """
 
     vectors: bool = False
@@ -46,14 +49,36 @@ class ViewState:
     ghost: bool = False
     trails: bool = False
     reference: Reference | None = None
+    reference_path: Path | None = None
     show_reference: bool = True
     _fields: "_Fields" = field(default_factory=lambda: _Fields())
     _heat: "tuple[Distortion, Measure, int, Heat] | None" = None
     _tint: tuple[Floats, Heat] | None = None
 
-    def set_reference(self, image: NDArray[np.uint8]) -> None:
+    def set_reference(self, image: NDArray[np.uint8], path: Path | None = None) -> None:
         """Show another reference picture, (h, w, 4) uint8, at half its strength."""
         self.reference, self.show_reference = Reference(image, REFERENCE), True
+        self.reference_path = path
+
+    def kept(self) -> dict[str, object]:
+        """What is remembered between runs, for `recall`."""
+        switches = {name: getattr(self, name) for name in SWITCHES}
+        reference = str(self.reference_path.absolute()) if self.reference_path is not None else ""
+        return {**switches, "heat": self.heat or "", "range": RANGES[self.heat_range], "reference": reference}
+
+    def recall(self, kept: dict[str, object]) -> None:
+        """All as `kept` said it was, but the reference picture, which must be read again.
+
+        What makes no sense is passed over: the file may have been edited by hand.
+        """
+        for name in SWITCHES:
+            if isinstance(on := kept.get(name), bool):
+                setattr(self, name, on)
+        self.heat = next((measure for measure in COLORS if measure == kept.get("heat")), None)
+        if kept.get("range") in RANGES:
+            self.heat_range = RANGES.index(kept["range"])
+        if isinstance(path := kept.get("reference"), str) and path:
+            self.reference_path = Path(path)
 
     def overlays(
         self, editor: Editor, distortion: Distortion | None, mesh_lines: bool, scale: float

@@ -20,7 +20,7 @@ from . import (
     widgets,
 )
 from .commands import Command
-from .theme import ACCENT, QUIET, packed
+from .theme import ACCENT, QUIET, TEXT, packed
 from .workspace import Workspace
 
 _TOOLS: tuple[Command | None, ...] = (
@@ -153,12 +153,13 @@ def _status_bar(space: Workspace, scale: float) -> None:
     height = imgui.get_frame_height() + 2 * scale
     if widgets.side_bar("Status", imgui.Dir.down, height, ImVec2(14 * scale, 4 * scale)):
         imgui.align_text_to_frame_padding()
-        if space.notice:
-            imgui.text_colored(ImVec4(*ACCENT), space.notice)
-        else:
-            imgui.text_unformatted(space.editor.hint)
-        if space.document is not None:
-            facts = f"{space.editor.camera.zoom * 100:.0f} %"
-            imgui.same_line(imgui.get_window_width() - imgui.calc_text_size(facts).x - 16 * scale)
+        facts = f"{space.editor.camera.zoom * 100:.0f} %" if space.document is not None else ""
+        right = imgui.get_window_width() - imgui.calc_text_size(facts).x - 16 * scale
+        text = space.notice or space.editor.hint
+        shown = widgets.shortened(text, right - 30 * scale)
+        imgui.text_colored(ImVec4(*(ACCENT if space.notice else TEXT)), shown)
+        widgets.explain(text if shown != text else "")
+        if facts:
+            imgui.same_line(right)
             imgui.text_colored(ImVec4(*QUIET), facts)
     imgui.end()

@@ -12,6 +12,7 @@ from . import widgets
 from .theme import QUIET
 from .workspace import Workspace
 
+_TITLE = "Parameters"
 _LABELS = 8.3  # times the font's size: width of the labels
 
 Draw = Callable[[Any], tuple[bool, Any]]
@@ -38,14 +39,18 @@ def _slider(low: float, high: float, form: str = "%.2f", even: bool = True) -> D
     def draw(value: Any) -> tuple[bool, Any]:
         if value is None:
             return imgui.slider_float("##value", low, low, high, "by itself", flags)
-        return imgui.slider_float("##value", float(value), low, high, form, flags)
+        return widgets.slider("##value", float(value), (low, high), form, flags)[:2]
 
     return draw
 
 
 def _whole(low: int, high: int) -> Draw:
-    flags = imgui.SliderFlags_.always_clamp | imgui.SliderFlags_.logarithmic
-    return lambda value: imgui.slider_int("##value", int(value), low, high, "%d", flags)
+    def draw(value: Any) -> tuple[bool, Any]:
+        flags = imgui.SliderFlags_.logarithmic
+        changed, chosen, _ = widgets.slider("##value", float(value), (low, high), "%.0f", flags)
+        return changed, round(chosen)
+
+    return draw
 
 
 @dataclass(frozen=True)
@@ -180,7 +185,13 @@ def draw(space: Workspace) -> None:
     """The parameters of the current method, folded away at first."""
     assert space.document is not None
     settings = space.document.state.settings
-    if imgui.tree_node_ex("Parameters", imgui.TreeNodeFlags_.span_avail_width):
+    remembered: dict[str, object] = space.preferences.get("sections", {})
+    was_open = remembered.get(_TITLE) is True
+    imgui.set_next_item_open(was_open)
+    is_open = imgui.tree_node_ex(_TITLE, imgui.TreeNodeFlags_.span_avail_width)
+    if is_open != was_open:
+        space.preferences.put("sections", {**remembered, _TITLE: is_open})
+    if is_open:
         for parameter in PARAMETERS[settings.method]:
             _parameter(space, settings, parameter)
         imgui.tree_pop()

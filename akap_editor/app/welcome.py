@@ -170,19 +170,11 @@ def _recent(space: Workspace, column: float) -> None:
         return
     room = int(imgui.get_content_region_avail().y / imgui.get_text_line_height_with_spacing())
     for index, path in enumerate(files[: max(room, 3)]):
-        if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {path.name}##recent {index}", False)[0]:
+        name = widgets.shortened(path.name, 0.4 * column)
+        if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
             space.open_path(path)
         widgets.explain(str(path))
-        folder = _shortened(str(path.parent), 0.55 * column)
+        folder = widgets.shortened(str(path.parent), 0.55 * column, end=True)
         room_left = imgui.get_content_region_avail().x
         imgui.same_line(imgui.get_cursor_pos_x() + room_left - imgui.calc_text_size(folder).x)
         imgui.text_colored(ImVec4(*QUIET), folder)
-
-
-def _shortened(text: str, width: float) -> str:
-    """The end of a text that is too long for ``width`` points, after an ellipsis."""
-    if imgui.calc_text_size(text).x <= width:
-        return text
-    while text and imgui.calc_text_size(f"…{text}").x > width:
-        text = text[1:]
-    return f"…{text}"

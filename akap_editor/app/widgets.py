@@ -1,10 +1,12 @@
 """Small pieces that panels and dialogs are made of. They hold nothing themselves."""
 
+from bisect import bisect_left
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document import Settings
 from .commands import Command
-from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT
+from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT, packed
 from .workspace import Workspace
 
 _BAR = (
@@ -14,6 +16,7 @@ _BAR = (
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_docking
 )
+_NUMBER = 3.2  # times the font's size: least room for the number beside a slider, so that they end alike
 _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
 
 
@@ -43,12 +46,14 @@ def switch(label: str, on: bool, tooltip: str = "") -> tuple[bool, bool]:
 
 def row(label: str, value: str, tooltip: str = "") -> None:
     """A quiet label on the left, its value on the right."""
+    right = imgui.get_content_region_avail().x + imgui.get_cursor_pos_x()
     imgui.text_colored(ImVec4(*QUIET), label)
     explain(tooltip)
-    imgui.same_line(
-        imgui.get_content_region_avail().x - imgui.calc_text_size(value).x + imgui.get_cursor_pos_x()
-    )
-    imgui.text(value)
+    imgui.same_line()
+    shown = shortened(value, right - imgui.get_cursor_pos_x())
+    imgui.set_cursor_pos_x(right - imgui.calc_text_size(shown).x)
+    imgui.text_unformatted(shown)
+    explain(value if shown != value else "")
 
 
 def slider(
@@ -58,7 +63,8 @@ def slider(
 
     ImGui writes the number where the knob is.
     """
-    room = imgui.calc_text_size(form % limits[1]).x + 0.6 * imgui.get_font_size()
+    em = imgui.get_font_size()
+    room = max(imgui.calc_text_size(form % limits[1]).x, _NUMBER * em) + 0.6 * em
     imgui.set_next_item_width(-room)
     typing = imgui.internal.temp_input_is_active(imgui.get_id(name))
     imgui.push_style_color(imgui.Col_.text, ImVec4(*TEXT) if typing else ImVec4(0, 0, 0, 0))
@@ -66,12 +72,28 @@ def slider(
     imgui.pop_style_color()
     released = imgui.is_item_deactivated_after_edit()
     explain(tooltip)
-    imgui.same_line(0, 0)
-    text = form % value
-    left = imgui.get_content_region_avail().x - imgui.calc_text_size(text).x
-    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + left)
-    imgui.text(text)
+    text, corner = form % value, imgui.get_item_rect_max()
+    at = ImVec2(corner.x + room - imgui.calc_text_size(text).x, imgui.get_item_rect_min().y)
+    at.y += imgui.get_style().frame_padding.y
+    imgui.get_window_draw_list().add_text(at, packed(TEXT), text)  # no item: the slider stays the last one
     return bool(moved), float(value), bool(released)
+
+
+def shortened(text: str, width: float, end: bool = False) -> str:
+    """A text that is too long for ``width`` points with an ellipsis for its rest, or for its beginning.
+
+    end: whether it is the end that matters, as of a path.
+    """
+    if imgui.calc_text_size(text).x <= width:
+        return text
+    fits = bisect_left(
+        range(1, len(text)), True, key=lambda count: imgui.calc_text_size(_cut(text, count, end)).x > width
+    )
+    return _cut(text, fits, end)
+
+
+def _cut(text: str, count: int, end: bool) -> str:
+    return f"…{text[len(text) - count :]}" if end else f"{text[:count].rstrip()}…"
 
 
 def quiet(text: str) -> None:
@@ -113,8 +135,12 @@ def begin_dialog(title: str) -> bool:
     name = f"{title}###dialog {title}"
     if not imgui.is_popup_open(name):
         imgui.open_popup(name)
-    imgui.set_next_window_pos(imgui.get_main_viewport().get_center(), imgui.Cond_.always, ImVec2(0.5, 0.5))
-    return bool(imgui.begin_popup_modal(name, None, _DIALOG)[0])
+    viewport = imgui.get_main_viewport()
+    imgui.set_next_window_pos(viewport.get_center(), imgui.Cond_.always, ImVec2(0.5, 0.5))
+    room, viewport.work_size = viewport.work_size, viewport.size  # else no dialog is larger than the canvas
+    shown = imgui.begin_popup_modal(name, None, _DIALOG)[0]
+    viewport.work_size = room
+    return bool(shown)
 
 
 def button(label: str, primary: bool = False) -> bool:

@@ -5,7 +5,7 @@ from imgui_bundle import imgui  # isort: skip
 import ctypes
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Thread
@@ -32,6 +32,7 @@ from .workspace import Workspace
 
 SIZE = (1280, 800)
 SMALLEST = (640, 400)
+GRASP = 64  # screen coordinates of a window's corner that must be on a screen for a hand to move it
 PLAIN = Background(color=CANVAS.color)
 SETTLE_FRAMES = 3  # ImGui needs so many frames after an event until everything stands where it belongs
 IDLE_SECONDS = 1.0
@@ -79,6 +80,9 @@ class Window:
         self._dropped: list[list[Path]] = []
         self._title = ""
         self._handle = _create_window(null, hidden, size or _remembered_size(self.space.preferences))
+        place = _remembered_place(self.space.preferences, _screens())
+        if place is not None:
+            glfw.set_window_pos(self._handle, *place)
         if self.space.preferences.get("maximized", False):
             glfw.maximize_window(self._handle)
         self.ctx = moderngl.create_context(require=330)
@@ -175,6 +179,7 @@ class Window:
         preferences.put("maximized", maximized)
         if not maximized and not glfw.get_window_attrib(self._handle, glfw.ICONIFIED):
             preferences.put("window", [round(width / self.scale), round(height / self.scale)])
+            preferences.put("place", list(glfw.get_window_pos(self._handle)))
         self.space.remember()
 
     def _sleep(self) -> None:
@@ -339,6 +344,24 @@ def _remembered_size(preferences: Preferences) -> tuple[int, int]:
         case [int(width), int(height)]:
             return min(max(width, SMALLEST[0]), 16384), min(max(height, SMALLEST[1]), 16384)
     return SIZE
+
+
+def _screens() -> list[tuple[int, int, int, int]]:
+    """Left, top, width and height of what windows may cover of each monitor, in screen coordinates."""
+    return [glfw.get_monitor_workarea(monitor) for monitor in glfw.get_monitors()]
+
+
+def _remembered_place(
+    preferences: Preferences, screens: Sequence[tuple[int, int, int, int]]
+) -> tuple[int, int] | None:
+    """The window's upper left corner, where there is still a screen to grasp it on, else None."""
+    remembered: list[object] = preferences.get("place", [])
+    match remembered:
+        case [int(x), int(y)]:
+            for left, top, width, height in screens:
+                if left <= x <= left + width - GRASP and top <= y <= top + height - GRASP:
+                    return x, y
+    return None
 
 
 def _create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:

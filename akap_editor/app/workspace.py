@@ -1,6 +1,7 @@
 """What the window holds besides the drawing's own state: view switches, files, messages, questions."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -12,6 +13,7 @@ from ..editor.editor import Editor
 from ..editor.mixer import Mixer
 from ..editor.player import Player
 from ..editor.remesher import Remesher
+from ..editor.tool_brush import Brush
 from ..errors import AkapError, InputError
 from ..geometry.checks import Floats
 from ..geometry.distortion import Distortion, distortion
@@ -86,12 +88,21 @@ class Workspace:
         space.first_steps = preferences.is_kept and not preferences.get("first steps done", False)
         for name in SWITCHES:
             setattr(space, name, preferences.get(name, getattr(space, name)))
+        space.view.recall(preferences.get("overlays", {}))
+        if space.view.reference_path is not None:
+            space.later(space._read_reference_again)
+        brush: list[object] = preferences.get("brush", [])
+        match brush:
+            case [int() | float() as factor, int() | float() as radius]:
+                space.editor.brush = Brush.of(radius, factor)
         return space
 
     def remember(self) -> None:
         """Write what has changed to the preferences; if that fails, a notice says so once."""
         for name in SWITCHES:
             self.preferences.put(name, getattr(self, name))
+        self.preferences.put("overlays", self.view.kept())
+        self.preferences.put("brush", [self.editor.brush.factor, self.editor.brush.radius])
         try:
             self.preferences.write()
         except InputError as error:
@@ -269,9 +280,18 @@ class Workspace:
         """Ask for a picture to be seen behind the drawing."""
 
         def use(path: Path) -> None:
-            self.attempt(lambda: self.view.set_reference(read_image(path)))
+            self.attempt(lambda: self.view.set_reference(read_image(path), path))
 
         self.request = FileRequest("Choose reference picture", PICTURE_SUFFIXES, self.folder, use)
+
+    def _read_reference_again(self) -> None:
+        """The reference picture of the last run, on or off as it was; nobody misses it where it is gone."""
+        path, shown = self.view.reference_path, self.view.show_reference
+        self.view.reference_path = None
+        with suppress(InputError):
+            if path is not None:
+                self.view.set_reference(read_image(path), path)
+        self.view.show_reference = shown
 
     def ask_export(self) -> None:
         """Ask what is to be exported."""

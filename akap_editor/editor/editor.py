@@ -13,6 +13,7 @@ from .events import Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
 from .history import Entry
 from .poses import free_name
 from .session import Session
+from .sight import Sight
 from .tool import Tool, distance
 from .tool_brush import Brush
 from .tools import ZOOM_STEP, Idle
@@ -45,6 +46,7 @@ class Editor:
         self.newest_pin: int | None = None  # added by the last click: a second one on it is no double click
         self._nudge: tuple[Entry | None, frozenset[int], float] | None = None  # entry, selection, time
         self.tool: Tool = Idle(self)
+        self._sight = Sight()
         self._clock = clock
 
     # -- document ------------------------------------------------------------------------------------------
@@ -357,8 +359,7 @@ class Editor:
             return False
         if self.chosen_tool == "brush" or self.hovered_pin is not None or self.held & {"shift", "alt"}:
             return False
-        state, mesh = self.session.state, self.session.drawing.mesh
-        return mesh.find(self.camera.to_drawing(self.pointer), state.positions) is not None
+        return self._sight.sees_drawing(self.session, self.camera.to_drawing(self.pointer))
 
     @property
     def hand(self) -> bool:

@@ -1,5 +1,7 @@
 """Parts that bend less: factors of the faces' energies, painted with a soft brush."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -34,15 +36,24 @@ def coverage(mesh: TriMesh, dabs: ArrayLike, radius: float) -> Floats:
     Raises InputError.
     """
     radius = as_number(radius, "radius", 0.0, np.inf)
+    x, y, sizes = _faces(mesh)
+    reach, result = max(radius, sizes.max()), np.zeros(len(sizes))
+    for dab_x, dab_y in as_points(dabs, "dabs").tolist():
+        dx, dy = x - dab_x, y - dab_y
+        near = np.flatnonzero((np.abs(dx) <= reach) & (np.abs(dy) <= reach))
+        away = np.hypot(dx[near], dy[near])
+        share = (1.0 - away / np.maximum(radius, sizes[near])) / (1.0 - _FULL)
+        result[near] = np.maximum(result[near], np.clip(share, 0.0, 1.0))
+    return result * result * (3.0 - 2.0 * result)
+
+
+@lru_cache(maxsize=2)
+def _faces(mesh: TriMesh) -> tuple[Floats, Floats, Floats]:
+    """Centers of the faces at rest, x (m,) and y (m,), and how far they reach from there, (m,)."""
     corners = mesh.vertices[mesh.faces]
     centers = corners.mean(axis=1)
     sizes = np.sqrt(((corners - centers[:, None]) ** 2).sum(axis=2).max(axis=1))
-    result = np.zeros(len(centers))
-    for dab in as_points(dabs, "dabs"):
-        away = np.hypot(*(centers - dab).T)
-        share = (1.0 - away / np.maximum(radius, sizes)) / (1.0 - _FULL)
-        np.maximum(result, np.clip(share, 0.0, 1.0), out=result)
-    return result * result * (3.0 - 2.0 * result)
+    return centers[:, 0].copy(), centers[:, 1].copy(), sizes
 
 
 def painted(stiffness: Floats | None, covered: Floats, factor: float) -> Floats | None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.checks import Floats
 from .events import PointerEvent
-from .stiffness import SOFTEST, coverage, painted
+from .stiffness import SOFTEST, STIFFEST, coverage, painted
 from .tool import Tool
 
 if TYPE_CHECKING:
@@ -26,6 +26,11 @@ class Brush:
     radius: float = 32.0
     factor: float = 100.0
     erasing: bool = False
+
+    @classmethod
+    def of(cls, radius: float, factor: float) -> "Brush":
+        """The nearest brush that there is."""
+        return cls(max(SMALLEST, min(LARGEST, radius)), max(SOFTEST, min(STIFFEST, factor)))
 
     @property
     def hint(self) -> str:

@@ -12,7 +12,7 @@ from PIL import Image
 
 from ..editor.document import Document, Drawing, EditState, Meshing
 from ..errors import InputError
-from ..geometry.checks import Floats, frozen
+from ..geometry.checks import Floats, as_number, frozen
 from ..geometry.mesh import TriMesh
 from .archive import Archive, Entry, pack
 from .atomic import read_file, write_atomic
@@ -25,6 +25,7 @@ MIMETYPE = b"application/x-akap"
 FORMAT = "akap"
 VERSION = 1
 STIFFNESS = "stiffness"  # entry with a factor for each face
+ORIGINAL = "original.png"  # entry with the picture before its background was removed
 
 MAX_VERTICES = 1_000_000
 MAX_FACES = 2_000_000
@@ -123,14 +124,16 @@ def _check_vertices(vertices: Floats) -> None:
 
 
 # The picture of a drawing never changes, and encoding it takes longer than all the rest of a save.
-_encoded: WeakKeyDictionary[Drawing, tuple[bytes, bytes]] = WeakKeyDictionary()
+_encoded: WeakKeyDictionary[Drawing, list[Entry]] = WeakKeyDictionary()
 
 
 def _picture_entries(drawing: Drawing) -> list[Entry]:
     if drawing not in _encoded:
-        _encoded[drawing] = encode_png(drawing.image), encode_png(_thumbnail(drawing.image))
-    picture, thumbnail = _encoded[drawing]
-    return [("picture.png", picture, False), ("thumbnail.png", thumbnail, False)]
+        pictures = {"picture.png": drawing.image, "thumbnail.png": _thumbnail(drawing.image)}
+        if drawing.original is not None:
+            pictures[ORIGINAL] = drawing.original
+        _encoded[drawing] = [(name, encode_png(picture), False) for name, picture in pictures.items()]
+    return _encoded[drawing]
 
 
 def _stiffness_entries(state: EditState) -> list[Entry]:
@@ -152,19 +155,23 @@ def _describe(document: Document) -> Json:
             "vertices": len(drawing.mesh.vertices),
             "faces": len(drawing.mesh.faces),
             "tied": drawing.mesh.tied,
-            **({"made": _describe_meshing(drawing.meshing)} if drawing.meshing is not None else {}),
+            **({"made": _describe_meshing(drawing)} if drawing.meshing is not None else {}),
         },
         "pins": describe_pins(document.state.pins),
         "settings": describe_settings(document.state.settings),
     }
 
 
-def _describe_meshing(meshing: Meshing) -> Json:
-    """Without the background, which the picture in the file has no more."""
+def _describe_meshing(drawing: Drawing) -> Json:
+    """The background only where the file has it."""
+    meshing = drawing.meshing
+    assert meshing is not None
+    removed = meshing.background is not None and drawing.original is not None
     return {
         "vertices": int(meshing.vertices),
         "expand": float(meshing.expand),
         "threshold": float(meshing.threshold),
+        **({"background": float(meshing.background or 0.0)} if removed else {}),
     }
 
 
@@ -207,17 +214,24 @@ def _decode(archive: Archive) -> Document:
     _check_vertices(vertices)
     trimesh = TriMesh(vertices, archive.read_array("mesh/faces", "<i4", m, 3), tied)
     uv = archive.read_array("mesh/uv", "<f4", n, 2)
-    return Document(Drawing(_picture(archive, width, height), trimesh, uv, name, meshing), state)
+    image, original = _picture(archive, "picture.png", width, height), None
+    if meshing is not None and meshing.background is not None:
+        original = _picture(archive, ORIGINAL, width, height)
+    return Document(Drawing(image, trimesh, uv, name, meshing, original), state)
 
 
 def _read_meshing(record: Json) -> Meshing:
     expand, threshold = numbers([record.get("expand"), record.get("threshold")], "expand and threshold")
-    return Meshing(get(record, "vertices", int), float(expand), float(threshold))
+    background = None
+    if "background" in record:
+        (tolerance,) = numbers([record["background"]], "background")
+        background = as_number(float(tolerance), "background", 0.0, 1.0)
+    return Meshing(get(record, "vertices", int), float(expand), float(threshold), background)
 
 
-def _picture(archive: Archive, width: int, height: int) -> NDArray[np.uint8]:
-    content = archive.read("picture.png", MAX_PICTURE_BYTES)
-    with inside("picture.png"):
+def _picture(archive: Archive, name: str, width: int, height: int) -> NDArray[np.uint8]:
+    content = archive.read(name, MAX_PICTURE_BYTES)
+    with inside(name):
         image = decode_image(content, ("PNG",), (width, height))
         if image.shape[:2] != (height, width):
             raise InputError("expected a picture that stands upright, got one turned by its EXIF data")

@@ -75,6 +75,10 @@ def zoom_is(factor):
 
 CASES = {
     "Open...": (nothing, lambda ui: ui.space.request is not None and not ui.space.request.saving),
+    "Cut Out with Mask...": (
+        nothing,
+        lambda ui: ui.space.request is not None and not ui.space.request.saving,
+    ),
     "Save": (bent, lambda ui: ui.space.request is not None and ui.space.request.saving),
     "Save As...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
     "Export...": (nothing, lambda ui: ui.space.export.shown),

@@ -390,3 +390,48 @@ def test_a_dropped_picture_opens(pinned, tmp_path, image):
     np.testing.assert_array_equal(pinned.document.drawing.mesh.vertices, expected.drawing.mesh.vertices)
     assert pinned.space.folder == tmp_path
     assert not pinned.editor.modified
+
+
+# -- masks --------------------------------------------------------------------------------------------------
+
+CUT_OUT = "Cut Out with Mask..."
+
+
+def write_half(path, image, keep):
+    """A mask that is white in the left part of a picture, black elsewhere."""
+    mask = np.zeros((*image.shape[:2], 3), dtype=np.uint8)
+    mask[:, :keep] = 255
+    Image.fromarray(mask).save(path)
+
+
+def test_a_picture_is_cut_out_with_a_mask_that_is_chosen_in_the_window(pinned, image, tmp_path):
+    write_half(tmp_path / "half.png", image, 120)
+    pinned.menu("File", CUT_OUT)
+    pinned.type_name("Choose mask", str(tmp_path / "half.png"))
+    finish(pinned)
+    assert pinned.space.notice == "Cut out with half.png"
+    expected = make_drawing(image, mask=np.repeat([[255] * 120 + [0] * 120], 160, axis=0).astype(np.uint8))
+    np.testing.assert_array_equal(pinned.document.drawing.image, expected.image)
+    assert pinned.document.drawing.mesh.vertices[:, 0].max() < 125
+    assert pinned.document.drawing.name == "figure"
+    assert not pinned.pins
+
+
+def test_what_is_not_saved_is_asked_for_before_a_mask_cuts_it_out(bent, image, tmp_path):
+    write_half(tmp_path / "half.png", image, 120)
+    bent.menu("File", CUT_OUT)
+    bent.type_name("Choose mask", "half.png")
+    bent.dialog(UNSAVED, "Cancel")
+    assert len(bent.pins) == 3
+    assert bent.document.drawing.image.shape == image.shape
+
+
+@pytest.mark.parametrize(("keep", "size", "said"), [(0, 1, "transparent"), (120, 2, "expected the size")])
+def test_a_mask_that_is_no_good_changes_nothing(pinned, image, tmp_path, keep, size, said):
+    write_half(tmp_path / "mask.png", image[::size, ::size], keep)
+    pinned.menu("File", CUT_OUT)
+    pinned.type_name("Choose mask", str(tmp_path / "mask.png"))
+    pinned.settle()
+    assert str(tmp_path / "mask.png") in pinned.space.error
+    assert said in pinned.space.error
+    assert len(pinned.pins) == 3

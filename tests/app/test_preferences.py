@@ -4,13 +4,19 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from akap_editor.app import preferences as module
+from akap_editor.app.overlays import RANGES, ViewState
 from akap_editor.app.preferences import MOST_RECENT, Preferences, preferences_path
-from akap_editor.app.window import SIZE, SMALLEST, _remembered_size
+from akap_editor.app.window import SIZE, SMALLEST, _remembered_place, _remembered_size
 from akap_editor.app.workspace import SWITCHES, Workspace
+from akap_editor.editor.stiffness import SOFTEST, STIFFEST
+from akap_editor.editor.tool_brush import LARGEST, Brush
+from akap_editor.editor.tool_brush import SMALLEST as SMALLEST_BRUSH
 from akap_editor.errors import InputError
+from akap_editor.io.images import read_image
 from akap_editor.resources import resource
 
 
@@ -146,6 +152,75 @@ def test_the_remembered_size_of_the_window(remembered, size):
     assert _remembered_size(preferences) == size
 
 
+@pytest.mark.parametrize(
+    ("remembered", "place"),
+    [
+        ([100, 80], (100, 80)),
+        ([-900, 40], (-900, 40)),
+        ([1900, 40], None),
+        ([100, 5000], None),
+        ([100], None),
+        (["left", 3], None),
+        (None, None),
+    ],
+)
+def test_the_window_comes_back_to_its_place_where_there_still_is_a_screen(remembered, place):
+    preferences = Preferences()
+    preferences.put("place", remembered)
+    assert _remembered_place(preferences, [(0, 24, 1920, 1056), (-1280, 0, 1280, 800)]) == place
+    assert _remembered_place(preferences, []) is None
+
+
+def test_overlays_come_back(path, tmp_path):
+    picture = tmp_path / "behind.png"
+    picture.write_bytes(resource("assets", "drawings", "bar.png").read_bytes())
+    space = Workspace.remembering(Preferences(path))
+    space.view.vectors = space.view.ghost = space.view.trails = True
+    space.view.heat, space.view.heat_range = "angle", 4
+    space.view.set_reference(np.zeros((1, 1, 4), np.uint8), picture)
+    space.view.show_reference = False
+    space.editor.brush = Brush(80.0, 500.0, erasing=True)
+    space.remember()
+    again = Workspace.remembering(Preferences(path))
+    for name in ("vectors", "ghost", "trails", "heat", "heat_range", "show_reference", "reference_path"):
+        assert getattr(again.view, name) == getattr(space.view, name), name
+    assert again.view.reference is None, "a start must not wait for it"
+    while again.waiting:
+        again.work()
+    assert again.view.reference is not None
+    assert again.view.reference.image.shape == read_image(picture).shape
+    assert not again.view.show_reference
+    assert again.editor.brush == Brush(80.0, 500.0)
+
+
+def test_a_reference_picture_that_is_gone_is_not_missed(path, tmp_path):
+    space = Workspace.remembering(Preferences(path))
+    space.view.set_reference(np.zeros((1, 1, 4), np.uint8), tmp_path / "gone.png")
+    space.remember()
+    again = Workspace.remembering(Preferences(path))
+    while again.waiting:
+        again.work()
+    assert (again.view.reference, again.view.reference_path, again.error) == (None, None, "")
+
+
+def test_overlays_that_make_no_sense_are_passed_over():
+    view = ViewState()
+    view.recall({"vectors": 1, "ghost": True, "heat": ["area"], "range": "wide", "reference": 3})
+    assert (view.vectors, view.ghost, view.heat, view.heat_range) == (False, True, None, ViewState.heat_range)
+    assert view.reference_path is None
+    view.recall({"range": RANGES[0]})
+    assert view.heat_range == 0
+
+
+@pytest.mark.parametrize("brush", [[1e9, -1.0], [float("nan")] * 2, ["a", 2], [3], {}])
+def test_a_remembered_brush_is_one_that_there_is(brush):
+    preferences = Preferences()
+    preferences.put("brush", brush)
+    found = Workspace.remembering(preferences).editor.brush
+    assert SMALLEST_BRUSH <= found.radius <= LARGEST
+    assert SOFTEST <= found.factor <= STIFFEST
+
+
 # -- in the window ------------------------------------------------------------------------------------------
 
 
@@ -166,6 +241,16 @@ def test_switches_and_folded_sections_come_back(keeping, path):
     assert [getattr(again, name) for name in SWITCHES] == [getattr(keeping.space, n) for n in SWITCHES]
     assert again.preferences.get("sections", {}) == {"View": False}
     assert again.preferences.get("window", []) == [1280, 800]
+
+
+def test_unfolded_parameters_come_back(keeping, path):
+    keeping.panel("Parameters")
+    keeping.window._remember()
+    keeping.space.preferences = Preferences(path)
+    keeping.settle()
+    keeping.panel("Parameters/memory/##value")
+    keeping.panel("Parameters")
+    assert keeping.space.preferences.get("sections", {}) == {"Parameters": False}
 
 
 def test_files_that_were_opened_and_saved_are_recent_and_bundled_ones_are_not(keeping, tmp_path):

@@ -16,6 +16,7 @@ from PIL import Image, ImageGrab
 from scipy.ndimage import distance_transform_edt
 
 import akap_editor
+from akap_editor.editor.tools import ZOOM_STEP
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
 
@@ -413,3 +414,34 @@ def test_an_alt_drag_of_the_ring_turns_the_drawing_and_the_pin_stays(start, pict
     assert np.degrees(held) == pytest.approx(60, abs=4)
     assert free is None
     assert np.linalg.norm(state.targets - (pins - offset) / zoom, axis=1).max() * zoom < 2.0
+
+
+def test_a_box_a_drag_of_all_pins_a_pan_and_a_zoom(start, picture):
+    """All pins go the same way, so the drawing does, too; then the canvas, then the wheel at a point."""
+    alpha = read_image(picture)[..., 3]
+    program = start(picture)
+    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    pins = np.rint(far_apart(alpha, 3) * zoom + offset).astype(int)
+    for pin in pins.tolist():
+        program.click(pin)
+    program.key("ctrl+d", "no pin is selected")
+    program.drag(CORNER, (RIGHT - 12, BOTTOM - 12))
+    program.drag(pins[1], pins[1] + (-22, 17))
+    camera = find_camera(program.key("shift+p", "pins are hidden"), alpha)
+    assert camera[0] == pytest.approx(zoom, rel=0.005)
+    np.testing.assert_allclose(camera[1], np.add(offset, (-22, 17)), atol=2.0)
+
+    program.hand("mousemove", *pins[0], "mousedown", 2)
+    for way in ((9, 2), (18, -12)):
+        program.hand("mousemove", *(pins[0] + way))
+    program.hand("mouseup", 2)
+    panned = find_camera(program.until(lambda shot: True, "the canvas is at rest"), alpha)
+    assert panned[0] == pytest.approx(camera[0], rel=0.005)
+    np.testing.assert_allclose(panned[1], camera[1] + (18, -12), atol=1.5)
+
+    before = program.grab()
+    program.hand("mousemove", *pins[0], "click", 5)
+    smaller = program.until(lambda shot: (canvas(shot) != canvas(before)).any(), "the drawing is smaller")
+    zoomed = find_camera(smaller, alpha)
+    assert zoomed[0] == pytest.approx(panned[0] / ZOOM_STEP, rel=0.005)
+    np.testing.assert_allclose(zoomed[1], pins[0] + (panned[1] - pins[0]) / ZOOM_STEP, atol=2.0)

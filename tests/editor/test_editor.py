@@ -7,6 +7,7 @@ from akap_editor.editor.document import Settings, new_document
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
 from akap_editor.errors import InputError, SolverError
+from akap_editor.geometry.mesh import TriMesh
 
 from .driver import BESIDE, bits
 
@@ -335,3 +336,19 @@ def test_camera_is_not_undoable(pinned):
     pinned.editor.camera = Camera(3.0, (1.0, 2.0))
     pinned.undo()
     assert pinned.editor.camera == Camera(3.0, (1.0, 2.0))
+
+
+def test_the_drawing_under_the_pointer_is_looked_up_once_for_each_place_and_pose(pinned, monkeypatch):
+    looked, find = [], TriMesh.find
+    monkeypatch.setattr(TriMesh, "find", lambda mesh, *args: looked.append(args) or find(mesh, *args))
+    editor = pinned.editor
+    inside, beside = editor.camera.to_screen((84.0, 45.0)), editor.camera.to_screen((2.0, 2.0))
+    for place, there in ((inside, True), (beside, False), (inside, True)):
+        editor.handle_event(PointerEvent("move", place))
+        assert [editor.would_add_pin, editor.would_add_pin] == [there, there]
+    assert len(looked) == 3
+    pinned.session.begin("Away")
+    pinned.session.set_pose(pinned.state.positions + 1000.0)
+    pinned.session.commit()
+    assert not editor.would_add_pin
+    assert len(looked) == 4

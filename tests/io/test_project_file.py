@@ -13,7 +13,17 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from PIL import Image
 
-from akap_editor.editor.document import Document, Drawing, EditState, Meshing, Pin, Settings, make_drawing
+from akap_editor.editor.document import (
+    Document,
+    Drawing,
+    EditState,
+    Meshing,
+    Pin,
+    Settings,
+    make_drawing,
+    new_document,
+)
+from akap_editor.editor.remesh import remeshed
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io import atomic
@@ -563,3 +573,30 @@ def test_a_mesh_of_which_nothing_is_said_is_tied(saved, reopen):
     record["mesh"]["made"] = {"vertices": 10, "expand": 2, "threshold": "half"}
     with pytest.raises(InputError, match=r"expected expand and threshold to be numbers, got .*'half'"):
         reopen(pack(saved | {"document.json": json.dumps(record).encode()}))
+
+
+def test_a_removed_background_comes_back_with_its_tolerance(tmp_path):
+    picture = np.full((40, 60, 4), (250, 250, 250, 255), dtype=np.uint8)
+    picture[10:30, 10:50, :3] = (40, 90, 160)
+    drawing = make_drawing(picture, vertices=60, background=0.125)
+    saved = new_document(drawing)
+    opened = load(save(saved, tmp_path / "cut.akap").path)
+    assert_equal(opened, saved)
+    assert opened.drawing.meshing == drawing.meshing
+    np.testing.assert_array_equal(opened.drawing.original, picture)
+    again = remeshed(opened.drawing, replace(opened.drawing.meshing, background=None))
+    np.testing.assert_array_equal(again.image, picture)
+
+    entries = unpack((tmp_path / "cut.akap").read_bytes())
+    for name, spoil in (
+        ("original.png", None),
+        ("original.png", encode_png(picture[:20])),
+        ("document.json", entries["document.json"].replace(b'"background": 0.125', b'"background": 7')),
+    ):
+        spoiled = {**entries, name: spoil} if spoil is not None else {**entries}
+        if spoil is None:
+            del spoiled[name]
+        path = tmp_path / "spoiled.akap"
+        path.write_bytes(pack(spoiled))
+        with pytest.raises(InputError, match="original.png" if name == "original.png" else "background"):
+            load(path)

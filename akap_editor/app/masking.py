@@ -1,0 +1,50 @@
+"""Cutting the open picture out anew with a mask: a second picture that says what belongs to the drawing."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from ..editor.document import Document, drawing_from, masked, new_document
+from ..errors import InputError
+from ..io.documents import PICTURE_SUFFIXES
+from ..io.images import read_mask
+from .requests import FileRequest
+from .workspace import Workspace
+
+
+def can_mask(space: Workspace) -> bool:
+    """Whether the mesh was made of the picture, as those from mesh files are not."""
+    return space.document is not None and space.document.drawing.meshing is not None
+
+
+def ask_mask(space: Workspace) -> None:
+    """Ask for a mask, and about unsaved changes, as the drawing begins anew; then cut it out."""
+
+    def use(path: Path) -> None:
+        document = space.document
+        if document is None:
+            return
+
+        def cut() -> None:
+            space.show(cut_out(document, path))
+            space.notice = f"Cut out with {path.name}"
+
+        space.unless_unsaved(lambda: space.later(cut, f"Cutting out with {path.name} ..."))
+
+    space.request = FileRequest("Choose mask", PICTURE_SUFFIXES, space.folder, use)
+
+
+def cut_out(document: Document, mask: Path) -> Document:
+    """The picture of ``document``, with its background if that was removed, seen only where a mask shows it.
+
+    mask: a picture of the same size, bright, or opaque, where the picture is to be visible. Pins and pose are
+    those of a new drawing. Raises InputError.
+    """
+    drawing = document.drawing
+    assert drawing.meshing is not None
+    picture = drawing.image if drawing.original is None else drawing.original
+    shown = read_mask(mask)
+    try:
+        image = masked(picture, shown)
+        return new_document(drawing_from(image, replace(drawing.meshing, background=None), drawing.name))
+    except InputError as error:
+        raise InputError(f"{mask}: {error}") from error
