@@ -7,10 +7,11 @@ import click
 import numpy as np
 
 from ..editor.document import Drawing, Settings
+from ..editor.easing import EASINGS
 from ..editor.framing import frame_box
 from ..editor.recording import Recording
 from ..editor.replay import replay
-from ..editor.timeline import EASINGS, Frame, Motion, frame_times, shorten_pauses
+from ..editor.timeline import Frame, Motion, frame_times, shorten_pauses
 from ..errors import InputError
 from ..io.documents import open_document
 from ..io.frames import export_frames, export_kind

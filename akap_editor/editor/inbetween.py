@@ -1,5 +1,6 @@
 """In-betweens of two poses: every edge turns and grows at a constant rate."""
 
+from collections import OrderedDict
 from collections.abc import Callable
 
 import numpy as np
@@ -105,6 +106,34 @@ class Inbetween:
             for face, parent in zip(order[1:].tolist(), parents[order[1:]].tolist(), strict=True):
                 turns[face] = turns[parent] + _wrapped(angles[face] - turns[parent])
         return turns
+
+
+class Ways:
+    """In-betweens of many pairs of poses: what a mesh or a pair needs is prepared once, and kept a while."""
+
+    def __init__(self, most: int = 64) -> None:
+        self._most = most
+        self._inbetween: Inbetween | None = None
+        self._mesh: TriMesh | None = None
+        self._ways: OrderedDict[tuple[int, int], tuple[Floats, Floats, Callable[[float], Floats]]]
+        self._ways = OrderedDict()
+
+    def prepare(self, mesh: TriMesh, start: Floats, end: Floats) -> Callable[[float], Floats]:
+        """As `Inbetween.between`. Pairs are told apart by which arrays they are."""
+        if self._inbetween is None or mesh is not self._mesh:
+            self._mesh, self._inbetween = mesh, Inbetween(mesh)
+            self._ways.clear()
+        pair = id(start), id(end)
+        if pair not in self._ways:
+            self._ways[pair] = start, end, self._inbetween.between(start, end)
+            if len(self._ways) > self._most:
+                self._ways.popitem(last=False)
+        self._ways.move_to_end(pair)
+        return self._ways[pair][2]
+
+    def pose(self, mesh: TriMesh, start: Floats, end: Floats, t: float) -> Floats:
+        """The pose (n, 2) at a time from 0, exactly ``start``, to 1, exactly ``end``, both (n, 2)."""
+        return start if t == 0 or start is end else end if t == 1 else self.prepare(mesh, start, end)(t)
 
 
 def _progress(rates: Complexes, t: float) -> Complexes:

@@ -60,10 +60,11 @@ def carried_over(state: EditState, old: TriMesh, drawing: Drawing) -> EditState:
     poses = tuple(
         replace(pose, positions=_carried(mesh.vertices, old, pose.positions)) for pose in state.poses
     )
+    animation = state.animation.carried(lambda pose: _carried(mesh.vertices, old, pose))
     stiffness = state.stiffness
     if stiffness is not None:
         stiffness = stiffness[_nearest(mesh.vertices[mesh.faces].mean(axis=1), old)[0]]
-    return replace(state, positions=positions, pins=pins, drawing=drawing, poses=poses, stiffness=stiffness)
+    return EditState(pins, positions, state.settings, drawing, poses, stiffness, animation)
 
 
 def _nearest(points: Floats, mesh: TriMesh) -> tuple[Ints, Floats, Floats]:

@@ -2,8 +2,9 @@
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 from ..deform.deformer import StepResult
 from ..errors import InputError, SolverError
 from ..geometry.checks import Floats, as_number, as_points
+from . import keyframes, poses
 from .angles import MOST_ANGLE, holding, pin_angles, stopped
 from .bake import baked_state
 from .bending import Bending
@@ -18,8 +20,7 @@ from .depth import check_depths, depth_at
 from .document import Document, Drawing, EditState, Pin, Settings
 from .event_log import EventLog
 from .history import History
-from .poses import NamedPose, with_pose
-from .recording import Recording, drawing_header, pins_to_json, settings_to_json
+from .recording import Recording, drawing_header, opening_events, pins_to_json, settings_to_json
 from .remesh import carried_over
 from .stiffness import as_stiffness, coverage, painted
 
@@ -29,6 +30,16 @@ MOST_SETTLING = 400  # steps after the last change of a target, should a pose ne
 ANGLE_TOLERANCE = 0.002  # radians: a pin turned more nearly than this has arrived
 
 Target = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class _Visit:
+    """What is shown in place of the ``present``; see `Session.visit`."""
+
+    present: EditState
+    there: EditState
+    line: int | None
+    taken: bool
 
 
 class Session:
@@ -44,20 +55,16 @@ class Session:
         self.history = History()
         self.last_step: StepResult | None = None
         self._saved: EditState | None = document.state
-        self._present: EditState | None = None  # while an earlier moment is visited
-        self._visited: int | None = 0  # its line in the recording
+        self.jumps = 0  # how often the pose has changed in another way than by steps
+        self._visit: _Visit | None = None
+        self._taken: EditState | None = None  # as the open gesture began, where it took over a visited pose
         self._settling = 0
         self._opened = document.drawing
         self._clock, self._started = clock, clock()
         self.recording = Recording(drawing_header(document.drawing), EventLog())
         self._bending = Bending(document.drawing.mesh, document.state)
-        self._record("settings", **settings_to_json(document.state.settings))
-        if document.state.stiffness is not None:
-            self._record("stiffness", factors=document.state.stiffness.tolist())
-        if self.posed:
-            self._record("pose", positions=document.state.positions.tolist())
-        if document.state.pins:
-            self._record("pins", pins=pins_to_json(document.drawing.mesh, document.state.pins))
+        for event in opening_events(document):
+            self._record(**event)
 
     # -- what is there -------------------------------------------------------------------------------------
 
@@ -67,6 +74,11 @@ class Session:
         return self.document.state
 
     @property
+    def present(self) -> EditState:
+        """The current state, also while another moment is visited."""
+        return self.state if self._visit is None else self._visit.present
+
+    @property
     def drawing(self) -> Drawing:
         """The picture and its mesh."""
         return self.document.drawing
@@ -74,7 +86,7 @@ class Session:
     @property
     def modified(self) -> bool:
         """Whether there is something that the file does not hold."""
-        return (self._present or self.document.state) is not self._saved
+        return self.present is not self._saved
 
     @property
     def posed(self) -> bool:
@@ -114,47 +126,55 @@ class Session:
 
     @property
     def visiting(self) -> bool:
-        """Whether an earlier moment is shown in place of the present one."""
-        return self._present is not None
+        """Whether another moment is shown in place of the present one."""
+        return self._visit is not None
 
-    def visit(self, state: EditState, line: int | None) -> None:
-        """Show the state after an earlier ``line`` of the recording; nothing is edited, and nothing recorded.
+    def visit(
+        self, state: EditState, line: int | None = None, seen: Floats | None = None, take: bool = False
+    ) -> None:
+        """Show a state; nothing is edited, and nothing recorded.
 
-        The next gesture goes on from there, or, with None in place of a line, from the present. `leave`
-        returns to the present, and so do undo and redo.
+        line: of the recording, after which the state was there: the next gesture goes on from it. Without,
+        that goes on from the present; take: but takes over the pose, as a part of it. seen: a pose (n, 2)
+        that is shown in place of the state's. `leave` returns to the present, and so do undo and redo.
         """
-        present = self._present or self.state
-        self._restore(state)
-        self._present, self._visited = present, line
+        self._visit = _Visit(self.present, state, line, take)
+        self._show(state if seen is None else replace(state, positions=seen))
 
     def leave(self) -> None:
-        """Show the present again, if an earlier moment is visited."""
-        if self._present is not None:
-            present, self._present = self._present, None
-            self._restore(present)
+        """Show the present again, if another moment is visited."""
+        if self._visit is not None:
+            present, self._visit = self._visit.present, None
+            self._show(present)
 
     # -- gestures ------------------------------------------------------------------------------------------
 
     def begin(self, label: str) -> None:
-        """Start a gesture; while an earlier moment is visited, from there, and an entry leads back to now."""
-        if self._visited is None:
-            self.leave()
-        if self._present is not None:
-            present, self._present = self._present, None
-            self.history.begin("Go back in time", present)
+        """Start a gesture; while another moment is visited, from there, see `visit`."""
+        visit = self._visit
+        self.leave()
+        if visit is not None and visit.line is not None:
+            self.history.begin("Go back in time", visit.present)
             self._record("begin", label="Go back in time")
-            self._record("return", line=self._visited)
+            self.go_back(visit.there, visit.line)
             self.history.commit()
             self._record("commit")
         self.history.begin(label, self.state)
         self._bending.turns.forget()
         self._record("begin", label=label)
+        if visit is not None and visit.taken:
+            self.set_pose(visit.there.positions)
+            self._taken = self.state
 
     def commit(self, join: bool = False) -> None:
         """End the gesture: one undo entry, or none where nothing changed. The pose may go on to settle.
 
         join: as a part of the entry before it.
         """
+        if self.state is self._taken:  # nothing was done but to look
+            self.abort()
+            return
+        self._taken = None
         if self.history.unchanged(self.state):
             self.history.abort()
         else:
@@ -164,6 +184,7 @@ class Session:
     def abort(self) -> None:
         """End the gesture and restore the state from before it, bit for bit."""
         settling = self._settling if self.history.unchanged(self.state) else 0
+        self._taken = None
         self._restore(self.history.abort())
         self._settling = settling
         self._record("abort")
@@ -297,17 +318,17 @@ class Session:
             self._restore(baked_state(self.state, self.drawing))
             self._record("bake")
 
-    def keep_pose(self, name: str) -> None:
-        """Remember the current pose by a name; one of the same name is forgotten. Raises InputError."""
-        pose = NamedPose(name, self.state.positions)
-        self._set_state(replace(self.state, poses=with_pose(self.state.poses, pose)))
-        self._record("keep", name=name)
+    def change_poses(self, do: str, **values: Any) -> None:
+        """Change the poses with names, see `poses.changed`; nothing moves. Raises InputError, KeyError."""
+        kept = poses.changed(self.state.poses, do, values, self.state.positions)
+        self._set_state(replace(self.state, poses=kept))
+        self._record(do, **values)
 
-    def forget_pose(self, name: str) -> None:
-        """Forget a pose, if there is one of that name."""
-        others = tuple(pose for pose in self.state.poses if pose.name != name)
-        self._set_state(replace(self.state, poses=others))
-        self._record("forget", name=name)
+    def animate(self, do: str, **values: Any) -> None:
+        """Change the keyframes, see `keyframes.changed`; nothing moves. Raises InputError, KeyError."""
+        animation = keyframes.changed(self.state.animation, do, values, self.state.positions)
+        self._set_state(replace(self.state, animation=animation))
+        self._record(do, **values)
 
     def go_back(self, state: EditState, line: int) -> None:
         """Take over the state after an earlier ``line`` of the recording, where what came after it stays."""
@@ -349,6 +370,10 @@ class Session:
         while self.moving:
             self.step()
 
+    def halt(self) -> None:
+        """Leave the pose as it is, though pins may be on their way."""
+        self._settling = 0
+
     # -- saving --------------------------------------------------------------------------------------------
 
     def mark_saved(self, path: Path) -> None:
@@ -378,6 +403,7 @@ class Session:
         self._settling = MOST_SETTLING + int(self._bending.steps_left(self.state))
 
     def _put(self, pose: Floats) -> None:
+        self.jumps += 1
         pins = stopped(self.drawing.mesh, self.state.pins, pose)
         self._set_state(replace(self.state, pins=pins, positions=pose))
         self._settling = 0
@@ -386,6 +412,10 @@ class Session:
         self.document = replace(self.document.with_state(state), drawing=state.drawing or self._opened)
 
     def _restore(self, state: EditState) -> None:
+        self.jumps += 1
+        self._show(state)
+
+    def _show(self, state: EditState) -> None:
         self._set_state(state)
         if self._bending.fits(self.drawing.mesh, state):
             self._bending.last_way = None
