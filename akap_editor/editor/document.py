@@ -15,7 +15,7 @@ from ..geometry.checks import Floats, Ints, as_points, frozen
 from ..geometry.mesh import MeshPoints, TriMesh
 from ..geometry.meshing import mesh_picture
 from .depth import face_order
-from .keyframes import Animation
+from .keyframes import NO_ANIMATION, Animation
 from .poses import NamedPose
 
 
@@ -195,7 +195,7 @@ class EditState:
     drawing: Drawing | None = None
     poses: tuple[NamedPose, ...] = ()
     stiffness: Floats | None = None
-    animation: Animation = Animation()
+    animation: Animation = NO_ANIMATION
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positions", frozen(np.asarray(self.positions, dtype=np.float64)))

@@ -20,7 +20,12 @@ def easing(name: str) -> Callable[[float], float]:
 
 def key_easing(name: str) -> Callable[[float], float]:
     """As `easing`; between keyframes there is also "hold", which waits and then jumps. Raises InputError."""
-    return KEY_EASINGS[_known(name, KEY_EASINGS)]
+    return KEY_EASINGS[as_key_easing(name)]
+
+
+def as_key_easing(name: object) -> str:
+    """A name of `KEY_EASINGS`. Raises InputError on anything else."""
+    return _known(name, KEY_EASINGS)
 
 
 def _known(name: object, names: dict[str, Callable[[float], float]]) -> str:

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..errors import InputError
-from ..geometry.checks import Floats, as_number, as_points, frozen
-from .easing import key_easing
+from ..geometry.checks import Floats, as_number
+from .easing import as_key_easing, key_easing
+from .poses import as_pose
 
 LATEST_KEY = 3600.0  # seconds
 DIGITS = 3  # times are whole milliseconds, so that a keyframe is found by its time
@@ -26,9 +27,9 @@ class Keyframe:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", key_time(self.time))
-        object.__setattr__(self, "positions", frozen(as_points(self.positions, "keyframe")))
+        object.__setattr__(self, "positions", as_pose(self.positions, "keyframe"))
         if self.ease is not None:
-            key_easing(self.ease)
+            as_key_easing(self.ease)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +40,7 @@ class Animation:
     ease: str = "in-out"
 
     def __post_init__(self) -> None:
-        key_easing(self.ease)
+        as_key_easing(self.ease)
         times = [key.time for key in self.keys]
         if times != sorted(set(times)):
             raise InputError(f"keyframes: expected times that grow, got {times}")
@@ -80,15 +81,18 @@ class Animation:
         return replace(self, keys=tuple(key for key in self.keys if key.time not in gone))
 
     def moved(self, times: Mapping[float, float], copy: bool = False) -> "Animation":
-        """Keyframes, by their times, at other times; those that stand there make way. copy: they also stay."""
+        """Keyframes, by their times, at other times; those that stand there make way; copy: they stay."""
         keys = {key.time: key for key in self.keys}
         stay = {time: key for time, key in keys.items() if copy or time not in times}
         return self._of({**stay, **_shifted(keys, times)})
 
     def eased(self, times: Iterable[float] | None, ease: str | None) -> "Animation":
-        """Another easing from some keyframes on, by their times; where there are no times, in general."""
+        """Another easing from some keyframes on, by their times; without times, where none is said.
+
+        Raises InputError.
+        """
         if times is None:
-            return replace(self, ease=ease)
+            return Animation(self.keys, as_key_easing(ease))
         chosen = set(times)
         keys = (replace(key, ease=ease) if key.time in chosen else key for key in self.keys)
         return replace(self, keys=tuple(keys))
@@ -101,6 +105,9 @@ class Animation:
 
     def _of(self, keys: Mapping[float, Keyframe]) -> "Animation":
         return replace(self, keys=tuple(keys[time] for time in sorted(keys)))
+
+
+NO_ANIMATION = Animation()
 
 
 def _shifted(keys: Mapping[float, Keyframe], times: Mapping[float, float]) -> dict[float, Keyframe]:
@@ -116,13 +123,13 @@ def key_time(value: Any) -> float:
 def changed(animation: Animation, do: str, values: Mapping[str, Any], pose: Floats) -> Animation:
     """What an edit makes of an animation; pose (n, 2): the present one.
 
-    do: "key" puts the pose, or values["positions"], at values["time"] with values["ease"]; "unkey" takes away
-    those at values["times"]; "rekey" moves those at values["from"] to values["to"], or copies them there where
-    values["copy"]; "ease" sets values["ease"] from values["times"] on, in general where that is None.
+    do: "key" puts the pose, or values["positions"], at values["time"] with values["ease"]; "unkey" takes
+    away those at values["times"]; "rekey" moves those at values["from"] to values["to"], or copies them there
+    where values["copy"]; "ease" sets values["ease"] from values["times"] on, in general where that is None.
     Raises InputError on bad values, KeyError where some are missing.
     """
     if do == "key":
-        positions = as_points(values.get("positions", pose), "positions", len(pose))
+        positions = as_pose(values.get("positions", pose), "positions", len(pose))
         return animation.with_key(Keyframe(values["time"], positions, values.get("ease")))
     if do == "unkey":
         return animation.without(map(key_time, values["times"]))
@@ -131,6 +138,4 @@ def changed(animation: Animation, do: str, values: Mapping[str, Any], pose: Floa
         return animation.moved(times, values.get("copy") is True)
     times_or_all = values["times"]
     chosen = None if times_or_all is None else [key_time(time) for time in times_or_all]
-    if values["ease"] is None and chosen is None:
-        raise InputError("ease: expected the name of an easing for the whole animation, got none")
     return animation.eased(chosen, values["ease"])

@@ -4,10 +4,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from ..errors import InputError
 from ..geometry.checks import Floats, as_points, frozen
 
 MAX_NAME = 80
+
+
+def as_pose(value: ArrayLike, name: str, count: int | None = None) -> Floats:
+    """``value`` as a frozen pose (n, 2) float64; itself where it is one, so that poses are told by identity.
+
+    Raises InputError on another shape, another count where one is given, or numbers that are not finite.
+    """
+    pose = as_points(value, name, count)
+    if isinstance(value, np.ndarray) and value.dtype == np.float64 and not value.flags.writeable:
+        return value
+    return frozen(pose)
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +34,7 @@ class NamedPose:
     def __post_init__(self) -> None:
         if not self.name.strip() or len(self.name) > MAX_NAME:
             raise InputError(f"pose: expected a name of 1 to {MAX_NAME} characters, got {self.name[:99]!r}")
-        object.__setattr__(self, "positions", frozen(as_points(self.positions, "pose")))
+        object.__setattr__(self, "positions", as_pose(self.positions, "pose"))
 
 
 def with_pose(poses: Sequence[NamedPose], pose: NamedPose) -> tuple[NamedPose, ...]:
@@ -47,7 +61,7 @@ def changed(
     """
     known = {each.name: each for each in poses}
     if do == "keep":
-        positions = as_points(values.get("positions", pose), "positions", len(pose))
+        positions = as_pose(values.get("positions", pose), "positions", len(pose))
         return with_pose(poses, NamedPose(str(values["name"]), positions))
     if do == "order":
         names = list(values["names"])

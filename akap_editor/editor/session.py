@@ -302,7 +302,7 @@ class Session:
 
     def set_pose(self, positions: Floats) -> None:
         """Take over a pose (n, 2); the pins stay on the drawing and go there with it. Raises InputError."""
-        pose = as_points(positions, "positions", len(self.drawing.mesh.vertices))
+        pose = poses.as_pose(positions, "positions", len(self.drawing.mesh.vertices))
         self._put(pose)
         self._record("pose", positions=pose.tolist())
 
