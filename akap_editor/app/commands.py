@@ -8,9 +8,10 @@ from typing import Literal
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ..editor.key_player import STEP
 from ..editor.tool_turning import toggle_hold
 from ..resources import bundled_drawings
-from . import poses
+from . import animating, keying, poses
 from .overlays import Measure
 from .requests import Palette
 from .workspace import Workspace
@@ -70,6 +71,8 @@ _KEY_NAMES = {
     "minus": "-",
     "left_bracket": "[",
     "right_bracket": "]",
+    "comma": ",",
+    "period": ".",
 }
 
 
@@ -309,6 +312,38 @@ SHOW_REFERENCE = Command(
 )
 OVERLAYS = (SHOW_FIELD, SHOW_AREA, SHOW_ANGLE, SHOW_GHOST, SHOW_TRAILS)
 
+KEY_HERE = Command("Keyframe Here", keying.keyframe_here, (Key.k,), icons.ICON_FA_DIAMOND, has_drawing)
+KEY_REMOVE = Command(
+    "Remove Keyframe", lambda space: space.key_player.remove(), (SHIFT | Key.k,), "", keying.shown
+)
+KEY_COPY = Command(
+    "Duplicate Keyframe",
+    lambda space: space.key_player.duplicate(),
+    (CTRL | SHIFT | Key.k,),
+    "",
+    keying.shown,
+)
+KEY_NEXT = Command(
+    "Next Keyframe", lambda space: space.key_player.step(True), (Key.period,), "", keying.shown
+)
+KEY_PREVIOUS = Command(
+    "Previous Keyframe", lambda space: space.key_player.step(False), (Key.comma,), "", keying.shown
+)
+KEY_LATER = Command("Move Keyframe Later", keying.nudging(STEP), (SHIFT | Key.period,), "", keying.shown)
+KEY_EARLIER = Command("Move Keyframe Earlier", keying.nudging(-STEP), (SHIFT | Key.comma,), "", keying.shown)
+PLAY = Command("Play", keying.play, (Key.l,), icons.ICON_FA_PLAY, keying.can_play)
+ONION = Command(
+    "Onion Skin",
+    keying.toggle_onion,
+    (Key.o,),
+    icons.ICON_FA_LAYER_GROUP,
+    keying.shown,
+    lambda space: space.key_player.onion.shown,
+)
+EXPORT_ANIMATION = Command(
+    "Export Animation...", animating.ask, (CTRL | SHIFT | Key.e,), icons.ICON_FA_FILM, keying.can_play
+)
+
 PALETTE = Command("Find Command...", _find, (CTRL | Key.k, Key.f3))
 KEYS = Command("Keys and Mouse", _keys, (Key.f1,), typed="?")
 ABOUT = Command("About akap-editor", _about)
@@ -370,6 +405,15 @@ MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
             *(SHOW_MESH, SHOW_PINS, *OVERLAYS, None),
             *(CHECKER, CHOOSE_REFERENCE, SHOW_REFERENCE),
             *(None, SHOW_TIMELINE, SPLIT),
+        ),
+    ),
+    (
+        "Animation",
+        (
+            *(PLAY, EXPORT_ANIMATION, None),
+            *(KEY_HERE, KEY_REMOVE, KEY_COPY, None),
+            *(KEY_PREVIOUS, KEY_NEXT, KEY_EARLIER, KEY_LATER, None),
+            ONION,
         ),
     ),
     ("Help", (PALETTE, KEYS, ABOUT)),

@@ -4,11 +4,10 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import click
-import numpy as np
 
 from ..editor.document import Settings
 from ..editor.easing import EASINGS
-from ..editor.framing import frame_box
+from ..editor.framing import frame_box, joined
 from ..editor.inbetween import Ways
 from ..editor.key_player import keyed_frame
 from ..editor.replay import replay
@@ -112,8 +111,7 @@ def replay_recording(
         frames = list(bar)
     if ping_pong:
         frames += frames[-2:0:-1]
-    boxes = [frame_box(frame.drawing, [frame.pose]) for frame in frames]
-    box = (*np.min(boxes, axis=0)[:2].tolist(), *np.max(boxes, axis=0)[2:].tolist())
+    box = joined([frame_box(frame.drawing, [frame.pose]) for frame in frames])
     scale = min(1.0, size / max(box[2] - box[0], box[3] - box[1]))
     make_folder_of(output)
     with OffscreenRenderer() as renderer:

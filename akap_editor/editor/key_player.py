@@ -84,6 +84,18 @@ class KeyPlayer(Transport):
         """Whether keyframes are being dragged."""
         return self._moved is not None
 
+    @property
+    def kept_times(self) -> tuple[float, ...]:
+        """Of all keyframes, without a drag."""
+        return () if self._editor.session is None else self._editor.session.present.animation.times
+
+    @property
+    def shown_chosen(self) -> frozenset[float]:
+        """Where the chosen keyframes are during a drag."""
+        if self._moved is None:
+            return self.chosen
+        return frozenset(self._moved[0].get(time, time) for time in self.chosen)
+
     def pose(self, moment: float) -> Floats | None:
         """The pose (n, 2) at a time; None without keyframes."""
         session, animation = self._editor.session, self.animation
@@ -123,7 +135,7 @@ class KeyPlayer(Transport):
             self._forget()
         if session is None:
             return
-        self.chosen &= set(self.animation.times)
+        self.chosen &= set(self.kept_times)
         if not self.held:
             self.view = max(SHORTEST_VIEW, 1.2 * self.duration, self.at)
         if self._beneath is None or session.visiting or session.history.is_open:

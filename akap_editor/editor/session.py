@@ -376,8 +376,8 @@ class Session:
 
     # -- saving --------------------------------------------------------------------------------------------
 
-    def mark_saved(self, path: Path) -> None:
-        """The current state is what the file at ``path`` holds."""
+    def mark_saved(self, path: Path | None) -> None:
+        """The current state is what the file at ``path`` holds; None: or one that is no .akap file."""
         self.document = replace(self.document, path=path)
         self._saved = self.state
 

@@ -5,7 +5,7 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
-from akap_editor.app import timeline_panel
+from akap_editor.app import animating
 from akap_editor.editor.replay import replay
 
 
@@ -66,12 +66,12 @@ def test_control_and_drag_records_that_gesture_only(bent):
 def test_the_range_is_exported(bent, tmp_path):
     player = bent.space.player
     player.cut_to(0.0, min(0.5, player.duration))
-    timeline_panel.export(bent.space, tmp_path / "wave.webp")
+    animating.export(bent.space, tmp_path / "wave.webp")
     bent.settle()
     assert bent.space.error == ""
     with Image.open(tmp_path / "wave.webp") as opened:
         assert opened.n_frames >= 1
-    timeline_panel.export(bent.space, tmp_path / "wave.avi")
+    animating.export(bent.space, tmp_path / "wave.avi")
     bent.settle()
     assert ".avi" in bent.space.error
 
