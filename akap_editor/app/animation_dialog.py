@@ -83,6 +83,7 @@ def _options(choice: Choice, scale: float) -> None:
     _, choice.ping_pong = widgets.switch("Ping-pong", choice.ping_pong, "Forwards, then backwards.")
     if choice.kind.repeats:
         imgui.same_line(0, 16 * scale)
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.rise())
         _, choice.loop = widgets.switch("For ever", choice.loop, "Off: it is shown once, and stops.")
     widgets.switch_label("Background", _LABEL * scale)
     always = not choice.kind.transparent

@@ -128,6 +128,14 @@ def _holds(space: Workspace) -> bool:
     return bool(held) and all(held)
 
 
+def _remove(space: Workspace) -> None:
+    """Pins, or where none is selected, keyframes."""
+    if space.editor.selection:
+        space.editor.remove_selected()
+    else:
+        space.key_player.remove()
+
+
 def _find(space: Workspace) -> None:
     space.palette = Palette()
 
@@ -216,10 +224,10 @@ REDO = Command(
 )
 REMOVE = Command(
     "Remove Selected Pins",
-    lambda space: space.editor.remove_selected(),
+    _remove,
     (Key.delete,),
     icons.ICON_FA_TRASH_CAN,
-    lambda space: bool(space.editor.selection),
+    lambda space: bool(space.editor.selection) or keying.has_chosen(space),
 )
 FORWARD = Command(
     "Bring Forward",

@@ -128,6 +128,9 @@ def _snapped(time: float) -> float:
 
 def _handle(space: Workspace, track: _Scale, top: float, scale: float) -> None:
     player = space.key_player
+    if player.held and imgui.is_key_pressed(imgui.Key.escape, False):
+        player.drop(keep=False)
+        space.grip = "none"
     if imgui.is_item_activated():
         _press(space, track, top, scale)
     if imgui.is_item_active():
@@ -158,6 +161,7 @@ def _press(space: Workspace, track: _Scale, top: float, scale: float) -> None:
         space.grip = "head"
         player.chosen = frozenset()
         if imgui.is_mouse_double_clicked(0) and not in_ruler:
+            space.editor.select(())
             player.put(_snapped(track.time(imgui.get_mouse_pos().x)))
         return
     space.grip, space.held_key = "keys", key
@@ -171,9 +175,6 @@ def _press(space: Workspace, track: _Scale, top: float, scale: float) -> None:
 
 def _drag(space: Workspace, track: _Scale, scale: float) -> None:
     player, io, x = space.key_player, imgui.get_io(), imgui.get_mouse_pos().x
-    if imgui.is_key_pressed(imgui.Key.escape, False):
-        player.drop(keep=False)
-        space.grip = "none"
     if space.grip in ("start", "end"):
         player.cut_to(**{space.grip: _snapped(track.time(x))})
     elif space.grip == "head" and not imgui.is_mouse_double_clicked(0):

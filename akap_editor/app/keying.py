@@ -11,6 +11,11 @@ def shown(space: Workspace) -> bool:
     return keyed and bool(space.key_player.animation.keys)
 
 
+def has_chosen(space: Workspace) -> bool:
+    """Whether some of them are chosen."""
+    return shown(space) and bool(space.key_player.chosen)
+
+
 def keyframe_here(space: Workspace) -> None:
     """Keep what is seen as a keyframe; the timeline opens where it is not seen."""
     session, player = space.editor.session, space.key_player

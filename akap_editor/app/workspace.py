@@ -251,14 +251,16 @@ class Workspace:
             return
         try:
             last = session.history.last if session is not None else None
-            self.autosave.watch(self.document, self.editor.modified, last)
+            kept = session.kept if session is not None else None
+            self.autosave.watch(kept, self.editor.modified, last)
         except InputError as error:
             self.notice = str(error)
 
     def rescue(self) -> None:
         """The program is about to end by mistake: keep what is not saved, if that is still possible."""
-        if self.autosave is not None and self.document is not None and self.editor.modified:
-            self.attempt(partial(self.autosave.rescue, self.document))
+        session = self.editor.session
+        if self.autosave is not None and session is not None and self.editor.modified:
+            self.attempt(partial(self.autosave.rescue, session.kept))
 
     def recover(self, copy: Copy, document: Document) -> None:
         """Go on with what a program that crashed has left; what else is lost is asked for another time."""
@@ -298,8 +300,8 @@ class Workspace:
 
     def _write(self, path: Path, go_on: Callable[[], None] | None) -> None:
         def write() -> None:
-            assert self.document is not None
-            project_file.save(self.document, path)
+            assert self.editor.session is not None
+            project_file.save(self.editor.session.kept, path)
             self.editor.mark_saved(path)
             self._used(path)
             self.notice = f"Saved {path.name}"

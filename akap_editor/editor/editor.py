@@ -67,7 +67,7 @@ class Editor:
         self.session = None
         self.select(())
 
-    def mark_saved(self, path: Path) -> None:
+    def mark_saved(self, path: Path | None) -> None:
         """The file at ``path`` now holds the current state."""
         if self.session is not None:
             self.session.mark_saved(path)

@@ -97,7 +97,7 @@ class Replay:
             event = {**event, **settings_to_json(self._change(_settings(event)))}
         if self.session is None:
             settings = _settings(event) if opens else None
-            self.session = Session(new_document(self._drawing, settings), self.clock)
+            self.session = Session(new_document(self._drawing, settings), self.clock, 0.0)
             if opens:  # so a session begins
                 return None
         return _apply(self.session, event, stage, kept)

@@ -47,10 +47,15 @@ class Session:
 
     Edits happen inside a gesture: `begin`, any number of edits and steps, then `commit` or `abort`. Adding or
     removing pins moves no vertex; only `step` does. All edits are written to `recording`, with times from
-    ``clock`` (seconds).
+    ``clock`` (seconds) since it was ``started``, by default now.
     """
 
-    def __init__(self, document: Document, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        document: Document,
+        clock: Callable[[], float] = time.monotonic,
+        started: float | None = None,
+    ) -> None:
         self.document = document
         self.history = History()
         self.last_step: StepResult | None = None
@@ -60,7 +65,7 @@ class Session:
         self._taken: EditState | None = None  # as the open gesture began, where it took over a visited pose
         self._settling = 0
         self._opened = document.drawing
-        self._clock, self._started = clock, clock()
+        self._clock, self._started = clock, clock() if started is None else started
         self.recording = Recording(drawing_header(document.drawing), EventLog())
         self._bending = Bending(document.drawing.mesh, document.state)
         for event in opening_events(document):
@@ -77,6 +82,16 @@ class Session:
     def present(self) -> EditState:
         """The current state, also while another moment is visited."""
         return self.state if self._visit is None else self._visit.present
+
+    @property
+    def kept(self) -> Document:
+        """The document with the present state: what is saved, whatever is looked at."""
+        drawing = self.present.drawing or self._opened
+        return (
+            self.document
+            if self._visit is None
+            else replace(self.document, state=self.present, drawing=drawing)
+        )
 
     @property
     def drawing(self) -> Drawing:
@@ -379,7 +394,7 @@ class Session:
     def mark_saved(self, path: Path | None) -> None:
         """The current state is what the file at ``path`` holds; None: or one that is no .akap file."""
         self.document = replace(self.document, path=path)
-        self._saved = self.state
+        self._saved = self.present
 
     def mark_unsaved(self) -> None:
         """No file holds the current state, though it was there from the start."""
