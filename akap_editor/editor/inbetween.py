@@ -11,6 +11,7 @@ from ..deform.cholesky import SparseCholesky, SymmetricPattern
 from ..geometry.checks import Complexes, Floats, Ints, as_number, as_points
 from ..geometry.mesh import TriMesh
 from ..geometry.operators import to_complex, to_points
+from .areas import bounded, worst_area
 
 _STILL = 1e-3  # share of √area: vertices that move less hold a part in place alike
 _FULL_TURN = 1e-6  # of a rate s: nearer to a full turn, 1 − eˢ says nothing about a center
@@ -23,7 +24,8 @@ class Inbetween:
     turns; at time t it is multiplied by eᵗˢ, which is a logarithmic spiral. Positions are fitted to these
     edges by least squares. So a half turn of an arm sweeps an arc, and nothing shrinks on the way. s is known
     up to full turns: neighboring faces turn by nearly the same angle, which carries it through the mesh, also
-    beyond half a turn, from the face that turns least.
+    beyond half a turn, from the face that turns least. No face shrinks or grows by more than the worst one
+    does at either end, where none is flipped there.
     """
 
     def __init__(self, mesh: TriMesh) -> None:
@@ -57,6 +59,7 @@ class Inbetween:
         local = self._mean @ rates
         weights = 1.0 / (np.abs(b - a) ** 2 + (_STILL * self._length) ** 2)
         weights /= np.bincount(self._mesh.component, weights)[self._mesh.component]
+        most = max(worst_area(self._mesh, first), worst_area(self._mesh, last))
 
         def pose(t: float) -> Floats:
             t = as_number(t, "t", 0, 1)
@@ -67,7 +70,8 @@ class Inbetween:
             shift = np.bincount(self._mesh.component, off.real) + 1j * np.bincount(
                 self._mesh.component, off.imag
             )
-            return to_points(fitted + shift[self._mesh.component])
+            made = to_points(fitted + shift[self._mesh.component])
+            return bounded(self._mesh, made, most) if np.isfinite(most) else made
 
         return pose
 
