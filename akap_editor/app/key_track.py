@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..editor.easing import KEY_EASINGS
-from ..editor.key_player import STEP, KeyPlayer, stretched
+from ..editor.key_player import MOST_SKINS, STEP, KeyPlayer, stretched
 from ..editor.keyframes import LATEST_KEY
 from . import keying, widgets
 from .animation_dialog import EASING_LABELS
@@ -17,7 +17,8 @@ RED = (0.93, 0.33, 0.31, 1.0)
 POSE_PAYLOAD = "pose"  # what thumbnails of poses are dragged as
 _REACH = 8  # design points, as all sizes here: how near to a keyframe a press takes it
 _DRAG = 3  # how far the pointer goes before a press is a drag
-_RULER, _LANE, _BOTTOM = 16, 31, 46  # from the top: where the ruler ends, the middle of the lane, its end
+# From the top: where the ruler ends, the middle of the lane, where the marks begin, and the end.
+_RULER, _LANE, _MARKS, _BOTTOM = 16, 28, 39, 48
 _TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0)  # seconds
 
 
@@ -56,16 +57,20 @@ def _onion(player: KeyPlayer, scale: float) -> None:
     onion = player.onion
     _, onion.shown = widgets.switch("Onion skin", onion.shown)
     imgui.begin_disabled(not onion.shown)
+    imgui.push_style_color(imgui.Col_.check_mark, ImVec4(*ACCENT))
     if imgui.radio_button("Keyframes before and after", onion.of == "keyframes"):
         onion.of = "keyframes"
     if imgui.radio_button("Moments before and after", onion.of == "frames"):
         onion.of = "frames"
-    imgui.set_next_item_width(180 * scale)
-    _, onion.count = imgui.slider_int("##count", onion.count, 1, 6, "%d on each side")
-    if onion.of == "frames":
-        imgui.set_next_item_width(180 * scale)
-        _, step = imgui.slider_float("##step", onion.step, 0.02, 0.5, "%.2f s apart")
-        onion.step = float(step)
+    imgui.pop_style_color()
+    imgui.set_next_item_width(96 * scale)
+    _, count = imgui.input_int("on each side", onion.count)
+    onion.count = min(max(count, 1), MOST_SKINS)
+    imgui.begin_disabled(onion.of == "keyframes")
+    imgui.set_next_item_width(96 * scale)
+    _, apart = imgui.input_float("s apart", onion.step, STEP, 0.0, "%.2f")
+    onion.step = min(max(float(apart), 0.01), 10.0)
+    imgui.end_disabled()
     imgui.end_disabled()
 
 
@@ -105,9 +110,8 @@ def draw(space: Workspace, scale: float) -> None:
     _draw_ruler(drawer, player, track, corner, width, scale)
     _draw_keys(drawer, player, track, corner.y + _LANE * scale, scale)
     _draw_head(drawer, player, track, corner.y, scale)
-    imgui.same_line(0, 12 * scale)
-    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + 9 * scale)
-    imgui.align_text_to_frame_padding()
+    below = corner.y + (_BOTTOM * scale - imgui.get_text_line_height()) / 2
+    imgui.set_cursor_screen_pos(ImVec2(corner.x + width + 12 * scale, below))
     imgui.text_colored(ImVec4(*QUIET), label)
 
 
@@ -151,8 +155,9 @@ def _handle(space: Workspace, track: _Scale, top: float, scale: float) -> None:
 
 def _press(space: Workspace, track: _Scale, top: float, scale: float) -> None:
     player, io = space.key_player, imgui.get_io()
-    key, in_ruler = _near(player, track, scale), imgui.get_mouse_pos().y < top + _RULER * scale
-    if in_ruler and player.duration > 0:
+    key, y = _near(player, track, scale), imgui.get_mouse_pos().y - top
+    in_ruler = y < _RULER * scale
+    if y > _MARKS * scale and player.duration > 0:
         away = [abs(track.x(mark) - imgui.get_mouse_pos().x) for mark in player.range]
         if min(away) < _REACH * scale:
             space.grip = "start" if away[0] < away[1] else "end"
@@ -275,10 +280,9 @@ def _draw_ruler(
             )
     if player.duration > 0:
         for mark, turn in zip(player.range, (1, -1), strict=True):
-            x, y, tip = track.x(mark), corner.y + _RULER * scale, 6 * scale
-            drawer.add_triangle_filled(
-                ImVec2(x, y), ImVec2(x, y - tip), ImVec2(x + turn * tip, y - tip), packed(ACCENT)
-            )
+            x, y, tip = track.x(mark), corner.y + (_BOTTOM - 1) * scale, 8 * scale
+            ends = ImVec2(x, y), ImVec2(x, y - tip), ImVec2(x + turn * tip, y)
+            drawer.add_triangle_filled(*ends, packed(ACCENT))
 
 
 def _draw_keys(

@@ -129,7 +129,9 @@ def _rename(space: Workspace, pose: NamedPose, width: float) -> None:
         imgui.set_keyboard_focus_here()
     imgui.set_next_item_width(width)
     flags = imgui.InputTextFlags_.auto_select_all
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
     _, text = imgui.input_text("##name of pose", space.new_name, flags)
+    imgui.pop_style_var()
     space.new_name = text or " "  # which is no name, and not the sign that the field is new
     if imgui.is_item_deactivated():
         name, space.renaming = space.new_name.strip(), None

@@ -8,6 +8,7 @@ from ..editor.replay import Replay
 from ..editor.session import Session
 from ..errors import InputError
 from ..io.recordings import read_recording, recorded_drawing
+from ..io.records import inside
 from .tasks import Steps, Task
 
 Show = Callable[[Session, Player], None]
@@ -19,7 +20,8 @@ def reenacting(path: Path, show: Show) -> Task:
     Raises InputError where the file is no recording.
     """
     recording = read_recording(path)
-    replay = Replay(recording, recorded_drawing(recording))
+    with inside(path):
+        replay = Replay(recording, recorded_drawing(recording))
     player = Player(replay.clock)
     if not recording.events:
         raise InputError(f"{path}: expected a recording of something that was done, got none")

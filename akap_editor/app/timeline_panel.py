@@ -8,7 +8,7 @@ from .key_track import RED
 from .theme import ACCENT, FRAME, QUIET, TEXT, packed
 from .workspace import Workspace
 
-HEIGHT, KEYED_HEIGHT = 44, 62  # design points, as all sizes here
+HEIGHT, KEYED_HEIGHT = 44, 64  # design points, as all sizes here
 
 
 def draw(space: Workspace, scale: float) -> None:
@@ -23,13 +23,13 @@ def draw(space: Workspace, scale: float) -> None:
     height = (KEYED_HEIGHT if keyed else HEIGHT) * scale
     if widgets.side_bar("Timeline", imgui.Dir.down, height, ImVec2(10 * scale, 8 * scale)):
         if keyed:
-            imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + 9 * scale)
+            imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + 10 * scale)
         _which(space, scale)
         imgui.same_line(0, 12 * scale)
         _buttons(space, scale)
         imgui.same_line(0, 12 * scale)
         if keyed:
-            imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 9 * scale)
+            imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 10 * scale)
             key_track.draw(space, scale)
         else:
             _track(space, scale)

@@ -97,6 +97,8 @@ class Inbetween:
         corners = self._mesh.faces.T
         before, after = a[corners] - a[corners].mean(axis=0), b[corners] - b[corners].mean(axis=0)
         angles = np.angle((before.conj() * after).sum(axis=0))
+        if np.abs(angles).max() < np.pi / 2:  # no two of them can differ by half a turn
+            return np.asarray(angles)
         left, right = self._neighbors
         jumps = np.abs(_wrapped(angles[right] - angles[left])) + 1e-9  # zero would be no edge of the graph
         m = len(angles)

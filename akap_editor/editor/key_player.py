@@ -19,6 +19,7 @@ from .transport import Transport
 
 GAP = 0.5  # seconds between a keyframe and one that is put after it without a time
 STEP = 0.05  # seconds: what times snap to, and what keys move by
+MOST_SKINS = 6  # of the onion skin, on each side
 SHORTEST_VIEW = 2.0  # seconds on the timeline
 
 Edge = Literal["keyframes", "frames"]

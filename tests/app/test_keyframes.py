@@ -27,13 +27,13 @@ def times(ui):
     return ui.session.present.animation.times
 
 
-def on_track(ui, time, ruler=False):
-    """A place on the track of keyframes."""
+def on_track(ui, time, y=28):
+    """A place on the track of keyframes, y points below its top."""
     found = {}
     ui.do(lambda hand: found.setdefault("rect", hand.item_info("//Timeline/##keys").rect_full))
     rect, player = found["rect"], ui.space.key_player
     left, width = rect.min.x + 8, rect.max.x - rect.min.x - 16
-    return round(left + width * time / player.view), round(rect.min.y + (8 if ruler else 31))
+    return round(left + width * time / player.view), round(rect.min.y + y)
 
 
 def at_time(ui, time, share):
@@ -47,10 +47,10 @@ def at_time(ui, time, share):
 
 def test_a_drag_on_the_ruler_moves_along_and_edits_nothing(keyed):
     depth, events = keyed.session.history.depth, len(keyed.session.recording.events)
-    keyed.drag(on_track(keyed, 0.1, ruler=True), on_track(keyed, 0.5, ruler=True))
+    keyed.drag(on_track(keyed, 0.1, y=8), on_track(keyed, 0.5, y=8))
     assert at_time(keyed, 0.5, 0.5)
     assert keyed.session.visiting
-    keyed.drag(on_track(keyed, 0.5, ruler=True), on_track(keyed, 1.7, ruler=True))
+    keyed.drag(on_track(keyed, 0.5, y=8), on_track(keyed, 1.7, y=8))
     assert at_time(keyed, 1.7, 1.0)
     assert (keyed.session.history.depth, len(keyed.session.recording.events)) == (depth, events)
 
@@ -133,8 +133,8 @@ def test_a_double_click_adds_and_delete_is_for_keyframes_where_no_pin_is_selecte
     assert len(keyed.pins) == 3
 
 
-def test_the_range_is_cut_on_the_ruler(keyed):
-    keyed.drag(on_track(keyed, 1.0, ruler=True), on_track(keyed, 0.8, ruler=True))
+def test_the_range_is_cut_by_its_marks(keyed):
+    keyed.drag(on_track(keyed, 1.0, y=44), on_track(keyed, 0.8, y=44))
     assert keyed.space.key_player.range == pytest.approx((0.0, 0.8))
 
 

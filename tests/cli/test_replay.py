@@ -14,6 +14,8 @@ from akap_editor.editor.document import make_drawing, new_document
 from akap_editor.editor.keyframes import Animation, Keyframe
 from akap_editor.editor.replay import replay
 from akap_editor.editor.session import Session
+from akap_editor.errors import InputError
+from akap_editor.io.documents import open_document
 from akap_editor.io.images import read_image
 from akap_editor.io.project_file import save
 from akap_editor.io.recordings import write_recording
@@ -251,3 +253,14 @@ def test_a_drawing_without_keyframes_is_refused(run, session, tmp_path):
     code, _, err = run("-o", "out.webp", recording="still.akap")
     assert code == 2
     assert "still.akap: expected a drawing with keyframes, or a recording, got one without any" in err
+
+
+def test_a_recording_is_a_document_in_its_last_pose(session, tmp_path):
+    write_recording(session.recording, tmp_path / "bar.akaprec", session.drawing)
+    document = open_document(tmp_path / "bar.akaprec")
+    np.testing.assert_array_equal(document.state.positions, session.state.positions)
+    (tmp_path / "bad.akaprec").write_text(
+        (tmp_path / "bar.akaprec").read_text() + '{"t": 99, "do": "undo", "x": 1}\n{"t": 0, "do": "undo"}\n'
+    )
+    with pytest.raises(InputError, match=r"bad.akaprec: recording line \d+: expected a time of 99 s"):
+        open_document(tmp_path / "bad.akaprec")
