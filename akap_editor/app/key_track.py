@@ -279,10 +279,15 @@ def _draw_ruler(
                 font, size, ImVec2(x + 3 * scale, corner.y + 1 * scale), packed(QUIET), form % (number * step)
             )
     if player.duration > 0:
-        for mark, turn in zip(player.range, (1, -1), strict=True):
-            x, y, tip = track.x(mark), corner.y + (_BOTTOM - 1) * scale, 8 * scale
-            ends = ImVec2(x, y), ImVec2(x, y - tip), ImVec2(x + turn * tip, y)
-            drawer.add_triangle_filled(*ends, packed(ACCENT))
+        draw_marks(drawer, [track.x(mark) for mark in player.range], corner.y + (_BOTTOM - 1) * scale, scale)
+
+
+def draw_marks(drawer: imgui.ImDrawList, marks: list[float], bottom: float, scale: float) -> None:
+    """Where the range begins and where it ends."""
+    for x, turn in zip(marks, (1, -1), strict=True):
+        tip = 8 * scale
+        ends = ImVec2(x, bottom), ImVec2(x, bottom - tip), ImVec2(x + turn * tip, bottom)
+        drawer.add_triangle_filled(*ends, packed(ACCENT))
 
 
 def _draw_keys(

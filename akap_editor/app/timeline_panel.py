@@ -99,9 +99,10 @@ def _track(space: Workspace, scale: float) -> None:
 
     moment = (imgui.get_mouse_pos().x - corner.x) / width * length
     if imgui.is_item_activated():
-        near = 6 * scale
+        near, below = 8 * scale, imgui.get_mouse_pos().y > corner.y + 0.6 * height
         start, end = (abs(imgui.get_mouse_pos().x - x_of(mark)) for mark in player.range)
-        space.grip = "start" if start < near and start < end else "end" if end < near else "head"
+        on_mark = below and min(start, end) < near
+        space.grip = ("start" if start < end else "end") if on_mark else "head"
     if held and player.shots:
         if space.grip == "start":
             player.cut_to(start=moment)
@@ -113,13 +114,7 @@ def _track(space: Workspace, scale: float) -> None:
     low, high = (x_of(mark) for mark in player.range)
     _bar(drawer, corner.x, corner.x + width, middle, scale, packed(FRAME))
     _bar(drawer, low, high, middle, scale, packed(ACCENT, 0.55))
-    for mark in (low, high):
-        drawer.add_rect_filled(
-            ImVec2(mark - 2 * scale, middle - 8 * scale),
-            ImVec2(mark + 2 * scale, middle + 8 * scale),
-            packed(ACCENT),
-            2 * scale,
-        )
+    key_track.draw_marks(drawer, [low, high], corner.y + height, scale)
     if player.taking is not None:
         _bar(drawer, x_of(player.taking), x_of(length), middle, scale, packed(RED))
     head = x_of(player.at if player.at is not None else length)
