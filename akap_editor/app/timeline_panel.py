@@ -15,6 +15,7 @@ def draw(space: Workspace, scale: float) -> None:
     """The bar; nothing without a drawing, or where it is switched off."""
     space.player.watch(space.editor.session)
     if space.document is None or not space.show_timeline:
+        space.show_present()
         return
     keyed = space.timeline == "keyframes"
     if keyed:

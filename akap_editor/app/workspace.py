@@ -98,9 +98,15 @@ class Workspace:
     def show_in_timeline(self, timeline: Literal["session", "keyframes"]) -> None:
         """Look at the other one; of what was shown nothing is seen any more."""
         if timeline != self.timeline:
-            self.player.now()
-            self.key_player.leave()
+            self.show_present()
             self.timeline = timeline
+
+    def show_present(self) -> None:
+        """Of what the timeline shows nothing is seen any more."""
+        if self.player.at is not None:
+            self.player.now()
+        if self.key_player.following:
+            self.key_player.leave()
 
     # -- between runs ----------------------------------------------------------------------------------------
 

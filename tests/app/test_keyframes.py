@@ -226,3 +226,13 @@ def test_keyframes_are_saved_and_opened(keyed, tmp_path):
     assert save(again, tmp_path / "b.akap").path is not None
     assert (tmp_path / "a.akap").read_bytes() == (tmp_path / "b.akap").read_bytes()
     np.testing.assert_array_equal(again.state.positions, keyed.session.present.positions)
+
+
+def test_without_the_timeline_the_present_is_seen(keyed):
+    keyed.space.key_player.scrub(0.5)
+    keyed.settle()
+    assert keyed.session.visiting
+    keyed.key(imgui.Key.mod_shift | imgui.Key.t)
+    assert not keyed.session.visiting
+    keyed.key(imgui.Key.mod_shift | imgui.Key.t)
+    assert not keyed.session.visiting
