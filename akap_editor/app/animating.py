@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..io.frames import export_frames, export_kind
 from ..io.images import Picture
 from .requests import FileRequest
-from .tasks import Steps, Task
+from .tasks import Progress, Steps, Task
 from .workspace import Workspace
 
 REMEMBERED = "animation"  # the name of the choice in the preferences
@@ -150,7 +150,7 @@ def _steps(space: Workspace, choice: Choice, path: Path, sheet: bool) -> Steps:
     frames = []
     for number, time in enumerate(times):
         frames.append(frame_at(space, time))
-        yield 0.3 * number / len(times), f"Moving, frame {number + 1} of {len(times)}"
+        yield Progress(0.3 * number / len(times), f"Moving, frame {number + 1} of {len(times)}")
     box = joined([frame_box(frame.drawing, [frame.pose]) for frame in frames])
     scale = min(1.0, choice.size / max(box[2] - box[0], box[3] - box[1]))
     picture_size(box, scale)
@@ -168,14 +168,15 @@ def _steps(space: Workspace, choice: Choice, path: Path, sheet: bool) -> Steps:
         try:
             for number, frame in enumerate(frames):
                 picture = space.exporter.render(*frame[:2], box, scale, choice.behind, frame.order)
-                done = 0.3 + 0.6 * number / len(frames), f"Drawing, frame {number + 1} of {len(frames)}"
+                share = 0.3 + 0.6 * number / len(frames)
+                done = Progress(share, f"Drawing, frame {number + 1} of {len(frames)}")
                 yield done
                 for _ in _offered(picture, waiting, written):
                     yield done
             for _ in _offered(None, waiting, written):
-                yield 0.9, "Writing"
+                yield Progress(0.9, "Writing")
             while not wait([written], _WAIT).done:
-                yield 0.95, f"Writing {path.name}"
+                yield Progress(0.95, f"Writing {path.name}", final=True)
         except GeneratorExit:
             cancelled = True
             for _ in _offered(None, waiting, written):

@@ -9,7 +9,7 @@ from ..editor.session import Session
 from ..errors import InputError
 from ..io.recordings import read_recording, recorded_drawing
 from ..io.records import inside
-from .tasks import Steps, Task
+from .tasks import Progress, Steps, Task
 
 Show = Callable[[Session, Player], None]
 
@@ -36,7 +36,7 @@ def reenacting(path: Path, show: Show) -> Task:
         for number, moment in enumerate(replay.moments(), start=1):
             if number == len(times) or times[number] > moment.time:  # the last of what was done then
                 player.watch(replay.session)
-            yield number / len(times), f"At {moment.time:.0f} of {recording.duration:.0f} s"
+            yield Progress(number / len(times), f"At {moment.time:.0f} of {recording.duration:.0f} s")
             if not wanted:
                 break
         session = replay.end()

@@ -15,22 +15,22 @@ def draw(space: Workspace, task: Task, scale: float) -> None:
     if not widgets.begin_dialog(task.title):
         return
     imgui.push_style_color(imgui.Col_.plot_histogram, ImVec4(*ACCENT))
-    imgui.progress_bar(task.share, ImVec2(_WIDTH * scale, 8 * scale), "")
+    done = f"{100 * task.progress.share:.0f} %"
+    imgui.progress_bar(task.progress.share, ImVec2(_WIDTH * scale, 8 * scale), "")
     imgui.pop_style_color()
-    imgui.text_colored(ImVec4(*QUIET), task.text or "Beginning ...")
-    imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - _width_of(task.share))
-    imgui.text(f"{100 * task.share:.0f} %")
+    imgui.text_colored(ImVec4(*QUIET), task.progress.text)
+    imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - imgui.calc_text_size(done).x)
+    imgui.text(done)
     imgui.spacing()
     if task.enough is not None and widgets.button("Stop here", primary=True):
         task.enough()
     if task.enough is not None:
         imgui.same_line()
-    if widgets.button("Cancel") or widgets.escape():
+    imgui.begin_disabled(task.progress.final)
+    cancelled = widgets.button("Cancel") or (widgets.escape() and not task.progress.final)
+    imgui.end_disabled()
+    if cancelled:
         task.cancel()
         widgets.close(space, "task", None)
         space.notice = f"{task.title}: cancelled"
     imgui.end_popup()
-
-
-def _width_of(share: float) -> float:
-    return float(imgui.calc_text_size(f"{100 * share:.0f} %").x)

@@ -3,11 +3,21 @@
 import time
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 SLICE = 0.03  # seconds of work between two frames
 
-# Yields the share that is done, 0 to 1, and a few words on what is being done.
-Steps = Generator[tuple[float, str], None, None]
+
+class Progress(NamedTuple):
+    """share: of the work that is done, 0 to 1; text: what is being done; final: if it is too late to stop."""
+
+    share: float = 0.0
+    text: str = "Beginning ..."
+    final: bool = False
+
+
+BEGINNING = Progress()
+Steps = Generator[Progress, None, None]
 
 
 @dataclass(eq=False)
@@ -20,15 +30,14 @@ class Task:
     title: str
     steps: Steps
     enough: Callable[[], None] | None = None
-    share: float = 0.0
-    text: str = ""
+    progress: Progress = BEGINNING
 
     def advance(self, seconds: float = SLICE) -> bool:
         """Work for so long; whether it is done. Raises what the work raises."""
         until = time.perf_counter() + seconds
         while True:
             try:
-                self.share, self.text = next(self.steps)
+                self.progress = next(self.steps)
             except StopIteration:
                 return True
             if time.perf_counter() >= until:

@@ -110,7 +110,7 @@ def test_an_export_is_cancelled_and_leaves_no_file(keyed, tmp_path, monkeypatch)
 
 def one_step(task):
     try:
-        task.share, task.text = next(task.steps)
+        task.progress = next(task.steps)
     except StopIteration:
         return True
     return False

@@ -82,7 +82,7 @@ def test_opening_a_recording_is_stopped_half_way_or_cancelled(ui, tmp_path, monk
     ui.space.open_path(tmp_path / "wave.akaprec")
     for _ in range(12):
         ui.frame()
-    assert 0 < ui.space.task.share < 1
+    assert 0 < ui.space.task.progress.share < 1
     ui.dialog("Opening wave.akaprec", "Cancel")
     assert ui.space.task is None
     assert ui.session is session
@@ -97,7 +97,7 @@ def test_opening_a_recording_is_stopped_half_way_or_cancelled(ui, tmp_path, monk
 def one_event(task):
     """One step of a task, so that there are frames between them."""
     try:
-        task.share, task.text = next(task.steps)
+        task.progress = next(task.steps)
     except StopIteration:
         return True
     return False
