@@ -63,11 +63,11 @@ def _onion(player: KeyPlayer, scale: float) -> None:
     if imgui.radio_button("Moments before and after", onion.of == "frames"):
         onion.of = "frames"
     imgui.pop_style_color()
-    imgui.set_next_item_width(96 * scale)
+    imgui.set_next_item_width(118 * scale)
     _, count = imgui.input_int("on each side", onion.count)
     onion.count = min(max(count, 1), MOST_SKINS)
     imgui.begin_disabled(onion.of == "keyframes")
-    imgui.set_next_item_width(96 * scale)
+    imgui.set_next_item_width(118 * scale)
     _, apart = imgui.input_float("s apart", onion.step, STEP, 0.0, "%.2f")
     onion.step = min(max(float(apart), 0.01), 10.0)
     imgui.end_disabled()

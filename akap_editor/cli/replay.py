@@ -34,7 +34,7 @@ _WORDS = ", ".join(VARIANTS)
 
 @click.command(
     "replay",
-    epilog="Examples: akap-editor replay wave.akaprec --drawing cat.png -o wave.webp; akap-editor replay "
+    epilog="Example: akap-editor replay wave.akaprec --drawing cat.png -o wave.webp; akap-editor replay "
     "walk.akap -o walk.gif. The output's ending "
     "decides: .png is the last pose, .gif, .webp and .apng are animations, .mp4 and .webm videos, a folder/ "
     "gets one PNG a frame; with --sheet, .png is a sprite sheet, and .json beside it its index.",
