@@ -214,6 +214,7 @@ def _apply(
     if do == "begin":
         session.begin(str(event["label"]))
     elif do == "pins":
+        session.halt()  # what was still moving then is in their targets
         session.set_pins(_pins(event, stage, session.drawing.mesh))
     elif do == "settings":
         session.set_settings(_settings(event))

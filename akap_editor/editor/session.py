@@ -34,9 +34,11 @@ Target = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class _Visit:
-    """What is shown in place of the ``present``; see `Session.visit`."""
+    """What is shown in place of the ``present``, with what goes on once it is left; see `Session.visit`."""
 
     present: EditState
+    bending: Bending
+    settling: int
     there: EditState
     line: int | None
     taken: bool
@@ -153,14 +155,21 @@ class Session:
         that goes on from the present; take: but takes over the pose, as a part of it. seen: a pose (n, 2)
         that is shown in place of the state's. `leave` returns to the present, and so do undo and redo.
         """
-        self._visit = _Visit(self.present, state, line, take)
-        self._show(state if seen is None else replace(state, positions=seen))
+        before = self._visit or _Visit(self.state, self._bending, self._settling, state, line, take)
+        self._visit = replace(before, there=state, line=line, taken=take)
+        self._set_state(state if seen is None else replace(state, positions=seen))
+        self._settling = 0
+        if not self._bending.fits(self.drawing.mesh, self.state):
+            # the present's own is not touched: what it has cached would change the last bits of later steps
+            fits = before.bending.fits(self.drawing.mesh, self.state)
+            self._bending = before.bending if fits else Bending(self.drawing.mesh, self.state)
 
     def leave(self) -> None:
         """Show the present again, if another moment is visited."""
         if self._visit is not None:
-            present, self._visit = self._visit.present, None
-            self._show(present)
+            visit, self._visit = self._visit, None
+            self._set_state(visit.present)
+            self._bending, self._settling = visit.bending, visit.settling
 
     # -- gestures ------------------------------------------------------------------------------------------
 
@@ -168,7 +177,7 @@ class Session:
         """Start a gesture; while another moment is visited, from there, see `visit`."""
         visit = self._visit
         self.leave()
-        if visit is not None and visit.line is not None:
+        if visit is not None and visit.line is not None and visit.there is not self.state:
             self.history.begin("Go back in time", visit.present)
             self._record("begin", label="Go back in time")
             self.go_back(visit.there, visit.line)
@@ -428,9 +437,6 @@ class Session:
 
     def _restore(self, state: EditState) -> None:
         self.jumps += 1
-        self._show(state)
-
-    def _show(self, state: EditState) -> None:
         self._set_state(state)
         if self._bending.fits(self.drawing.mesh, state):
             self._bending.last_way = None

@@ -97,6 +97,39 @@ def test_dragging_from_an_earlier_moment_branches(player, pinned, drawing):
     assert bits(recorded(session, drawing)) == old
 
 
+def test_looking_does_not_change_the_last_bits_of_what_comes_after(player, pinned, drawing):
+    session = pinned.session
+    for number in range(4):
+        for shot in player.shots[:: 3 + number]:
+            player.scrub(shot.time)
+        player.now()
+        start = pinned.where(3)
+        pinned.press(start)
+        pinned.move((start[0] + (-8) ** (number % 2) * 2, start[1] - 9.0))
+        for _ in range(3):
+            pinned.advance()
+            player.watch(session)
+        pinned.release((start[0], start[1] - 9.0))
+        player.watch(session)
+        assert bits(recorded(session, drawing)) == bits(session.state)
+
+
+def test_a_pose_that_is_settling_goes_on_after_a_look_back(player, pinned, drawing):
+    session = pinned.session
+    start = pinned.where(3)
+    pinned.press(start)
+    pinned.move((start[0] - 20.0, start[1] + 25.0))
+    pinned.release((start[0] - 20.0, start[1] + 25.0))
+    player.watch(session)
+    assert session.moving
+    player.scrub(0.0)
+    assert not session.moving
+    player.now()
+    assert session.moving
+    pinned.click((30.0, 40.0))
+    assert bits(recorded(session, drawing)) == bits(session.state)
+
+
 def test_undo_while_looking_undoes_from_the_present(player, pinned, drawing):
     player.scrub(player.duration / 2)
     pinned.undo()
