@@ -22,6 +22,7 @@ LATEST = 1e9  # seconds
 # What each event must carry besides its time.
 _FIELDS: dict[str, tuple[str, ...]] = {
     "begin": ("label",),
+    "label": ("label",),
     "commit": (),
     "abort": (),
     "undo": (),

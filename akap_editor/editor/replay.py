@@ -213,6 +213,8 @@ def _apply(
         return session.step()
     if do == "begin":
         session.begin(str(event["label"]))
+    elif do == "label":
+        session.rename(str(event["label"]))
     elif do == "pins":
         session.halt()  # what was still moving then is in their targets
         session.set_pins(_pins(event, stage, session.drawing.mesh))

@@ -190,6 +190,11 @@ class Session:
             self.set_pose(visit.there.positions)
             self._taken = self.state
 
+    def rename(self, label: str) -> None:
+        """Say better what the open gesture turned out to be."""
+        self.history.rename(label)
+        self._record("label", label=label)
+
     def commit(self, join: bool = False) -> None:
         """End the gesture: one undo entry, or none where nothing changed. The pose may go on to settle.
 

@@ -256,6 +256,12 @@ def test_bad_events_are_told_with_their_line(pinned, drawing, line):
 
 def test_a_replay_leaves_a_session_to_go_on_with(pinned, drawing):
     pinned.drag(END, (90.0, 60.0))
+    pinned.drag((40.0, 40.0), (45.0, 45.0))
+    assert "Add pin and bend" in pinned.session.history.labels
+    text = pinned.session.recording.to_text()
+    whole = Replay(parse_recording(text), drawing)
+    assert sum(1 for _ in whole.moments()) == text.count("\n") - 1
+    assert whole.end().history.labels == pinned.session.history.labels
     recording = parse_recording(pinned.session.recording.to_text())
     half = len(recording.events) // 2
     again = Replay(replace(recording, events=recording.events[:half]), drawing)
