@@ -1,13 +1,16 @@
 #version 330 core
-// The textured mesh; the picture is premultiplied.
+// The textured mesh; the picture is premultiplied. A tint of (r, g, b, share) replaces so much of its colors.
 
 uniform sampler2D picture;
 uniform float opacity;
+uniform vec4 tint;
 
 in vec2 uv;
 
 out vec4 color;
 
 void main() {
-    color = texture(picture, uv) * opacity;
+    color = texture(picture, uv);
+    color.rgb = mix(color.rgb, tint.rgb * color.a, tint.a);
+    color *= opacity;
 }

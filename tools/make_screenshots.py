@@ -175,6 +175,53 @@ def export(window: Window) -> None:
     window.space.ask_export()
 
 
+def animated(window: Window) -> None:
+    """Three keyframes of the elephant's trunk on the timeline, looked at between the first two."""
+    space, editor = window.space, window.space.editor
+    space.show_timeline, space.timeline = True, "keyframes"
+    window.frame()
+    pin = posed_elephant().state.pins[-1]
+    x, y = pin.target.tolist()
+    rest = posed_elephant().drawing.mesh.vertices
+    space.key_player.put(0.0, rest)
+    space.key_player.put(0.8, posed_elephant().state.positions)
+    editor.place_pin(pin.id, (x - 120.0, y + 260.0))
+    editor.session.settle()
+    space.key_player.put(1.6)
+    for time, name in ((0.0, "Rest"), (0.8, "Trunk up"), (1.6, "Reach")):
+        space.key_player.scrub(time)
+        editor.keep_pose(name)
+    space.key_player.scrub(0.45)
+    editor.select(())
+
+
+@shot("keyframes")
+def keyframes(window: Window) -> None:
+    """Keyframes on the timeline, with onion skin."""
+    animated(window)
+    window.space.show_pins = False
+    window.space.key_player.onion.shown = True
+    window.space.key_player.chosen = frozenset({0.8})
+
+
+@shot("timeline")
+def timeline(window: Window) -> None:
+    """A recording that was opened, looked at in its middle."""
+    window.space.open_path(resource("assets", "recordings", "elephant.akaprec"))
+    while window.space.waiting:
+        window.frame()
+    window.space.player.cut_to(1.5, 6.0)
+    window.space.player.scrub(4.0)
+    window.space.notice = ""
+
+
+@shot("animation")
+def animation(window: Window) -> None:
+    """The dialog for exports of the timeline."""
+    animated(window)
+    window.space.animating = True
+
+
 def take(window: Window, name: str, folder: Path) -> None:
     """Write one picture, starting from the posed elephant."""
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):

@@ -8,9 +8,10 @@ from typing import Literal
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ..editor.key_player import STEP
 from ..editor.tool_turning import toggle_hold
 from ..resources import bundled_drawings
-from . import masking, poses
+from . import animating, keying, masking, poses
 from .overlays import Measure
 from .requests import Palette
 from .workspace import Workspace
@@ -70,6 +71,8 @@ _KEY_NAMES = {
     "minus": "-",
     "left_bracket": "[",
     "right_bracket": "]",
+    "comma": ",",
+    "period": ".",
 }
 
 
@@ -123,6 +126,14 @@ def _holds(space: Workspace) -> bool:
     session, chosen = space.editor.session, space.editor.selection
     held = [pin.angle is not None for pin in session.state.pins if pin.id in chosen] if session else []
     return bool(held) and all(held)
+
+
+def _remove(space: Workspace) -> None:
+    """Pins, or where none is selected, keyframes."""
+    if space.editor.selection:
+        space.editor.remove_selected()
+    else:
+        space.key_player.remove()
 
 
 def _find(space: Workspace) -> None:
@@ -214,10 +225,10 @@ REDO = Command(
 )
 REMOVE = Command(
     "Remove Selected Pins",
-    lambda space: space.editor.remove_selected(),
+    _remove,
     (Key.delete,),
     icons.ICON_FA_TRASH_CAN,
-    lambda space: bool(space.editor.selection),
+    lambda space: bool(space.editor.selection) or keying.has_chosen(space),
 )
 FORWARD = Command(
     "Bring Forward",
@@ -310,6 +321,38 @@ SHOW_REFERENCE = Command(
 )
 OVERLAYS = (SHOW_FIELD, SHOW_AREA, SHOW_ANGLE, SHOW_GHOST, SHOW_TRAILS)
 
+KEY_HERE = Command("Keyframe Here", keying.keyframe_here, (Key.k,), icons.ICON_FA_DIAMOND, has_drawing)
+KEY_REMOVE = Command(
+    "Remove Keyframe", lambda space: space.key_player.remove(), (SHIFT | Key.k,), "", keying.shown
+)
+KEY_COPY = Command(
+    "Duplicate Keyframe",
+    lambda space: space.key_player.duplicate(),
+    (CTRL | SHIFT | Key.k,),
+    "",
+    keying.shown,
+)
+KEY_NEXT = Command(
+    "Next Keyframe", lambda space: space.key_player.step(True), (Key.period,), "", keying.shown
+)
+KEY_PREVIOUS = Command(
+    "Previous Keyframe", lambda space: space.key_player.step(False), (Key.comma,), "", keying.shown
+)
+KEY_LATER = Command("Move Keyframe Later", keying.nudging(STEP), (SHIFT | Key.period,), "", keying.shown)
+KEY_EARLIER = Command("Move Keyframe Earlier", keying.nudging(-STEP), (SHIFT | Key.comma,), "", keying.shown)
+PLAY = Command("Play", keying.play, (Key.l,), icons.ICON_FA_PLAY, keying.can_play)
+ONION = Command(
+    "Onion Skin",
+    keying.toggle_onion,
+    (Key.o,),
+    icons.ICON_FA_LAYER_GROUP,
+    keying.shown,
+    lambda space: space.key_player.onion.shown,
+)
+EXPORT_ANIMATION = Command(
+    "Export Animation...", animating.ask, (CTRL | SHIFT | Key.e,), icons.ICON_FA_FILM, keying.can_play
+)
+
 PALETTE = Command("Find Command...", _find, (CTRL | Key.k, Key.f3))
 KEYS = Command("Keys and Mouse", _keys, (Key.f1,), typed="?")
 ABOUT = Command("About akap-editor", _about)
@@ -372,6 +415,15 @@ MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
             *(SHOW_MESH, SHOW_PINS, *OVERLAYS, None),
             *(CHECKER, CHOOSE_REFERENCE, SHOW_REFERENCE),
             *(None, SHOW_TIMELINE, SPLIT),
+        ),
+    ),
+    (
+        "Animation",
+        (
+            *(PLAY, EXPORT_ANIMATION, None),
+            *(KEY_HERE, KEY_REMOVE, KEY_COPY, None),
+            *(KEY_PREVIOUS, KEY_NEXT, KEY_EARLIER, KEY_LATER, None),
+            ONION,
         ),
     ),
     ("Help", (PALETTE, KEYS, ABOUT)),

@@ -11,7 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import portable_file_dialogs as native
 
 from .. import __version__
-from . import export_dialog, keys_overlay, widgets
+from . import animation_dialog, export_dialog, keys_overlay, task_dialog, widgets
 from .recovery import Recovery
 from .requests import FileRequest
 from .theme import ACCENT, QUIET
@@ -41,6 +41,8 @@ class Dialogs:
         """One frame of what is to be answered now; a message goes before everything else."""
         if space.error:
             _message(space, scale)
+        elif space.task is not None:
+            task_dialog.draw(space, space.task, scale)
         elif space.question is not None:
             _unsaved(space, scale)
         elif space.lost:
@@ -49,6 +51,8 @@ class Dialogs:
             self._file(space, space.request, scale)
         elif space.export.shown:
             export_dialog.draw(space, scale)
+        elif space.animating:
+            animation_dialog.draw(space, scale)
         elif space.keys:
             keys_overlay.draw(space, scale)
         elif space.about:

@@ -67,13 +67,13 @@ def _options(choice: ExportChoice, document: Document, scale: float) -> str:
     widgets.quiet(choice.format.about)
     imgui.set_cursor_pos_y(below)  # so that nothing jumps when another format is chosen
     problem = _framing(choice, document, scale) if choice.format.framed else _numbers(document, scale)
-    _switch_label("Pose", scale)
+    widgets.switch_label("Pose", _LABEL * scale)
     _, choice.rest = widgets.switch("At rest", choice.rest, "The drawing as it was before it was bent.")
     return problem
 
 
 def _framing(choice: ExportChoice, document: Document, scale: float) -> str:
-    _label("Scale", scale)
+    widgets.label("Scale", _LABEL * scale)
     imgui.set_next_item_width(86 * scale)
     speed, low, high = max(0.5, choice.scale), 100 * SMALLEST, 100 * LARGEST
     clamp = imgui.SliderFlags_.always_clamp
@@ -87,7 +87,7 @@ def _framing(choice: ExportChoice, document: Document, scale: float) -> str:
             choice.scale = preset
     imgui.pop_style_var()
     problem = _size(choice, document, scale)
-    _label("Shows", scale)
+    widgets.label("Shows", _LABEL * scale)
     imgui.set_next_item_width(-1)
     opened = imgui.begin_combo("##crop", _CROPS[choice.crop])
     widgets.explain(_ABOUT_CROPS)
@@ -96,20 +96,17 @@ def _framing(choice: ExportChoice, document: Document, scale: float) -> str:
             if imgui.selectable(label, name == choice.crop)[0]:
                 choice.crop = name
         imgui.end_combo()
-    _switch_label("Background", scale)
+    widgets.switch_label("Background", _LABEL * scale)
     _, choice.opaque = widgets.switch("Color", choice.opaque, "Without it, the background is transparent.")
     if choice.opaque:
         imgui.same_line(0, 10 * scale)
-        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - _rise())
-        flags = imgui.ColorEditFlags_.no_inputs | imgui.ColorEditFlags_.no_label
-        _, edited = imgui.color_edit3("##background", list(choice.background), flags)
-        red, green, blue = edited
-        choice.background = red, green, blue
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - widgets.rise())
+        choice.background = widgets.color("##background", choice.background)
     return problem
 
 
 def _size(choice: ExportChoice, document: Document, scale: float) -> str:
-    _label("Size", scale)
+    widgets.label("Size", _LABEL * scale)
     try:
         width, height = choice.size(document)
     except InputError:
@@ -126,23 +123,6 @@ def _numbers(document: Document, scale: float) -> str:
         ("Mesh", f"{len(mesh.vertices):,} vertices, {len(mesh.faces):,} faces"),
         ("Texture", f"{document.drawing.size[0]} × {document.drawing.size[1]} px"),
     ):
-        _label(label, scale)
+        widgets.label(label, _LABEL * scale)
         imgui.text(value)
     return ""
-
-
-def _label(text: str, scale: float) -> None:
-    imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*QUIET), text)
-    imgui.same_line(_LABEL * scale)
-    imgui.align_text_to_frame_padding()
-
-
-def _switch_label(text: str, scale: float) -> None:
-    """Before a switch, which is lower than other fields."""
-    _label(text, scale)
-    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + _rise())
-
-
-def _rise() -> float:
-    return imgui.get_style().frame_padding.y - 0.18 * imgui.get_font_size()

@@ -18,7 +18,7 @@ from ..editor.tools import DraggingPin
 from ..geometry.checks import Floats, Ints
 from ..geometry.distortion import Distortion
 from ..render.colormaps import diverging, sequential
-from ..render.overlays import Heat, Overlays, Reference, Strokes
+from ..render.overlays import Heat, Overlays, Reference, Skin, Strokes
 from .theme import DARK, QUIET, TEXT, packed
 
 Measure = Literal["area", "angle"]
@@ -28,6 +28,8 @@ TRAIL = (1.0, 0.71, 0.23, 1.0)
 RANGES = (1.1, 1.25, 1.5, 2.0, 4.0)  # at the ends of the distortion scale
 STIFF = (0.62, 0.36, 1.0)  # of parts that bend less, while the brush is at hand
 GHOST, REFERENCE = 0.3, 0.5  # opacity
+BEFORE, AFTER = (0.34, 0.71, 0.91, 0.88), (0.90, 0.55, 0.0, 0.88)  # blue and orange: told apart by all eyes
+SKIN, FADING = 0.5, 0.65  # opacity of the nearest pose of the onion skin, and by how much others have less
 SPACING = 30.0  # points of the screen between arrows
 LONGEST = 1.6  # times the spacing: the longest arrow
 SHARE = 0.2  # of the time that fields may take while something moves
@@ -138,6 +140,16 @@ def heat(distortion: Distortion, measure: Measure, limit: float) -> Heat:
             levels = np.log(0.5 * (s + np.sqrt(s * s - 4.0))) / np.log(limit)
     levels = np.clip(levels, 0.0, 1.0)
     return Heat(np.where(distortion.face_determinant > 0, levels, -1.0), COLORS[measure])
+
+
+def skins(before: list[Floats], after: list[Floats]) -> tuple[Skin, ...]:
+    """The onion skin of poses before and after, the nearest ones first; those lie in front."""
+    made = [
+        (number, Skin(pose, tint, SKIN * FADING**number))
+        for poses, tint in ((before, BEFORE), (after, AFTER))
+        for number, pose in enumerate(poses)
+    ]
+    return tuple(skin for _, skin in sorted(made, key=lambda each: -each[0]))
 
 
 def outlined(segments: Floats, color: tuple[float, float, float, float], width: float) -> list[Strokes]:

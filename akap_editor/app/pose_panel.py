@@ -9,6 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..editor.framing import frame_box
 from ..editor.poses import NamedPose
 from . import widgets
+from .key_track import POSE_PAYLOAD
 from .theme import ACCENT, FRAME, HOVER, QUIET, packed
 from .workspace import Workspace
 
@@ -70,12 +71,14 @@ def _pose(space: Workspace, pose: NamedPose, scale: float) -> None:
         space.notice = ""
         space.attempt(lambda: space.editor.set_pose(pose.positions, f"Apply {pose.name}"))
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
-    widgets.explain(f"{pose.name}: click to apply, right-click to forget")
+    widgets.explain(
+        f"{pose.name}: click to apply, drag to the timeline or another place, right-click for more"
+    )
+    if hovered and imgui.is_key_pressed(imgui.Key.f2, False):
+        _begin_renaming(space, pose)
+    _dragging(space, pose)
     if imgui.begin_popup_context_item(f"menu {pose.name}"):
-        if imgui.menu_item_simple("Take this pose anew"):
-            space.attempt(lambda: space.editor.keep_pose(pose.name))
-        if imgui.menu_item_simple("Forget"):
-            space.editor.forget_pose(pose.name)
+        _menu(space, pose)
         imgui.end_popup()
     end = ImVec2(corner.x + side, corner.y + side)
     drawer.add_rect_filled(corner, end, packed(HOVER if hovered else FRAME), 6 * scale)
@@ -88,11 +91,77 @@ def _pose(space: Workspace, pose: NamedPose, scale: float) -> None:
     if pose.positions is space.document.state.positions:
         drawer.add_rect(corner, end, packed(ACCENT), 6 * scale)
     imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
-    imgui.push_clip_rect(imgui.get_cursor_screen_pos(), ImVec2(end.x, end.y + 40 * scale), True)
-    imgui.text_colored(ImVec4(*QUIET), pose.name)
-    imgui.pop_clip_rect()
+    if space.renaming == pose.name:
+        _rename(space, pose, side)
+    else:
+        imgui.push_clip_rect(imgui.get_cursor_screen_pos(), ImVec2(end.x, end.y + 40 * scale), True)
+        imgui.text_colored(ImVec4(*QUIET), pose.name)
+        imgui.pop_clip_rect()
+        if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
+            _begin_renaming(space, pose)
+        widgets.explain(f"{pose.name}: double-click or F2 to rename")
     imgui.pop_font()
     imgui.end_group()
+
+
+def _menu(space: Workspace, pose: NamedPose) -> None:
+    if imgui.menu_item("Rename", "F2", False)[0]:
+        _begin_renaming(space, pose)
+    if imgui.menu_item_simple("Change to the present pose"):
+        space.attempt(lambda: space.editor.keep_pose(pose.name))
+    if imgui.menu_item_simple("Keyframe of it"):
+        space.show_in_timeline("keyframes")
+        space.show_timeline = True
+        space.attempt(lambda: space.key_player.put(positions=pose.positions))
+    imgui.separator()
+    if imgui.menu_item_simple("Forget"):
+        space.editor.forget_pose(pose.name)
+
+
+def _begin_renaming(space: Workspace, pose: NamedPose) -> None:
+    space.renaming, space.new_name = pose.name, ""
+
+
+def _rename(space: Workspace, pose: NamedPose, width: float) -> None:
+    """A field in place of the name: Enter or a click elsewhere takes what is in it, Escape nothing."""
+    if not space.new_name:
+        space.new_name = pose.name
+        imgui.set_keyboard_focus_here()
+    imgui.set_next_item_width(width)
+    flags = imgui.InputTextFlags_.auto_select_all
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
+    _, text = imgui.input_text("##name of pose", space.new_name, flags)
+    imgui.pop_style_var()
+    space.new_name = text or " "  # which is no name, and not the sign that the field is new
+    if imgui.is_item_deactivated():
+        name, space.renaming = space.new_name.strip(), None
+        if name and name != pose.name and not imgui.is_key_pressed(imgui.Key.escape, False):
+            label = f"Rename {pose.name}"
+            space.attempt(
+                lambda: space.editor.edit(
+                    label, lambda session: session.change_poses("rename", name=pose.name, to=name)
+                )
+            )
+
+
+def _dragging(space: Workspace, pose: NamedPose) -> None:
+    """A thumbnail goes to the timeline, or where another one is, which makes room."""
+    assert space.document is not None
+    names = [each.name for each in space.document.state.poses]
+    if imgui.begin_drag_drop_source(imgui.DragDropFlags_.source_no_preview_tooltip):
+        imgui.set_drag_drop_payload_py_id(POSE_PAYLOAD, names.index(pose.name))
+        imgui.end_drag_drop_source()
+    if imgui.begin_drag_drop_target():
+        payload = imgui.accept_drag_drop_payload_py_id(POSE_PAYLOAD)
+        if payload is not None and names[payload.data_id] != pose.name:
+            there = names.index(pose.name)
+            names.insert(there, names.pop(payload.data_id))
+            space.attempt(
+                lambda: space.editor.edit(
+                    "Order poses", lambda session: session.change_poses("order", names=names)
+                )
+            )
+        imgui.end_drag_drop_target()
 
 
 def _mixer(space: Workspace, scale: float) -> None:

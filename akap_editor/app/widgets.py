@@ -143,6 +143,32 @@ def begin_dialog(title: str) -> bool:
     return bool(shown)
 
 
+def label(text: str, width: float) -> None:
+    """What stands before a field of a dialog, which begins at ``width``."""
+    imgui.align_text_to_frame_padding()
+    imgui.text_colored(ImVec4(*QUIET), text)
+    imgui.same_line(width)
+    imgui.align_text_to_frame_padding()
+
+
+def switch_label(text: str, width: float) -> None:
+    """Before a switch, which is lower than other fields."""
+    label(text, width)
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + rise())
+
+
+def rise() -> float:
+    """By how much a switch is lower than other fields, above and below."""
+    return float(imgui.get_style().frame_padding.y - 0.18 * imgui.get_font_size())
+
+
+def color(name: str, value: tuple[float, float, float]) -> tuple[float, float, float]:
+    """A small field that opens a chooser of colors; the one that is chosen."""
+    flags = imgui.ColorEditFlags_.no_inputs | imgui.ColorEditFlags_.no_label
+    _, (red, green, blue) = imgui.color_edit3(name, list(value), flags)
+    return red, green, blue
+
+
 def button(label: str, primary: bool = False) -> bool:
     """A button of a dialog; primary: what Enter does."""
     width = max(imgui.calc_text_size(label).x + 2.5 * imgui.get_font_size(), 6 * imgui.get_font_size())

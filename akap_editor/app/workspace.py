@@ -10,10 +10,13 @@ from typing import Literal
 from ..editor.beside import Beside
 from ..editor.document import Document, Settings
 from ..editor.editor import Editor
+from ..editor.key_player import KeyPlayer
 from ..editor.mixer import Mixer
 from ..editor.player import Player
 from ..editor.remesher import Remesher
+from ..editor.session import Session
 from ..editor.tool_brush import Brush
+from ..editor.transport import Transport
 from ..errors import AkapError, InputError
 from ..geometry.checks import Floats
 from ..geometry.distortion import Distortion, distortion
@@ -29,9 +32,11 @@ from ..resources import bundled_drawings
 from .drafts import Drafts
 from .exporting import ExportChoice
 from .meter import Meter
-from .overlays import ViewState
+from .overlays import ViewState, skins
 from .preferences import Preferences
+from .reenacting import reenacting
 from .requests import FileRequest, Palette, Question
+from .tasks import Task
 
 SWITCHES = ("show_mesh", "checker", "show_timeline")  # fields that are remembered between runs
 
@@ -49,7 +54,14 @@ class Workspace:
     show_timeline: bool = False
     player: Player = field(default_factory=Player)
     mixer: Mixer = field(default_factory=Mixer)
-    grip: Literal["start", "end", "head"] = "head"  # what the pointer holds of the timeline
+    key_player: KeyPlayer = field(init=False)
+    timeline: Literal["session", "keyframes"] = "session"  # which of the two the timeline shows
+    grip: Literal["start", "end", "head", "keys", "none"] = "head"  # what the pointer holds of the timeline
+    held_key: float = 0.0  # the time of the keyframe that it holds
+    animating: bool = False  # whether the dialog for exports of the timeline is open
+    task: Task | None = None
+    renaming: str | None = None  # the pose that is given another name
+    new_name: str = ""
     checker: bool = True
     split: bool = False
     beside: Beside = field(default_factory=Beside)
@@ -78,6 +90,25 @@ class Workspace:
 
     def __post_init__(self) -> None:
         self.remesher = Remesher(self.editor)
+        self.key_player = KeyPlayer(self.editor)
+
+    @property
+    def transport(self) -> Transport:
+        """What the timeline plays."""
+        return self.key_player if self.timeline == "keyframes" else self.player
+
+    def show_in_timeline(self, timeline: Literal["session", "keyframes"]) -> None:
+        """Look at the other one; of what was shown nothing is seen any more."""
+        if timeline != self.timeline:
+            self.show_present()
+            self.timeline = timeline
+
+    def show_present(self) -> None:
+        """Of what the timeline shows nothing is seen any more."""
+        if self.player.at is not None:
+            self.player.now()
+        if self.key_player.following:
+            self.key_player.leave()
 
     # -- between runs ----------------------------------------------------------------------------------------
 
@@ -118,18 +149,29 @@ class Workspace:
     @property
     def waiting(self) -> bool:
         """Whether there is work left."""
-        return bool(self._jobs or self._due) or self.remesher.busy
+        return bool(self._jobs or self._due) or self.remesher.busy or self.task is not None
 
     def work(self) -> bool:
         """After a frame: do what was put off before it began; whether there was anything."""
         jobs, self._due, self._jobs = self._due, self._jobs, []
         for job in jobs:
             self.attempt(job)
+        if self.task is not None:
+            self.attempt(self._go_on)
+            return True
         try:
             return self.remesher.advance() or bool(jobs)
         except InputError as error:  # no dialog in the middle of a drag
             self.notice = str(error)
             return True
+
+    def _go_on(self) -> None:
+        """A slice of the task."""
+        task = self.task
+        assert task is not None
+        self.task = None  # where it fails, there is none
+        if not task.advance():
+            self.task = task
 
     def attempt(self, job: Callable[[], object]) -> bool:
         """Run ``job``; what it raises on purpose becomes a message, and everything open stays as it was."""
@@ -183,6 +225,9 @@ class Workspace:
 
         def read() -> None:
             try:
+                if path.suffix.lower() == RECORDING_SUFFIX:
+                    self.task = reenacting(path, partial(self._go_on_with, path))
+                    return
                 document = open_document(path)
             except InputError:
                 self.preferences.forget(path)
@@ -194,6 +239,14 @@ class Workspace:
             self.notice = notice or self.notice
 
         self.unless_unsaved(lambda: self.later(read, f"Opening {path.name} ..."))
+
+    def _go_on_with(self, path: Path, session: Session, player: Player) -> None:
+        """Show a recording that was done again; the timeline holds all of it."""
+        session.mark_saved(None)
+        self.editor.take_over(session)
+        self.player, self.timeline, self.show_timeline = player, "session", True
+        self._used(path)
+        self.notice = f"Opened {path.name}: {player.duration:.0f} seconds are on the timeline"
 
     def _used(self, path: Path) -> None:
         """A file was opened or saved: the next dialog begins there, and it can be found again."""
@@ -215,14 +268,16 @@ class Workspace:
             return
         try:
             last = session.history.last if session is not None else None
-            self.autosave.watch(self.document, self.editor.modified, last)
+            kept = session.kept if session is not None else None
+            self.autosave.watch(kept, self.editor.modified, last)
         except InputError as error:
             self.notice = str(error)
 
     def rescue(self) -> None:
         """The program is about to end by mistake: keep what is not saved, if that is still possible."""
-        if self.autosave is not None and self.document is not None and self.editor.modified:
-            self.attempt(partial(self.autosave.rescue, self.document))
+        session = self.editor.session
+        if self.autosave is not None and session is not None and self.editor.modified:
+            self.attempt(partial(self.autosave.rescue, session.kept))
 
     def recover(self, copy: Copy, document: Document) -> None:
         """Go on with what a program that crashed has left; what else is lost is asked for another time."""
@@ -262,8 +317,8 @@ class Workspace:
 
     def _write(self, path: Path, go_on: Callable[[], None] | None) -> None:
         def write() -> None:
-            assert self.document is not None
-            project_file.save(self.document, path)
+            assert self.editor.session is not None
+            project_file.save(self.editor.session.kept, path)
             self.editor.mark_saved(path)
             self._used(path)
             self.notice = f"Saved {path.name}"
@@ -273,7 +328,7 @@ class Workspace:
 
     def ask_open(self) -> None:
         """Ask for a picture or a posed drawing to open."""
-        suffixes = (PROJECT_SUFFIX, *PICTURE_SUFFIXES, *MESH_SUFFIXES)
+        suffixes = (PROJECT_SUFFIX, RECORDING_SUFFIX, *PICTURE_SUFFIXES, *MESH_SUFFIXES)
         self.request = FileRequest("Open picture or drawing", suffixes, self.folder, self.open_path)
 
     def ask_reference(self) -> None:
@@ -355,13 +410,16 @@ class Workspace:
     @property
     def moving(self) -> bool:
         """Whether the drawing, or the second one beside it, has not come to rest."""
-        return self.editor.moving or self.beside.moving or self.player.playing
+        return self.editor.moving or self.beside.moving or self.transport.playing
 
     def overlays(self, scale: float) -> Overlays:
         """What the renderer shows besides the drawing. scale: framebuffer pixels per point of the design."""
         distortion = self.measure() if self.view.heat is not None else None
         mesh = self.show_mesh or self.remesher.active
-        return self.view.overlays(self.editor, distortion, mesh, scale)
+        overlays = self.view.overlays(self.editor, distortion, mesh, scale)
+        if self.timeline == "session" or not self.show_timeline:
+            return overlays
+        return replace(overlays, skins=skins(*self.key_player.neighbors()))
 
     def measure(self) -> Distortion | None:
         """The distortion of the current pose, computed once for each pose."""

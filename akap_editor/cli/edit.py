@@ -10,6 +10,7 @@ from ..editor.document import Document
 from ..errors import DisplayError, InputError
 from ..io.autosave import Autosave
 from ..io.documents import open_document
+from ..io.recordings import RECORDING_SUFFIX
 from ..resources import resource
 from . import replay
 from .common import FILE, bundled
@@ -22,19 +23,24 @@ OUTPUT_FOLDER = Path("out")
 @click.argument("file", type=FILE, required=False)
 @click.option("--mask", type=FILE, help="A picture that is bright, or opaque, where FILE is to be visible.")
 def edit(file: Path | None, mask: Path | None) -> None:
-    """Open FILE in the window: a picture, a flat OBJ or OFF mesh, or a drawing saved as .akap.
+    """Open FILE in the window: a picture, a flat OBJ or OFF mesh, a drawing saved as .akap, or a recording,
+    which is then on the timeline.
 
     Without FILE, a bundled cartoon.
 
     Where there is no display, the bundled recording is replayed without a window instead.
     """
     document, problem = None, None
+    recording = (
+        file if file is not None and file.suffix.lower() == RECORDING_SUFFIX and mask is None else None
+    )
     try:
-        document = open_document(file if file is not None else bundled(FIRST_DRAWING), mask)
+        if recording is None:
+            document = open_document(file if file is not None else bundled(FIRST_DRAWING), mask)
     except InputError as error:
         problem = error
     try:
-        _edit(document, "" if problem is None else str(problem))
+        _edit(document, "" if problem is None else str(problem), recording)
     except DisplayError as error:
         if problem is not None:
             raise problem from None
@@ -46,8 +52,11 @@ def edit(file: Path | None, mask: Path | None) -> None:
         replay.replay_recording(recording, None, animation, animation.with_suffix(".png"), fps=24.0, size=480)
 
 
-def _edit(document: Document | None, problem: str) -> None:
-    """Open the window; where a file could not be opened, it shows its start page and says why."""
+def _edit(document: Document | None, problem: str, recording: Path | None) -> None:
+    """Open the window; where a file could not be opened, it shows its start page and says why.
+
+    recording: is done again there, where one sees how far it is.
+    """
     x11 = sys.platform.startswith("linux")
     if x11 and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise DisplayError("there is no display")
@@ -58,4 +67,6 @@ def _edit(document: Document | None, problem: str) -> None:
         raise DisplayError(f"a library that windows need is missing ({error})") from error
     with Window(preferences=Preferences(preferences_path()), autosave=Autosave()) as window:
         window.space.error = problem
+        if recording is not None:
+            window.space.open_path(recording)
         window.run(document)

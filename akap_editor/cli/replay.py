@@ -1,18 +1,19 @@
-"""Does recordings again, as animations."""
+"""Does recordings again, and plays keyframes, as animations."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import click
-import numpy as np
 
-from ..editor.document import Drawing, Settings
-from ..editor.framing import frame_box
-from ..editor.recording import Recording
+from ..editor.document import Settings
+from ..editor.easing import EASINGS
+from ..editor.framing import frame_box, joined
+from ..editor.inbetween import Ways
+from ..editor.key_player import keyed_frame
 from ..editor.replay import replay
-from ..editor.timeline import EASINGS, Frame, Motion, frame_times, shorten_pauses
+from ..editor.timeline import Frame, Motion, frame_times, shorten_pauses
 from ..errors import InputError
-from ..io.documents import open_document
+from ..io.documents import PROJECT_SUFFIX, open_document
 from ..io.frames import export_frames, export_kind
 from ..io.recordings import read_recording, recorded_drawing
 from .common import FILE, check_png, color, make_folder_of, write_picture
@@ -33,7 +34,8 @@ _WORDS = ", ".join(VARIANTS)
 
 @click.command(
     "replay",
-    epilog="Example: akap-editor replay wave.akaprec --drawing cat.png -o wave.webp. The output's ending "
+    epilog="Example: akap-editor replay wave.akaprec --drawing cat.png -o wave.webp; akap-editor replay "
+    "walk.akap -o walk.gif. The output's ending "
     "decides: .png is the last pose, .gif, .webp and .apng are animations, .mp4 and .webm videos, a folder/ "
     "gets one PNG a frame; with --sheet, .png is a sprite sheet, and .json beside it its index.",
 )
@@ -61,7 +63,8 @@ def replay_command(
 ) -> None:
     """Do a recorded session again without a window and write it as an animation or a picture.
 
-    Between recorded moments the drawing moves along its trajectories, so any frame rate is smooth.
+    Between recorded moments the drawing moves along its trajectories, so any frame rate is smooth. Of a
+    drawing saved as .akap, its keyframes are played in the same way.
     """
     replay_recording(recording, drawing, output, pose, **options)  # type: ignore[arg-type]
 
@@ -97,19 +100,18 @@ def replay_recording(
     kind = export_kind(output, sheet)
     if pose is not None:
         check_png(pose)
-    change = settings_change(method, variant)
-    recording = read_recording(path)
-    if pause is not None:
-        _check_number("--pause", pause, 0, 1e9)
-        recording = shorten_pauses(recording, pause)
-    first, last = _range(recording, start, end)
-    drawing = open_document(drawing_path).drawing if drawing_path is not None else recorded_drawing(recording)
+    if path.suffix.lower() == PROJECT_SUFFIX:
+        _refuse({"--drawing": drawing_path, "--method": method, "--variant": variant, "--pause": pause})
+        duration, play = _keyframes(path)
+    else:
+        duration, play = _recorded(path, drawing_path, settings_change(method, variant), pause)
+    first, last = _range(duration, start, end)
     times = [last] if kind == "picture" else frame_times(first, last, fps, speed, ease)
-    frames = _bend(recording, drawing, change, times)
+    with click.progressbar(play(times), length=len(times), label="Bending") as bar:
+        frames = list(bar)
     if ping_pong:
         frames += frames[-2:0:-1]
-    boxes = [frame_box(frame.drawing, [frame.pose]) for frame in frames]
-    box = (*np.min(boxes, axis=0)[:2].tolist(), *np.max(boxes, axis=0)[2:].tolist())
+    box = joined([frame_box(frame.drawing, [frame.pose]) for frame in frames])
     scale = min(1.0, size / max(box[2] - box[0], box[3] - box[1]))
     make_folder_of(output)
     with OffscreenRenderer() as renderer:
@@ -128,16 +130,14 @@ def _check_number(option: str, value: float, low: float, high: float) -> None:
         raise InputError(f"{option}: expected a number from {low:g} to {high:g}, got {value:g}")
 
 
-def _range(recording: Recording, start: float | None, end: float | None) -> tuple[float, float]:
+def _range(duration: float, start: float | None, end: float | None) -> tuple[float, float]:
     first = 0.0 if start is None else start
-    last = recording.duration if end is None else end
-    if not 0 <= first <= recording.duration:
-        raise InputError(
-            f"--from: expected a time from 0 to the end at {recording.duration:g} s, got {first:g}"
-        )
+    last = duration if end is None else end
+    if not 0 <= first <= duration:
+        raise InputError(f"--from: expected a time from 0 to the end at {duration:g} s, got {first:g}")
     if not first <= last:
         raise InputError(f"--to: expected a time of {first:g} s or later, got {last:g}")
-    return first, min(last, recording.duration)
+    return first, min(last, duration)
 
 
 def settings_change(method: str | None, variant: str) -> Callable[[Settings], Settings] | None:
@@ -159,13 +159,35 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
     return change
 
 
-def _bend(
-    recording: Recording,
-    drawing: Drawing,
+# What gives drawing and pose at each of some times, which do not fall.
+Play = Callable[[Sequence[float]], Iterator[Frame]]
+
+
+def _recorded(
+    path: Path,
+    drawing_path: Path | None,
     change: Callable[[Settings], Settings] | None,
-    times: list[float],
-) -> list[Frame]:
-    """Drawing and pose at each of ``times``."""
-    moments = replay(recording, drawing, change)
-    with click.progressbar(Motion(drawing, moments).frames(times), length=len(times), label="Bending") as bar:
-        return list(bar)
+    pause: float | None,
+) -> tuple[float, Play]:
+    """How long a recording is, and what plays it."""
+    recording = read_recording(path)
+    if pause is not None:
+        _check_number("--pause", pause, 0, 1e9)
+        recording = shorten_pauses(recording, pause)
+    drawing = open_document(drawing_path).drawing if drawing_path is not None else recorded_drawing(recording)
+    return recording.duration, lambda times: Motion(drawing, replay(recording, drawing, change)).frames(times)
+
+
+def _keyframes(path: Path) -> tuple[float, Play]:
+    """How long the keyframes of a drawing are, and what plays them."""
+    document, ways = open_document(path), Ways()
+    animation = document.state.animation
+    if not animation.keys:
+        raise InputError(f"{path}: expected a drawing with keyframes, or a recording, got one without any")
+    return animation.duration, lambda times: (keyed_frame(document, ways, time) for time in times)
+
+
+def _refuse(options: dict[str, object]) -> None:
+    for name, value in options.items():
+        if value not in (None, ""):
+            raise InputError(f"{name}: expected a recording, which can be bent anew, got keyframes")

@@ -15,6 +15,7 @@ from ..geometry.checks import Floats, Ints, as_points, frozen
 from ..geometry.mesh import MeshPoints, TriMesh
 from ..geometry.meshing import mesh_picture
 from .depth import face_order
+from .keyframes import NO_ANIMATION, Animation
 from .poses import NamedPose
 
 
@@ -184,8 +185,8 @@ class EditState:
     """All that undo restores: pins, pose (n, 2) float64 in pixels, settings.
 
     drawing: what is bent, where it was given another mesh in this session; None: what was opened.
-    poses: those that were given names, of the same mesh. stiffness: (m,) float64, by what factor each face
-    bends less, see `stiffness`; None is 1 everywhere.
+    poses: those that were given names, of the same mesh; animation: its keyframes. stiffness: (m,) float64,
+    by what factor each face bends less, see `stiffness`; None is 1 everywhere.
     """
 
     pins: tuple[Pin, ...]
@@ -194,6 +195,7 @@ class EditState:
     drawing: Drawing | None = None
     poses: tuple[NamedPose, ...] = ()
     stiffness: Floats | None = None
+    animation: Animation = NO_ANIMATION
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positions", frozen(np.asarray(self.positions, dtype=np.float64)))

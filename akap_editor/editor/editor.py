@@ -53,7 +53,10 @@ class Editor:
 
     def open(self, document: Document) -> None:
         """Show a drawing; the one before it is gone."""
-        session = Session(document, self._clock)
+        self.take_over(Session(document, self._clock))
+
+    def take_over(self, session: Session) -> None:
+        """Go on with a session; the one before it is gone."""
         self.cancel()
         self.session = session
         self.trails.clear()
@@ -66,7 +69,7 @@ class Editor:
         self.session = None
         self.select(())
 
-    def mark_saved(self, path: Path) -> None:
+    def mark_saved(self, path: Path | None) -> None:
         """The file at ``path`` now holds the current state."""
         if self.session is not None:
             self.session.mark_saved(path)
@@ -239,11 +242,11 @@ class Editor:
         """Remember the current pose by a name, by default "Pose" and a number. Raises InputError."""
         if self.session is not None:
             wanted = name if name is not None else free_name(self.session.state.poses)
-            self.edit("Keep pose", lambda session: session.keep_pose(wanted))
+            self.edit("Keep pose", lambda session: session.change_poses("keep", name=wanted))
 
     def forget_pose(self, name: str) -> None:
         """Forget a pose; undo brings it back."""
-        self.edit("Forget pose", lambda session: session.forget_pose(name))
+        self.edit("Forget pose", lambda session: session.change_poses("forget", name=name))
 
     def set_pose(self, positions: Floats, label: str = "Apply pose") -> None:
         """Take over a pose (n, 2) of this mesh; pins go with it. Raises InputError."""

@@ -27,6 +27,13 @@ def frame_box(drawing: Drawing, poses: Sequence[ArrayLike]) -> Box:
     return _around([*corners, *(as_points(pose, "poses", len(drawing.mesh.vertices)) for pose in poses)])
 
 
+def joined(boxes: Sequence[Box]) -> Box:
+    """The rectangle that holds all of some, of which there is one at least."""
+    x0, y0 = np.min(boxes, axis=0)[:2].tolist()
+    x1, y1 = np.max(boxes, axis=0)[2:].tolist()
+    return x0, y0, x1, y1
+
+
 def crop_box(drawing: Drawing, pose: ArrayLike, crop: str) -> Box:
     """The rectangle (x0, y0, x1, y1) in whole drawing units that an export of ``pose`` (n, 2) shows.
 

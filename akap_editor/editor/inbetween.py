@@ -1,5 +1,6 @@
 """In-betweens of two poses: every edge turns and grows at a constant rate."""
 
+from collections import OrderedDict
 from collections.abc import Callable
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..deform.cholesky import SparseCholesky, SummedPattern
 from ..geometry.checks import Complexes, Floats, Ints, as_number, as_points
 from ..geometry.mesh import TriMesh
 from ..geometry.operators import to_complex, to_points
+from .areas import bounded, worst_area
 
 _STILL = 1e-3  # share of √area: vertices that move less hold a part in place alike
 _FULL_TURN = 1e-6  # of a rate s: nearer to a full turn, 1 − eˢ says nothing about a center
@@ -22,7 +24,8 @@ class Inbetween:
     turns; at time t it is multiplied by eᵗˢ, which is a logarithmic spiral. Positions are fitted to these
     edges by least squares. So a half turn of an arm sweeps an arc, and nothing shrinks on the way. s is known
     up to full turns: neighboring faces turn by nearly the same angle, which carries it through the mesh, also
-    beyond half a turn, from the face that turns least.
+    beyond half a turn, from the face that turns least. No face shrinks or grows by more than the worst one
+    does at either end, where none is flipped there.
     """
 
     def __init__(self, mesh: TriMesh) -> None:
@@ -56,6 +59,7 @@ class Inbetween:
         local = self._mean @ rates
         weights = 1.0 / (np.abs(b - a) ** 2 + (_STILL * self._length) ** 2)
         weights /= np.bincount(self._mesh.component, weights)[self._mesh.component]
+        most = max(worst_area(self._mesh, first), worst_area(self._mesh, last))
 
         def pose(t: float) -> Floats:
             t = as_number(t, "t", 0, 1)
@@ -66,7 +70,8 @@ class Inbetween:
             shift = np.bincount(self._mesh.component, off.real) + 1j * np.bincount(
                 self._mesh.component, off.imag
             )
-            return to_points(fitted + shift[self._mesh.component])
+            made = to_points(fitted + shift[self._mesh.component])
+            return bounded(self._mesh, made, most) if np.isfinite(most) else made
 
         return pose
 
@@ -92,6 +97,8 @@ class Inbetween:
         corners = self._mesh.faces.T
         before, after = a[corners] - a[corners].mean(axis=0), b[corners] - b[corners].mean(axis=0)
         angles = np.angle((before.conj() * after).sum(axis=0))
+        if np.abs(angles).max() < np.pi / 2:  # no two of them can differ by half a turn
+            return np.asarray(angles)
         left, right = self._neighbors
         jumps = np.abs(_wrapped(angles[right] - angles[left])) + 1e-9  # zero would be no edge of the graph
         m = len(angles)
@@ -105,6 +112,34 @@ class Inbetween:
             for face, parent in zip(order[1:].tolist(), parents[order[1:]].tolist(), strict=True):
                 turns[face] = turns[parent] + _wrapped(angles[face] - turns[parent])
         return turns
+
+
+class Ways:
+    """In-betweens of many pairs of poses: what a mesh or a pair needs is prepared once, and kept a while."""
+
+    def __init__(self, most: int = 64) -> None:
+        self._most = most
+        self._inbetween: Inbetween | None = None
+        self._mesh: TriMesh | None = None
+        self._ways: OrderedDict[tuple[int, int], tuple[Floats, Floats, Callable[[float], Floats]]]
+        self._ways = OrderedDict()
+
+    def prepare(self, mesh: TriMesh, start: Floats, end: Floats) -> Callable[[float], Floats]:
+        """As `Inbetween.between`. Pairs are told apart by which arrays they are."""
+        if self._inbetween is None or mesh is not self._mesh:
+            self._mesh, self._inbetween = mesh, Inbetween(mesh)
+            self._ways.clear()
+        pair = id(start), id(end)
+        if pair not in self._ways:
+            self._ways[pair] = start, end, self._inbetween.between(start, end)
+            if len(self._ways) > self._most:
+                self._ways.popitem(last=False)
+        self._ways.move_to_end(pair)
+        return self._ways[pair][2]
+
+    def pose(self, mesh: TriMesh, start: Floats, end: Floats, t: float) -> Floats:
+        """The pose (n, 2) at a time from 0, exactly ``start``, to 1, exactly ``end``, both (n, 2)."""
+        return start if t == 0 or start is end else end if t == 1 else self.prepare(mesh, start, end)(t)
 
 
 def _progress(rates: Complexes, t: float) -> Complexes:

@@ -1,11 +1,9 @@
 """A pose between two that were given names, to be looked at before it is taken."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from ..geometry.checks import Floats
-from ..geometry.mesh import TriMesh
-from .inbetween import Inbetween
+from .inbetween import Ways
 from .poses import NamedPose
 from .session import Session
 
@@ -16,8 +14,7 @@ class Mixer:
     def __init__(self) -> None:
         self.start = self.end = ""
         self.share = 0.0
-        self._inbetween: tuple[TriMesh, Inbetween] | None = None
-        self._way: tuple[NamedPose, NamedPose, Callable[[float], Floats]] | None = None
+        self._ways = Ways()
 
     def chosen(self, session: Session) -> tuple[NamedPose, NamedPose] | None:
         """The two poses; the first and the last one where none was chosen; None with less than two poses."""
@@ -32,13 +29,8 @@ class Mixer:
         chosen = self.chosen(session)
         if chosen is None:
             return None
-        mesh = session.drawing.mesh
-        if self._inbetween is None or self._inbetween[0] is not mesh:
-            self._inbetween, self._way = (mesh, Inbetween(mesh)), None
-        if self._way is None or self._way[:2] != chosen:
-            start, end = chosen
-            self._way = start, end, self._inbetween[1].between(start.positions, end.positions)
-        return self._way[2](self.share)
+        start, end = chosen
+        return self._ways.pose(session.drawing.mesh, start.positions, end.positions, self.share)
 
     def show(self, session: Session) -> None:
         """Look at it; nothing is edited."""

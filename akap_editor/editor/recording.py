@@ -8,10 +8,13 @@ from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
+import numpy as np
+
 from ..errors import InputError
 from ..geometry.mesh import TriMesh
-from .document import Drawing, Pin, Settings
+from .document import Document, Drawing, Pin, Settings
 from .event_log import Event, EventLog
+from .keyframes import Animation
 
 VERSION = 1
 LATEST = 1e9  # seconds
@@ -19,6 +22,7 @@ LATEST = 1e9  # seconds
 # What each event must carry besides its time.
 _FIELDS: dict[str, tuple[str, ...]] = {
     "begin": ("label",),
+    "label": ("label",),
     "commit": (),
     "abort": (),
     "undo": (),
@@ -37,6 +41,12 @@ _FIELDS: dict[str, tuple[str, ...]] = {
     "return": ("line",),
     "keep": ("name",),
     "forget": ("name",),
+    "rename": ("name", "to"),
+    "order": ("names",),
+    "key": ("time",),
+    "unkey": ("times",),
+    "rekey": ("from", "to"),
+    "ease": ("times", "ease"),
 }
 
 
@@ -104,6 +114,26 @@ def pins_to_json(mesh: TriMesh, pins: Sequence[Pin]) -> list[dict[str, Any]]:
             }
         )
     return result
+
+
+def opening_events(document: Document) -> list[Event]:
+    """What leads from a drawing at rest to a document that was opened, without times."""
+    state, mesh = document.state, document.drawing.mesh
+    events: list[Event] = [{"do": "settings", **settings_to_json(state.settings)}]
+    if state.stiffness is not None:
+        events.append({"do": "stiffness", "factors": state.stiffness.tolist()})
+    if not np.array_equal(state.positions, mesh.vertices):
+        events.append({"do": "pose", "positions": state.positions.tolist()})
+    if state.pins:
+        events.append({"do": "pins", "pins": pins_to_json(mesh, state.pins)})
+    for pose in state.poses:
+        events.append({"do": "keep", "name": pose.name, "positions": pose.positions.tolist()})
+    for key in state.animation.keys:
+        ease = {} if key.ease is None else {"ease": key.ease}
+        events.append({"do": "key", "time": key.time, **ease, "positions": key.positions.tolist()})
+    if state.animation.ease != Animation.ease:
+        events.append({"do": "ease", "times": None, "ease": state.animation.ease})
+    return events
 
 
 def parse_recording(text: str) -> Recording:

@@ -8,13 +8,13 @@ import shapely
 from ..errors import InputError
 from ..geometry.checks import Complexes, Floats, Ints
 from ..geometry.mesh import TriMesh, barycentric, signed_areas
+from .areas import pulled
 from .document import Drawing, EditState, Meshing, Pin, drawing_from, drawing_on
 
 _ON_PICTURE = 0.5  # pixels by which vertices may be beside where their texture coordinates say
 _COMPLEX = np.array([1, 1j])  # makes x + iy of (x, y)
 _THIN = 0.02  # share of its rest area that a face gets when it is unfolded
 _ROUNDS, _DOUBLING = 1000, 200  # most rounds of unfolding, tens are usual; how many until that share doubles
-_FIRMLY = 1.5  # times its mean: how far a corner goes, since some faces want it to stay
 _LOST = 0.08  # share of √area: a pin farther from the new mesh sat on a part that is gone
 
 
@@ -60,10 +60,11 @@ def carried_over(state: EditState, old: TriMesh, drawing: Drawing) -> EditState:
     poses = tuple(
         replace(pose, positions=_carried(mesh.vertices, old, pose.positions)) for pose in state.poses
     )
+    animation = state.animation.carried(lambda pose: _carried(mesh.vertices, old, pose))
     stiffness = state.stiffness
     if stiffness is not None:
         stiffness = stiffness[_nearest(mesh.vertices[mesh.faces].mean(axis=1), old)[0]]
-    return replace(state, positions=positions, pins=pins, drawing=drawing, poses=poses, stiffness=stiffness)
+    return EditState(pins, positions, state.settings, drawing, poses, stiffness, animation)
 
 
 def _nearest(points: Floats, mesh: TriMesh) -> tuple[Ints, Floats, Floats]:
@@ -122,13 +123,7 @@ def _unfolded(positions: Floats, mesh: TriMesh) -> Floats:
         if areas.min() > 0:
             break
         thin = np.flatnonzero(areas < least)
-        corners = mesh.faces[thin]
-        slopes = 0.5j * (pose[corners[:, [2, 0, 1]]] - pose[corners[:, [1, 2, 0]]])  # of the area, by corner
-        size = np.maximum((np.abs(slopes) ** 2).sum(axis=1), least[thin])
-        moves = ((least[thin] - areas[thin]) / size)[:, None] * slopes
-        n, at = len(pose), corners.ravel()
-        total = np.bincount(at, moves.real.ravel(), n) + 1j * np.bincount(at, moves.imag.ravel(), n)
-        pose += _FIRMLY * total / np.maximum(np.bincount(at, minlength=n), 1)
+        pose = pulled(pose, mesh.faces[thin], least[thin] - areas[thin], least[thin])
     return np.stack([pose.real, pose.imag], axis=1)
 
 

@@ -1,5 +1,6 @@
 """Does a recorded session again, with or without a window."""
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -11,13 +12,18 @@ from ..errors import InputError, SolverError
 from ..geometry.checks import Floats, as_number, as_points
 from ..geometry.mesh import MeshPoints, TriMesh
 from .angles import MOST_ANGLE
-from .document import Document, Drawing, EditState, Meshing, Pin, Settings, new_document
+from .document import Drawing, EditState, Meshing, Pin, Settings, new_document
 from .recording import Event, Recording, mesh_digest, settings_to_json
 from .remesh import remeshed
 from .session import Session
 
 # What a malformed value of an event raises where it is used.
 _BAD_EVENT = (AssertionError, AttributeError, KeyError, OverflowError, TypeError, ValueError)
+# What changes one of the lists that a state has.
+_LISTS = {
+    **dict.fromkeys(("keep", "forget", "rename", "order"), "poses"),
+    **dict.fromkeys(("key", "unkey", "rekey", "ease"), "keyframes"),
+}
 _SAME_PLACE = 1e-6  # pixels
 _SAME_SHAPE = 0.01  # pictures whose proportions differ by less show the same
 
@@ -48,6 +54,68 @@ class _Stage:
         return self.scale * as_points(values, name, count)
 
 
+class Replay:
+    """A recording that is done again on a drawing, see `replay`.
+
+    session: what it is done to, once it has begun; its own recording says the same with the same times.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        drawing: Drawing,
+        change: Callable[[Settings], Settings] | None = None,
+    ) -> None:
+        self.session: Session | None = None
+        self._recording, self._drawing, self._change = recording, drawing, change
+        self._now = 0.0
+        self._ended: float | None = None  # by the clock
+
+    def moments(self) -> Iterator[Moment]:
+        """Do it, event by event. Raises InputError with the number of the event's line, SolverError."""
+        stage = _stage(self._recording, self._drawing)
+        returns = {event["line"] for event in self._recording.events if event["do"] == "return"}
+        kept: dict[int, tuple[EditState, int]] = {}  # states to return to, with their lines in the session's
+        for line, event in enumerate(self._recording.events, start=2):
+            self._now = float(event["t"])
+            before = None if self.session is None else self.session.state.positions
+            try:
+                step = self._do(event, stage, kept)
+            except (*_BAD_EVENT, InputError) as error:
+                raise InputError(f"recording line {line}: cannot be replayed, {error}") from error
+            except SolverError as error:
+                raise SolverError(f"recording line {line}: {error}") from error
+            assert self.session is not None
+            if line in returns:
+                kept[line] = self.session.state, len(self.session.recording.events) + 1
+            jumped = step is None and before is not None and self.session.state.positions is not before
+            yield Moment(self._now, self.session.state, step, jumped)
+
+    def _do(self, event: Event, stage: _Stage, kept: dict[int, tuple[EditState, int]]) -> StepResult | None:
+        opens = event["do"] == "settings"
+        if opens and self._change is not None:
+            event = {**event, **settings_to_json(self._change(_settings(event)))}
+        if self.session is None:
+            settings = _settings(event) if opens else None
+            self.session = Session(new_document(self._drawing, settings), self.clock, 0.0)
+            if opens:  # so a session begins
+                return None
+        return _apply(self.session, event, stage, kept)
+
+    def clock(self) -> float:
+        """The time of what is being done, and after `end` that which has passed since."""
+        return self._now if self._ended is None else self._now + time.monotonic() - self._ended
+
+    def end(self) -> Session:
+        """The session as it came out, to go on with; a gesture that was not ended is."""
+        assert self.session is not None, "expected something that was done"
+        if self.session.history.is_open:
+            self.session.commit()
+        self.session.halt()
+        self._ended = time.monotonic()
+        return self.session
+
+
 def replay(
     recording: Recording, drawing: Drawing, change: Callable[[Settings], Settings] | None = None
 ) -> Iterator[Moment]:
@@ -57,26 +125,7 @@ def replay(
     in another size, pins are found by their place at rest. change: makes other settings of those recorded.
     Raises InputError with the number of the event's line, SolverError where a step fails.
     """
-    stage = _stage(recording, drawing)
-    returns = {event["line"] for event in recording.events if event["do"] == "return"}
-    kept: dict[int, EditState] = {}  # states to return to, by line
-    session: Session | None = None
-    for line, event in enumerate(recording.events, start=2):
-        try:
-            if event["do"] == "settings" and change is not None:
-                event = {**event, **settings_to_json(change(_settings(event)))}
-            if session is None:
-                session = Session(_start(event, drawing))
-            before = session.state.positions
-            step = _apply(session, event, stage, kept)
-        except (*_BAD_EVENT, InputError) as error:
-            raise InputError(f"recording line {line}: cannot be replayed, {error}") from error
-        except SolverError as error:
-            raise SolverError(f"recording line {line}: {error}") from error
-        if line in returns:
-            kept[line] = session.state
-        jumped = step is None and session.state.positions is not before
-        yield Moment(float(event["t"]), session.state, step, jumped)
+    yield from Replay(recording, drawing, change).moments()
 
 
 def _stage(recording: Recording, drawing: Drawing) -> _Stage:
@@ -99,10 +148,6 @@ def _stage(recording: Recording, drawing: Drawing) -> _Stage:
             f"has {width} x {height}"
         )
     return _Stage(drawing.mesh, same_mesh, scale)
-
-
-def _start(event: Event, drawing: Drawing) -> Document:
-    return new_document(drawing, _settings(event) if event["do"] == "settings" else None)
 
 
 def _settings(event: Event) -> Settings:
@@ -159,14 +204,19 @@ def _stiffen(session: Session, event: Event, stage: _Stage) -> None:
         raise ValueError("stiffness fits only the mesh that it was made on")
 
 
-def _apply(session: Session, event: Event, stage: _Stage, kept: dict[int, EditState]) -> StepResult | None:
+def _apply(
+    session: Session, event: Event, stage: _Stage, kept: dict[int, tuple[EditState, int]]
+) -> StepResult | None:
     """Do one event; the result where it is a step."""
     do = event["do"]
     if do == "step":
         return session.step()
     if do == "begin":
         session.begin(str(event["label"]))
+    elif do == "label":
+        session.rename(str(event["label"]))
     elif do == "pins":
+        session.halt()  # what was still moving then is in their targets
         session.set_pins(_pins(event, stage, session.drawing.mesh))
     elif do == "settings":
         session.set_settings(_settings(event))
@@ -183,12 +233,13 @@ def _apply(session: Session, event: Event, stage: _Stage, kept: dict[int, EditSt
         session.set_pose(as_points(event["positions"], "positions", len(session.drawing.mesh.vertices)))
     elif do == "mesh":
         session.set_drawing(remeshed(session.drawing, _meshing(event, stage)))
-    elif do == "keep":
-        session.keep_pose(str(event["name"]))
-    elif do == "forget":
-        session.forget_pose(str(event["name"]))
+    elif do in _LISTS:
+        if "positions" in event and not stage.same_mesh:
+            raise ValueError("a pose fits only the mesh that it was made on")
+        change = session.change_poses if _LISTS[do] == "poses" else session.animate
+        change(do, **{name: value for name, value in event.items() if name not in ("t", "do")})
     elif do == "return":
-        session.go_back(kept[event["line"]], event["line"])
+        session.go_back(*kept[event["line"]])
     else:
         {
             "commit": lambda: session.commit(event.get("join") is True),

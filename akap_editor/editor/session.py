@@ -2,8 +2,9 @@
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 from ..deform.deformer import StepResult
 from ..errors import InputError, SolverError
 from ..geometry.checks import Floats, as_number, as_points
+from . import keyframes, poses
 from .angles import MOST_ANGLE, holding, pin_angles, stopped
 from .bake import baked_state
 from .bending import Bending
@@ -18,8 +20,7 @@ from .depth import check_depths, depth_at
 from .document import Document, Drawing, EditState, Pin, Settings
 from .event_log import EventLog
 from .history import History
-from .poses import NamedPose, with_pose
-from .recording import Recording, drawing_header, pins_to_json, settings_to_json
+from .recording import Recording, drawing_header, opening_events, pins_to_json, settings_to_json
 from .remesh import carried_over
 from .stiffness import as_stiffness, coverage, painted
 
@@ -31,33 +32,46 @@ ANGLE_TOLERANCE = 0.002  # radians: a pin turned more nearly than this has arriv
 Target = tuple[float, float]
 
 
+@dataclass(frozen=True, eq=False)
+class _Visit:
+    """What is shown in place of the ``present``, with what goes on once it is left; see `Session.visit`."""
+
+    present: EditState
+    bending: Bending
+    settling: int
+    there: EditState
+    line: int | None
+    taken: bool
+
+
 class Session:
     """The state of one open drawing and everything that may change it.
 
     Edits happen inside a gesture: `begin`, any number of edits and steps, then `commit` or `abort`. Adding or
     removing pins moves no vertex; only `step` does. All edits are written to `recording`, with times from
-    ``clock`` (seconds).
+    ``clock`` (seconds) since it was ``started``, by default now.
     """
 
-    def __init__(self, document: Document, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        document: Document,
+        clock: Callable[[], float] = time.monotonic,
+        started: float | None = None,
+    ) -> None:
         self.document = document
         self.history = History()
         self.last_step: StepResult | None = None
         self._saved: EditState | None = document.state
-        self._present: EditState | None = None  # while an earlier moment is visited
-        self._visited: int | None = 0  # its line in the recording
+        self.jumps = 0  # how often the pose has changed in another way than by steps
+        self._visit: _Visit | None = None
+        self._taken: EditState | None = None  # as the open gesture began, where it took over a visited pose
         self._settling = 0
         self._opened = document.drawing
-        self._clock, self._started = clock, clock()
+        self._clock, self._started = clock, clock() if started is None else started
         self.recording = Recording(drawing_header(document.drawing), EventLog())
         self._bending = Bending(document.drawing.mesh, document.state)
-        self._record("settings", **settings_to_json(document.state.settings))
-        if document.state.stiffness is not None:
-            self._record("stiffness", factors=document.state.stiffness.tolist())
-        if self.posed:
-            self._record("pose", positions=document.state.positions.tolist())
-        if document.state.pins:
-            self._record("pins", pins=pins_to_json(document.drawing.mesh, document.state.pins))
+        for event in opening_events(document):
+            self._record(**event)
 
     # -- what is there -------------------------------------------------------------------------------------
 
@@ -67,6 +81,21 @@ class Session:
         return self.document.state
 
     @property
+    def present(self) -> EditState:
+        """The current state, also while another moment is visited."""
+        return self.state if self._visit is None else self._visit.present
+
+    @property
+    def kept(self) -> Document:
+        """The document with the present state: what is saved, whatever is looked at."""
+        drawing = self.present.drawing or self._opened
+        return (
+            self.document
+            if self._visit is None
+            else replace(self.document, state=self.present, drawing=drawing)
+        )
+
+    @property
     def drawing(self) -> Drawing:
         """The picture and its mesh."""
         return self.document.drawing
@@ -74,7 +103,7 @@ class Session:
     @property
     def modified(self) -> bool:
         """Whether there is something that the file does not hold."""
-        return (self._present or self.document.state) is not self._saved
+        return self.present is not self._saved
 
     @property
     def posed(self) -> bool:
@@ -114,47 +143,67 @@ class Session:
 
     @property
     def visiting(self) -> bool:
-        """Whether an earlier moment is shown in place of the present one."""
-        return self._present is not None
+        """Whether another moment is shown in place of the present one."""
+        return self._visit is not None
 
-    def visit(self, state: EditState, line: int | None) -> None:
-        """Show the state after an earlier ``line`` of the recording; nothing is edited, and nothing recorded.
+    def visit(
+        self, state: EditState, line: int | None = None, seen: Floats | None = None, take: bool = False
+    ) -> None:
+        """Show a state; nothing is edited, and nothing recorded.
 
-        The next gesture goes on from there, or, with None in place of a line, from the present. `leave`
-        returns to the present, and so do undo and redo.
+        line: of the recording, after which the state was there: the next gesture goes on from it. Without,
+        that goes on from the present; take: but takes over the pose, as a part of it. seen: a pose (n, 2)
+        that is shown in place of the state's. `leave` returns to the present, and so do undo and redo.
         """
-        present = self._present or self.state
-        self._restore(state)
-        self._present, self._visited = present, line
+        before = self._visit or _Visit(self.state, self._bending, self._settling, state, line, take)
+        self._visit = replace(before, there=state, line=line, taken=take)
+        self._set_state(state if seen is None else replace(state, positions=seen))
+        self._settling = 0
+        if not self._bending.fits(self.drawing.mesh, self.state):
+            # the present's own is not touched: what it has cached would change the last bits of later steps
+            fits = before.bending.fits(self.drawing.mesh, self.state)
+            self._bending = before.bending if fits else Bending(self.drawing.mesh, self.state)
 
     def leave(self) -> None:
-        """Show the present again, if an earlier moment is visited."""
-        if self._present is not None:
-            present, self._present = self._present, None
-            self._restore(present)
+        """Show the present again, if another moment is visited."""
+        if self._visit is not None:
+            visit, self._visit = self._visit, None
+            self._set_state(visit.present)
+            self._bending, self._settling = visit.bending, visit.settling
 
     # -- gestures ------------------------------------------------------------------------------------------
 
     def begin(self, label: str) -> None:
-        """Start a gesture; while an earlier moment is visited, from there, and an entry leads back to now."""
-        if self._visited is None:
-            self.leave()
-        if self._present is not None:
-            present, self._present = self._present, None
-            self.history.begin("Go back in time", present)
+        """Start a gesture; while another moment is visited, from there, see `visit`."""
+        visit = self._visit
+        self.leave()
+        if visit is not None and visit.line is not None and visit.there is not self.state:
+            self.history.begin("Go back in time", visit.present)
             self._record("begin", label="Go back in time")
-            self._record("return", line=self._visited)
+            self.go_back(visit.there, visit.line)
             self.history.commit()
             self._record("commit")
         self.history.begin(label, self.state)
         self._bending.turns.forget()
         self._record("begin", label=label)
+        if visit is not None and visit.taken:
+            self.set_pose(visit.there.positions)
+            self._taken = self.state
+
+    def rename(self, label: str) -> None:
+        """Say better what the open gesture turned out to be."""
+        self.history.rename(label)
+        self._record("label", label=label)
 
     def commit(self, join: bool = False) -> None:
         """End the gesture: one undo entry, or none where nothing changed. The pose may go on to settle.
 
         join: as a part of the entry before it.
         """
+        if self.state is self._taken:  # nothing was done but to look
+            self.abort()
+            return
+        self._taken = None
         if self.history.unchanged(self.state):
             self.history.abort()
         else:
@@ -164,6 +213,7 @@ class Session:
     def abort(self) -> None:
         """End the gesture and restore the state from before it, bit for bit."""
         settling = self._settling if self.history.unchanged(self.state) else 0
+        self._taken = None
         self._restore(self.history.abort())
         self._settling = settling
         self._record("abort")
@@ -281,7 +331,7 @@ class Session:
 
     def set_pose(self, positions: Floats) -> None:
         """Take over a pose (n, 2); the pins stay on the drawing and go there with it. Raises InputError."""
-        pose = as_points(positions, "positions", len(self.drawing.mesh.vertices))
+        pose = poses.as_pose(positions, "positions", len(self.drawing.mesh.vertices))
         self._put(pose)
         self._record("pose", positions=pose.tolist())
 
@@ -297,17 +347,17 @@ class Session:
             self._restore(baked_state(self.state, self.drawing))
             self._record("bake")
 
-    def keep_pose(self, name: str) -> None:
-        """Remember the current pose by a name; one of the same name is forgotten. Raises InputError."""
-        pose = NamedPose(name, self.state.positions)
-        self._set_state(replace(self.state, poses=with_pose(self.state.poses, pose)))
-        self._record("keep", name=name)
+    def change_poses(self, do: str, **values: Any) -> None:
+        """Change the poses with names, see `poses.changed`; nothing moves. Raises InputError, KeyError."""
+        kept = poses.changed(self.state.poses, do, values, self.state.positions)
+        self._set_state(replace(self.state, poses=kept))
+        self._record(do, **values)
 
-    def forget_pose(self, name: str) -> None:
-        """Forget a pose, if there is one of that name."""
-        others = tuple(pose for pose in self.state.poses if pose.name != name)
-        self._set_state(replace(self.state, poses=others))
-        self._record("forget", name=name)
+    def animate(self, do: str, **values: Any) -> None:
+        """Change the keyframes, see `keyframes.changed`; nothing moves. Raises InputError, KeyError."""
+        animation = keyframes.changed(self.state.animation, do, values, self.state.positions)
+        self._set_state(replace(self.state, animation=animation))
+        self._record(do, **values)
 
     def go_back(self, state: EditState, line: int) -> None:
         """Take over the state after an earlier ``line`` of the recording, where what came after it stays."""
@@ -349,12 +399,16 @@ class Session:
         while self.moving:
             self.step()
 
+    def halt(self) -> None:
+        """Leave the pose as it is, though pins may be on their way."""
+        self._settling = 0
+
     # -- saving --------------------------------------------------------------------------------------------
 
-    def mark_saved(self, path: Path) -> None:
-        """The current state is what the file at ``path`` holds."""
+    def mark_saved(self, path: Path | None) -> None:
+        """The current state is what the file at ``path`` holds; None: or one that is no .akap file."""
         self.document = replace(self.document, path=path)
-        self._saved = self.state
+        self._saved = self.present
 
     def mark_unsaved(self) -> None:
         """No file holds the current state, though it was there from the start."""
@@ -378,6 +432,7 @@ class Session:
         self._settling = MOST_SETTLING + int(self._bending.steps_left(self.state))
 
     def _put(self, pose: Floats) -> None:
+        self.jumps += 1
         pins = stopped(self.drawing.mesh, self.state.pins, pose)
         self._set_state(replace(self.state, pins=pins, positions=pose))
         self._settling = 0
@@ -386,6 +441,7 @@ class Session:
         self.document = replace(self.document.with_state(state), drawing=state.drawing or self._opened)
 
     def _restore(self, state: EditState) -> None:
+        self.jumps += 1
         self._set_state(state)
         if self._bending.fits(self.drawing.mesh, state):
             self._bending.last_way = None

@@ -1,6 +1,6 @@
 """A recording as a motion: a pose for every time, not only for those that were recorded."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import groupby
 from operator import attrgetter
@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..deform.deformer import StepResult
-from ..errors import InputError
 from ..geometry.checks import Floats, Ints, as_number
 from .depth import face_order
 from .document import Drawing
-from .inbetween import Inbetween
+from .easing import easing
+from .inbetween import Ways
 from .recording import LATEST, Recording
 from .replay import Moment
 
@@ -30,20 +30,6 @@ class Frame(NamedTuple):
 
 
 LONGEST_MOVE = 0.25  # seconds: what moved after a longer pause moved in the last of it
-
-EASINGS: dict[str, Callable[[float], float]] = {
-    "none": lambda t: t,
-    "in": lambda t: t * t,
-    "out": lambda t: t * (2 - t),
-    "in-out": lambda t: t * t * (3 - 2 * t),
-}
-
-
-def easing(name: str) -> Callable[[float], float]:
-    """A way from 0 to 1 that starts slowly ("in"), ends slowly ("out"), both or none. Raises InputError."""
-    if name not in EASINGS:
-        raise InputError(f"ease: expected one of {', '.join(EASINGS)}, got {name!r}")
-    return EASINGS[name]
 
 
 def shorten_pauses(recording: Recording, longest: float) -> Recording:
@@ -100,7 +86,7 @@ class Motion:
         self._groups = (list(group) for _, group in groupby(moments, key=attrgetter("time")))
         rest = Frame(drawing, drawing.mesh.vertices)
         self._stretch = _Stretch(0.0, 0.0, rest, (), rest)
-        self._inbetween: tuple[Drawing, Inbetween] | None = None
+        self._ways = Ways()
 
     def frames(self, times: Iterable[float]) -> Iterator[Frame]:
         """Drawing and pose at each of ``times``, in seconds, ascending."""
@@ -141,6 +127,4 @@ class Motion:
         local = min(local / share, 1.0)
         if step.flow is not None:
             return Frame(drawing, step.at(local), order)
-        if self._inbetween is None or self._inbetween[0] is not drawing:
-            self._inbetween = drawing, Inbetween(drawing.mesh)
-        return Frame(drawing, self._inbetween[1].between(began, step.positions)(local), order)
+        return Frame(drawing, self._ways.pose(drawing.mesh, began, step.positions, local), order)

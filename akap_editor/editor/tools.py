@@ -168,7 +168,7 @@ class DraggingPin(Tool):
         self._selection_before = selection_before
         label = "Bend" if len(editor.selection) == 1 else f"Bend with {len(editor.selection)} pins"
         if is_new:
-            session.history.rename("Add pin and bend")
+            session.rename("Add pin and bend")
         else:
             session.begin(label)
         session.hold_pins()

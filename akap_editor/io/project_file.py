@@ -17,6 +17,7 @@ from ..geometry.mesh import TriMesh
 from .archive import Archive, Entry, pack
 from .atomic import read_file, write_atomic
 from .images import MAX_PIXELS, decode_image, encode_png
+from .keyframes import keyframe_entries, read_keyframes
 from .poses import pose_entries, read_poses
 from .records import Json, file_version, get, inside, numbers, parse_record, program_name, refuse_newer
 from .states import check_state, describe_pins, describe_settings, read_pins, read_settings
@@ -79,6 +80,7 @@ def encode(document: Document, more: Sequence[Entry] = ()) -> bytes:
             *_stiffness_entries(document.state),
             *_picture_entries(drawing),
             *pose_entries(document.state.poses),
+            *keyframe_entries(document.state.animation),
             *more,
         ]
     )
@@ -209,7 +211,8 @@ def _decode(archive: Archive) -> Document:
         pins = read_pins(get(record, "pins", list))
         settings = read_settings(get(record, "settings", dict))
     stiffness = archive.read_array(STIFFNESS, "<f8", m, 1)[:, 0] if STIFFNESS in archive else None
-    state = EditState(pins, positions, settings, poses=read_poses(archive, n), stiffness=stiffness)
+    poses, animation = read_poses(archive, n), read_keyframes(archive, n)
+    state = EditState(pins, positions, settings, None, poses, stiffness, animation)
     vertices = archive.read_array("mesh/vertices", "<f8", n, 2)
     _check_vertices(vertices)
     trimesh = TriMesh(vertices, archive.read_array("mesh/faces", "<i4", m, 3), tied)

@@ -45,14 +45,26 @@ class Reference:
 
 
 @dataclass(frozen=True, eq=False)
+class Skin:
+    """The drawing in another pose (n, 2), behind it; tint: (r, g, b, share of it), all from 0 to 1."""
+
+    positions: Floats
+    tint: tuple[float, float, float, float]
+    opacity: float
+
+
+@dataclass(frozen=True, eq=False)
 class Overlays:
-    """mesh_lines: the edges of the mesh; ghost: opacity of the rest pose behind the drawing."""
+    """mesh_lines: the edges of the mesh; ghost: opacity of the rest pose behind the drawing; skins: other
+    poses of it, the last one in front.
+    """
 
     mesh_lines: bool = False
     ghost: float = 0.0
     heat: Heat | None = None
     strokes: tuple[Strokes, ...] = ()
     reference: Reference | None = None
+    skins: tuple[Skin, ...] = ()
 
 
 NO_OVERLAYS = Overlays()

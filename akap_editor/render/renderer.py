@@ -117,6 +117,10 @@ class Renderer:
         self._texture.use(0)
         if overlays.ghost > 0:
             self._draw_pictured(self._rest, overlays.ghost, view)
+        for skin in overlays.skins:
+            self._skin_buffer.orphan()
+            self._skin_buffer.write(np.ascontiguousarray(skin.positions, dtype=np.float32))
+            self._draw_pictured(self._skin, skin.opacity, view, skin.tint)
         if overlays.heat is not None:
             self._heat.draw(self._heated, overlays.heat, self._order, view)
         else:
@@ -159,10 +163,17 @@ class Renderer:
         program["even"], program["odd"] = colors
         self._frame.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
-    def _draw_pictured(self, mesh: moderngl.VertexArray, opacity: float, view: View) -> None:
+    def _draw_pictured(
+        self,
+        mesh: moderngl.VertexArray,
+        opacity: float,
+        view: View,
+        tint: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0),
+    ) -> None:
         """A mesh with the picture that is bound."""
         self._mesh_program["view"] = view
         self._mesh_program["opacity"] = opacity
+        self._mesh_program["tint"] = tint
         mesh.render()
 
     def _draw_reference(self, reference: Reference, frame: tuple[int, int], view: View) -> None:
@@ -194,6 +205,7 @@ class Renderer:
         ctx, mesh = self._ctx, drawing.mesh
         self._texture = self._make_texture(drawing.image)
         self._position_buffer = ctx.buffer(reserve=mesh.vertices.size * 4, dynamic=True)
+        self._skin_buffer = ctx.buffer(reserve=mesh.vertices.size * 4, dynamic=True)
         uv = ctx.buffer(drawing.uv)
         rest = ctx.buffer(mesh.vertices.astype(np.float32))
         faces = self._face_buffer = ctx.buffer(mesh.faces.astype(np.uint32))
@@ -202,10 +214,21 @@ class Renderer:
         corners = (uv, "2f", "in_uv")
         self._mesh = ctx.vertex_array(self._mesh_program, [positions, corners], faces)
         self._heated = ctx.vertex_array(self._heat.program, [positions, corners], faces)
+        skin = (self._skin_buffer, "2f", "in_position")
+        self._skin = ctx.vertex_array(self._mesh_program, [skin, corners], faces)
         self._rest = ctx.vertex_array(self._mesh_program, [(rest, "2f", "in_position"), corners], faces)
         self._lines = ctx.vertex_array(self._line_program, [positions], edges)
         self._of_drawing = [self._mesh, self._heated, self._rest, self._lines]
-        self._of_drawing += [self._position_buffer, uv, rest, faces, edges, self._texture]
+        self._of_drawing += [
+            self._skin,
+            self._skin_buffer,
+            self._position_buffer,
+            uv,
+            rest,
+            faces,
+            edges,
+            self._texture,
+        ]
         self._drawing = drawing
 
     def _release_drawing(self) -> None:

@@ -73,7 +73,46 @@ def zoom_is(factor):
     return holds
 
 
+def keyed(ui):
+    """Two keyframes, at 0 and at 1 second, the second one chosen."""
+    player = ui.space.key_player
+    ui.space.show_timeline, ui.space.timeline = True, "keyframes"
+    ui.settle()
+    player.put(0.0)
+    bend(ui)
+    player.put(1.0)
+    player.scrub(1.0)
+    player.chosen = frozenset({1.0})
+    ui.settle()
+
+
+def looking_between(ui):
+    keyed(ui)
+    ui.space.key_player.scrub(0.5)
+
+
+def once_keyed(ui):
+    """Playing takes a tenth of a second, and then the range is over."""
+    keyed(ui)
+    ui.space.key_player.loop = False
+    ui.space.key_player.cut_to(0.1, 0.2)
+
+
+def times(ui):
+    return ui.session.present.animation.times
+
+
 CASES = {
+    "Play": (once_keyed, lambda ui: ui.space.key_player.at == 0.2),
+    "Export Animation...": (keyed, lambda ui: ui.space.animating),
+    "Keyframe Here": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
+    "Remove Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
+    "Duplicate Keyframe": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5)),
+    "Next Keyframe": (looking_between, lambda ui: ui.space.key_player.at == 1.0),
+    "Previous Keyframe": (looking_between, lambda ui: ui.space.key_player.at == 0.0),
+    "Move Keyframe Earlier": (keyed, lambda ui: times(ui) == (0.0, 0.95)),
+    "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
+    "Onion Skin": (keyed, lambda ui: ui.space.key_player.onion.shown),
     "Open...": (nothing, lambda ui: ui.space.request is not None and not ui.space.request.saving),
     "Cut Out with Mask...": (
         nothing,

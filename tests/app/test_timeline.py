@@ -5,7 +5,7 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
-from akap_editor.app import timeline_panel
+from akap_editor.app import animating
 from akap_editor.editor.replay import replay
 
 
@@ -19,8 +19,8 @@ def bent(pinned):
     return pinned
 
 
-def on_track(ui, share):
-    """A place on the track of the time line."""
+def on_track(ui, share, down=0.5):
+    """A place on the track of the time line, so far down from its top."""
     places = {}
 
     def find(hand):
@@ -29,7 +29,9 @@ def on_track(ui, share):
 
     ui.do(find)
     rect = places["rect"]
-    return round(rect.min.x + share * (rect.max.x - rect.min.x)), round((rect.min.y + rect.max.y) / 2)
+    return round(rect.min.x + share * (rect.max.x - rect.min.x)), round(
+        rect.min.y + down * (rect.max.y - rect.min.y)
+    )
 
 
 def test_a_drag_on_the_track_goes_back_and_forth(bent):
@@ -40,6 +42,28 @@ def test_a_drag_on_the_track_goes_back_and_forth(bent):
     assert bent.session.visiting
     bent.drag(on_track(bent, 0.5), on_track(bent, 1.0))
     assert bent.session.state is now
+
+
+def test_the_head_is_taken_at_the_end_and_the_mark_below_it(bent):
+    player = bent.space.player
+    bent.drag(on_track(bent, 0.99), on_track(bent, 0.5))
+    assert player.at == pytest.approx(0.5 * player.duration, abs=0.05)
+    assert player.cut is None
+    bent.drag(on_track(bent, 0.995, 0.85), on_track(bent, 0.7, 0.85))
+    assert player.range == pytest.approx((0.0, 0.7 * player.duration), abs=0.05)
+
+
+def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(bent):
+    player = bent.space.player
+    player.scrub(0.5 * player.duration)
+    bent.settle()
+    here = player.shot(player.at).time
+    start = bent.screen(bent.pin_place(3))
+    bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
+    assert bent.session.history.labels[-2:] == ["Go back in time", "Bend"]
+    assert player.cut is not None
+    assert player.cut[0] == pytest.approx(here)
+    assert player.cut[0] < player.cut[1] <= player.duration
 
 
 def test_a_drag_on_the_canvas_goes_on_from_there(bent):
@@ -66,12 +90,12 @@ def test_control_and_drag_records_that_gesture_only(bent):
 def test_the_range_is_exported(bent, tmp_path):
     player = bent.space.player
     player.cut_to(0.0, min(0.5, player.duration))
-    timeline_panel.export(bent.space, tmp_path / "wave.webp")
+    animating.export(bent.space, tmp_path / "wave.webp")
     bent.settle()
     assert bent.space.error == ""
     with Image.open(tmp_path / "wave.webp") as opened:
         assert opened.n_frames >= 1
-    timeline_panel.export(bent.space, tmp_path / "wave.avi")
+    animating.export(bent.space, tmp_path / "wave.avi")
     bent.settle()
     assert ".avi" in bent.space.error
 

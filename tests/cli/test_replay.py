@@ -2,6 +2,7 @@
 
 import json
 import sys
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -10,9 +11,13 @@ from PIL import Image
 
 from akap_editor import cli
 from akap_editor.editor.document import make_drawing, new_document
+from akap_editor.editor.keyframes import Animation, Keyframe
 from akap_editor.editor.replay import replay
 from akap_editor.editor.session import Session
+from akap_editor.errors import InputError
+from akap_editor.io.documents import open_document
 from akap_editor.io.images import read_image
+from akap_editor.io.project_file import save
 from akap_editor.io.recordings import write_recording
 from akap_editor.render.offscreen import OffscreenRenderer
 
@@ -198,3 +203,64 @@ def test_a_pin_outside_another_drawing_is_told_with_its_line(run, session, tmp_p
     assert code == 2
     assert "recording line 5: " in errors
     assert "outside the drawing" in errors
+
+
+@pytest.fixture
+def posed(session, tmp_path):
+    """posed.akap, with keyframes of the rest pose at 0 and of the bent one at half a second."""
+    keys = Keyframe(0, session.drawing.mesh.vertices), Keyframe(0.5, session.state.positions)
+    document = new_document(session.drawing)
+    save(document.with_state(replace(document.state, animation=Animation(keys))), tmp_path / "posed.akap")
+    return session
+
+
+@pytest.mark.parametrize("name", ["out.webp", "out.gif", "out.apng", "frames"])
+def test_keyframes_are_played_like_a_recording(run, posed, tmp_path, name):
+    code, out, err = run("-o", name, "--fps", 20, "--size", 60, recording="posed.akap")
+    assert (code, err) == (0, "")
+    assert "11 frames" in out
+    assert (tmp_path / name).exists()
+
+
+def test_the_last_frame_of_keyframes_is_the_last_pose(run, posed, tmp_path):
+    assert run("-o", "out.png", "--pose", "pose.png", "--size", 8000, recording="posed.akap")[0] == 0
+    with OffscreenRenderer() as renderer:
+        expected = renderer.render(posed.drawing, posed.state.positions)
+    np.testing.assert_array_equal(read_image(tmp_path / "pose.png"), expected)
+    options = ("--from", 0.2, "--to", 0.4, "--ping-pong", "--speed", 2, "--fps", 20, "--sheet")
+    assert run("-o", "sheet.png", *options, recording="posed.akap")[0] == 0
+    assert len(json.loads((tmp_path / "sheet.json").read_text())["frames"]) == 4
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--method", "arap"), "--method: expected a recording"),
+        (("--variant", "linear"), "--variant: expected a recording"),
+        (("--pause", 1), "--pause: expected a recording"),
+        (("--drawing", "bar.png"), "--drawing: expected a recording"),
+        (("--from", 2), "--from: expected a time from 0 to the end at 0.5 s"),
+    ],
+)
+def test_what_is_for_recordings_only_is_refused_for_keyframes(run, posed, options, message):
+    code, _, err = run("-o", "out.webp", *options, recording="posed.akap")
+    assert code == 2
+    assert message in err
+
+
+def test_a_drawing_without_keyframes_is_refused(run, session, tmp_path):
+    save(new_document(session.drawing), tmp_path / "still.akap")
+    code, _, err = run("-o", "out.webp", recording="still.akap")
+    assert code == 2
+    assert "still.akap: expected a drawing with keyframes, or a recording, got one without any" in err
+
+
+def test_a_recording_is_a_document_in_its_last_pose(session, tmp_path):
+    write_recording(session.recording, tmp_path / "bar.akaprec", session.drawing)
+    document = open_document(tmp_path / "bar.akaprec")
+    np.testing.assert_array_equal(document.state.positions, session.state.positions)
+    (tmp_path / "bad.akaprec").write_text(
+        (tmp_path / "bar.akaprec").read_text() + '{"t": 99, "do": "undo", "x": 1}\n{"t": 0, "do": "undo"}\n'
+    )
+    with pytest.raises(InputError, match=r"bad.akaprec: recording line \d+: expected a time of 99 s"):
+        open_document(tmp_path / "bad.akaprec")

@@ -33,7 +33,10 @@ def bits(state: EditState) -> tuple[Any, ...]:
         for pin in state.pins
     ]
     stiffness = None if state.stiffness is None else state.stiffness.tobytes()
-    return state.positions.tobytes(), tuple(pins), state.settings, stiffness
+    poses = [(pose.name, pose.positions.tobytes()) for pose in state.poses]
+    keys = [(key.time, key.positions.tobytes(), key.ease) for key in state.animation.keys]
+    lists = tuple(poses), state.animation.ease, tuple(keys)
+    return state.positions.tobytes(), tuple(pins), state.settings, stiffness, lists
 
 
 class Driver:

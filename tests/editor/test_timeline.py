@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.document import Settings, new_document
+from akap_editor.editor.easing import EASINGS
 from akap_editor.editor.recording import Recording
 from akap_editor.editor.replay import replay
 from akap_editor.editor.session import Session
-from akap_editor.editor.timeline import EASINGS, LONGEST_MOVE, Motion, frame_times, shorten_pauses
+from akap_editor.editor.timeline import LONGEST_MOVE, Motion, frame_times, shorten_pauses
 from akap_editor.errors import InputError
 
 END = (105.0, 40.0)
