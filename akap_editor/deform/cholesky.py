@@ -58,8 +58,8 @@ class SummedPattern(SymmetricPattern):
 class SparseCholesky:
     """A symmetric positive definite matrix of fixed pattern: factorize often, solve more often.
 
-    Supernodal factorizations are several times faster to make on large meshes. With ``supernodal`` off,
-    solves in a row are up to twice as fast.
+    Supernodal factors are several times faster to make on large meshes, and smaller. With ``supernodal`` off,
+    solves are up to twice as fast as long as the factors fit into the caches.
     """
 
     def __init__(self, pattern: SymmetricPattern, supernodal: bool = True) -> None:
