@@ -15,8 +15,8 @@ from .cholesky import SparseCholesky, SymmetricPattern
 # a digit each, which new factors do, it is time for another.
 _AFFORDED = 8
 _MOST_ITERATIONS = 12  # of one solution; then the matrix at hand is factorized
-# Unknowns below which factors are simplicial: twice as slow to make, but solves, of which there are more, take
-# half the time. Larger ones no longer fit into the caches.
+# Unknowns below which factors are simplicial: twice as slow to make, but solves, of which there are more,
+# take half the time. Larger ones no longer fit into the caches.
 _SIMPLICIAL_BELOW = 8_000
 _KEPT = 2  # earlier solutions from which the next one begins
 _SAME = 1e-11  # of two that differ by less than this share of their energies one is enough
