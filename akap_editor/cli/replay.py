@@ -100,11 +100,7 @@ def replay_recording(
     kind = export_kind(output, sheet)
     if pose is not None:
         check_png(pose)
-    if path.suffix.lower() == PROJECT_SUFFIX:
-        _refuse({"--drawing": drawing_path, "--method": method, "--variant": variant, "--pause": pause})
-        duration, play = _keyframes(path)
-    else:
-        duration, play = _recorded(path, drawing_path, settings_change(method, variant), pause)
+    duration, play = _source(path, drawing_path, method, variant, pause)
     first, last = _range(duration, start, end)
     times = [last] if kind == "picture" else frame_times(first, last, fps, speed, ease)
     with click.progressbar(play(times), length=len(times), label="Bending") as bar:
@@ -161,6 +157,16 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
 
 # What gives drawing and pose at each of some times, which do not fall.
 Play = Callable[[Sequence[float]], Iterator[Frame]]
+
+
+def _source(
+    path: Path, drawing_path: Path | None, method: str | None, variant: str, pause: float | None
+) -> tuple[float, Play]:
+    """How long keyframes or a recording are, and what plays them."""
+    if path.suffix.lower() == PROJECT_SUFFIX:
+        _refuse({"--drawing": drawing_path, "--method": method, "--variant": variant, "--pause": pause})
+        return _keyframes(path)
+    return _recorded(path, drawing_path, settings_change(method, variant), pause)
 
 
 def _recorded(

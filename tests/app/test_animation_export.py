@@ -12,6 +12,8 @@ from akap_editor.app import animating
 from akap_editor.app.animating import FORMATS, Choice, remember, remembered
 from akap_editor.app.preferences import Preferences
 
+from .driver import one_step
+
 TITLE = "Export animation"
 
 
@@ -106,14 +108,6 @@ def test_an_export_is_cancelled_and_leaves_no_file(keyed, tmp_path, monkeypatch)
     assert keyed.space.task is None
     assert "cancelled" in keyed.space.notice
     assert list(tmp_path.iterdir()) == []
-
-
-def one_step(task):
-    try:
-        task.progress = next(task.steps)
-    except StopIteration:
-        return True
-    return False
 
 
 def test_a_folder_that_is_not_there_is_one_sentence(keyed, tmp_path):

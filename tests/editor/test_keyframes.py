@@ -21,18 +21,6 @@ from .driver import bits
 END = (105.0, 40.0)
 
 
-class Clock:
-    now = 0.0
-
-    def __call__(self):
-        return self.now
-
-
-@pytest.fixture
-def clock():
-    return Clock()
-
-
 @pytest.fixture
 def player(pinned, clock):
     """Keyframes of the rest pose at 0, and of a bent one at 1 second."""
