@@ -182,6 +182,23 @@ def test_a_pose_is_renamed_with_f2(keyed):
     assert keyed.session.history.labels[-1] == "Rename Up"
 
 
+def test_a_pose_is_renamed_with_a_double_click(keyed):
+    keyed.editor.keep_pose("Up")
+    keyed.settle()
+
+    def rename(hand):
+        hand.mouse_move("//Panel/pose Up")
+        picture = hand.item_info("//Panel/pose Up").rect_full
+        hand.mouse_move_to_pos(imgui.ImVec2(picture.min.x + 8, picture.max.y + 12))
+        hand.mouse_double_click(0)
+        hand.yield_(5)
+        hand.key_chars_replace_enter("Wave")
+
+    keyed.do(rename)
+    assert [pose.name for pose in keyed.session.present.poses] == ["Wave"]
+    assert keyed.space.renaming is None
+
+
 def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):
     player = keyed.space.key_player
     player.scrub(0.5)
