@@ -10,7 +10,7 @@ from typing import Any
 
 from ..editor.easing import EASINGS
 from ..editor.framing import frame_box, joined, picture_size
-from ..editor.timeline import Frame, frame_times
+from ..editor.timeline import Frame, closed, frame_times
 from ..errors import InputError
 from ..io.frames import export_frames, export_kind
 from ..io.images import Picture
@@ -120,6 +120,14 @@ def frame_at(space: Workspace, moment: float) -> Frame:
     return space.key_player.frame(moment) if keyed else space.player.frame(moment)
 
 
+def chosen_times(space: Workspace, choice: Choice) -> list[float]:
+    """When to look, for each frame. Of what repeats and ends as it begins, the end is left out."""
+    start, end = space.transport.range
+    times = choice.times(start, end)
+    over = choice.kind.repeats and choice.loop and not choice.ping_pong and len(times) > 2
+    return times[:-1] if over and closed(frame_at(space, start), frame_at(space, end)) else times
+
+
 def ask_file(space: Workspace) -> None:
     """Ask where it goes."""
     assert space.document is not None
@@ -146,7 +154,7 @@ def export(space: Workspace, path: Path) -> None:
 
 def _steps(space: Workspace, choice: Choice, path: Path, sheet: bool) -> Steps:
     """Poses, then pictures, which another thread encodes."""
-    times = choice.times(*space.transport.range)
+    times = chosen_times(space, choice)
     frames = []
     for number, time in enumerate(times):
         frames.append(frame_at(space, time))
@@ -176,7 +184,7 @@ def _steps(space: Workspace, choice: Choice, path: Path, sheet: bool) -> Steps:
             for _ in _offered(None, waiting, written):
                 yield Progress(0.9, "Writing")
             while not wait([written], _WAIT).done:
-                yield Progress(0.95, f"Writing {path.name}", final=True)
+                yield Progress(0.95, f"Writing {path.name}, which cannot be cancelled any more", final=True)
         except GeneratorExit:
             cancelled = True
             for _ in _offered(None, waiting, written):

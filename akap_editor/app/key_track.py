@@ -1,6 +1,7 @@
 """The keyframes on the timeline: added, chosen, moved, copied, stretched and eased with the mouse."""
 
 from itertools import pairwise
+from math import ceil
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
@@ -8,6 +9,8 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..editor.easing import KEY_EASINGS
 from ..editor.key_player import MOST_SKINS, STEP, KeyPlayer, stretched
 from ..editor.keyframes import LATEST_KEY
+from ..editor.time_view import TimeView
+from ..editor.tools import ZOOM_STEP
 from . import keying, widgets
 from .animation_dialog import EASING_LABELS
 from .theme import ACCENT, DARK, FRAME, QUIET, STRONG_LINE, TEXT, packed
@@ -35,7 +38,7 @@ def buttons(space: Workspace, scale: float) -> None:
         imgui.open_popup("easing menu")
     imgui.end_disabled()
     widgets.explain("Easing: how the motion between keyframes starts and ends")
-    if imgui.begin_popup("easing menu"):
+    if _begin_menu("easing menu", scale):
         widgets.quiet("Between all keyframes, unless one says otherwise")
         for name in KEY_EASINGS:
             if imgui.menu_item(EASING_LABELS[name], "", player.animation.ease == name)[0]:
@@ -48,9 +51,16 @@ def buttons(space: Workspace, scale: float) -> None:
         imgui.open_popup("onion menu")
     imgui.pop_style_color()
     widgets.explain("Onion skin (O): the poses before, blue, and after, orange")
-    if imgui.begin_popup("onion menu"):
+    if _begin_menu("onion menu", scale):
         _onion(player, scale)
         imgui.end_popup()
+
+
+def _begin_menu(name: str, scale: float) -> bool:
+    """A menu above the button that was drawn last, so that the timeline stays in sight."""
+    place = imgui.get_item_rect_min()
+    imgui.set_next_window_pos(ImVec2(place.x, place.y - 12 * scale), pivot=ImVec2(0, 1))
+    return bool(imgui.begin_popup(name))
 
 
 def _onion(player: KeyPlayer, scale: float) -> None:
@@ -75,22 +85,25 @@ def _onion(player: KeyPlayer, scale: float) -> None:
 
 
 class _Scale:
-    """Where times are on the track: of ``view`` seconds, which begin at ``left``."""
+    """Where the times of a view are on the track, which begins at ``left``."""
 
-    def __init__(self, left: float, width: float, view: float) -> None:
+    def __init__(self, left: float, width: float, view: TimeView) -> None:
         self._left, self._width, self._view = left, width, view
 
     def x(self, time: float) -> float:
-        """On the screen, at the edge where it is beyond."""
-        return self._left + self._width * min(max(time / self._view, 0.0), 1.0)
+        """On the screen; where all is shown, at the edge if it is beyond."""
+        share = (time - self._view.start) / self._view.seconds
+        return self._left + self._width * (share if self._view.zoomed else min(max(share, 0.0), 1.0))
 
     def seconds(self, way: float) -> float:
         """How long so many points of the screen are."""
-        return way / self._width * self._view
+        return way / self._width * self._view.seconds
 
     def time(self, x: float) -> float:
-        """At a place on the screen."""
-        return min(max(self.seconds(x - self._left), 0.0), LATEST_KEY)
+        """At a place on the screen; where not all is shown, one that is."""
+        share = (x - self._left) / self._width
+        share = min(max(share, 0.0), 1.0) if self._view.zoomed else share
+        return min(max(self._view.start + share * self._view.seconds, 0.0), LATEST_KEY)
 
 
 def draw(space: Workspace, scale: float) -> None:
@@ -105,11 +118,14 @@ def draw(space: Workspace, scale: float) -> None:
     space.attempt(lambda: _handle(space, track, corner.y, scale))
     if imgui.is_item_hovered() and not imgui.is_item_active():
         _explain(player, track, scale)
+        _zoom(player.view, track)
     _drop_target(space, track)
     drawer = imgui.get_window_draw_list()
+    drawer.push_clip_rect(corner, ImVec2(corner.x + width, corner.y + _BOTTOM * scale), True)
     _draw_ruler(drawer, player, track, corner, width, scale)
     _draw_keys(drawer, player, track, corner.y + _LANE * scale, scale)
     _draw_head(drawer, player, track, corner.y, scale)
+    drawer.pop_clip_rect()
     below = corner.y + (_BOTTOM * scale - imgui.get_text_line_height()) / 2
     imgui.set_cursor_screen_pos(ImVec2(corner.x + width + 12 * scale, below))
     imgui.text_colored(ImVec4(*QUIET), label)
@@ -151,6 +167,16 @@ def _handle(space: Workspace, track: _Scale, top: float, scale: float) -> None:
     if imgui.begin_popup("key menu"):
         _menu(space)
         imgui.end_popup()
+
+
+def _zoom(view: TimeView, track: _Scale) -> None:
+    """The wheel zooms in on the time under the pointer; with Shift, or sideways, it goes along."""
+    io = imgui.get_io()
+    along = io.mouse_wheel if io.key_shift else -io.mouse_wheel_h
+    if along:
+        view.pan(-0.1 * view.seconds * along)
+    elif io.mouse_wheel:
+        view.zoom(ZOOM_STEP**io.mouse_wheel, track.time(imgui.get_mouse_pos().x))
 
 
 def _press(space: Workspace, track: _Scale, top: float, scale: float) -> None:
@@ -267,7 +293,8 @@ def _draw_ruler(
     enough = track.seconds(52 * scale)
     step = next((tick for tick in _TICKS if tick >= enough), _TICKS[-1])
     form = "%.1f" if step < 1 else "%.0f"
-    for number in range(int(player.view / step + 1e-6) + 1):
+    view = player.view
+    for number in range(ceil(view.start / step - 1e-6), int((view.start + view.seconds) / step + 1e-6) + 1):
         x = track.x(number * step)
         drawer.add_line(
             ImVec2(x, corner.y + (_RULER - 4) * scale),
@@ -278,6 +305,10 @@ def _draw_ruler(
             drawer.add_text(
                 font, size, ImVec2(x + 3 * scale, corner.y + 1 * scale), packed(QUIET), form % (number * step)
             )
+    if view.zoomed:
+        first, last = (corner.x + width * at / view.whole for at in (view.start, view.start + view.seconds))
+        ends = ImVec2(first, low.y), ImVec2(last, low.y + 2 * scale)
+        drawer.add_rect_filled(*ends, packed(QUIET), scale)
     if player.duration > 0:
         draw_marks(drawer, [track.x(mark) for mark in player.range], corner.y + (_BOTTOM - 1) * scale, scale)
 

@@ -89,9 +89,10 @@ def _track(space: Workspace, scale: float) -> None:
     player, drawer = space.player, imgui.get_window_draw_list()
     label = f"{player.at if player.at is not None else player.duration:.1f} / {player.duration:.1f} s"
     room = imgui.calc_text_size("000.0 / 000.0 s").x + 12 * scale
-    corner = imgui.get_cursor_screen_pos()
-    width, height = max(imgui.get_content_region_avail().x - room, 10 * scale), 28 * scale
+    corner, rim = imgui.get_cursor_screen_pos(), 8 * scale  # so that both ends can be taken hold of
+    width, height = max(imgui.get_content_region_avail().x - room, 40 * scale), 28 * scale
     imgui.invisible_button("##track", ImVec2(width, height))
+    corner.x, width = corner.x + rim, width - 2 * rim
     held, hovered = imgui.is_item_active(), imgui.is_item_hovered()
     length = player.duration or 1.0
 

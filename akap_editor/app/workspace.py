@@ -196,6 +196,8 @@ class Workspace:
             self.editor.open(document if chosen is None or document.path else document.with_state(preferred))
         except InputError:
             self.editor.open(document)
+        if document.state.animation.keys:
+            self.timeline, self.show_timeline = "keyframes", True
         opaque = document.path is None and not has_transparency(document.drawing.image)
         self.notice = (
             "This picture has no transparent background, so the whole rectangle bends" if opaque else ""

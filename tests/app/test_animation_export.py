@@ -89,6 +89,18 @@ def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
     assert np.abs(middle - 0.5 * (before + after)).max() < 0.2 * np.abs(after - before).max()
 
 
+def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
+    player = keyed.space.key_player
+    player.put(0.8, player.animation.keys[0].positions)
+    for choice, count in ((Choice("APNG", fps=10), 8), (Choice("APNG", fps=10, loop=False), 9)):
+        remember(keyed.space, choice)
+        animating.export(keyed.space, tmp_path / "out.apng")
+        keyed.settle()
+        assert f"{count} frames" in keyed.space.notice
+    player.cut_to(end=0.4)
+    assert len(animating.chosen_times(keyed.space, Choice("APNG", fps=10))) == 5
+
+
 def test_background_and_size(keyed, tmp_path):
     remember(keyed.space, Choice("APNG", fps=5, size=40, opaque=True, background=(1.0, 0.0, 0.0)))
     animating.export(keyed.space, tmp_path / "out.apng")
