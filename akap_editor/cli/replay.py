@@ -16,6 +16,7 @@ from ..errors import InputError
 from ..io.documents import PROJECT_SUFFIX, open_document
 from ..io.frames import export_frames, export_kind
 from ..io.recordings import read_recording, recorded_drawing
+from ..io.records import inside
 from .common import FILE, check_png, color, make_folder_of, write_picture
 
 # What a word of --variant sets.
@@ -103,7 +104,7 @@ def replay_recording(
     duration, play = _source(path, drawing_path, method, variant, pause)
     first, last = _range(duration, start, end)
     times = [last] if kind == "picture" else frame_times(first, last, fps, speed, ease)
-    with click.progressbar(play(times), length=len(times), label="Bending") as bar:
+    with inside(path), click.progressbar(play(times), length=len(times), label="Bending") as bar:
         frames = list(bar)
     frames = _in_turn(frames, ping_pong, kind == "animation" and plays != 1)
     box = joined([frame_box(frame.drawing, [frame.pose]) for frame in frames])

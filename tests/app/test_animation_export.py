@@ -2,6 +2,8 @@
 
 import json
 from itertools import pairwise
+from threading import Event
+from threading import enumerate as enumerate_threads
 
 import numpy as np
 import pytest
@@ -11,6 +13,8 @@ from PIL import Image
 from akap_editor.app import animating
 from akap_editor.app.animating import FORMATS, Choice, remember, remembered
 from akap_editor.app.preferences import Preferences
+from akap_editor.errors import InputError
+from akap_editor.io.animation import _ENCODERS
 
 from .driver import one_step
 
@@ -119,6 +123,39 @@ def test_an_export_is_cancelled_and_leaves_no_file(keyed, tmp_path, monkeypatch)
     keyed.dialog("Exporting out.webp", "Cancel")
     assert keyed.space.task is None
     assert "cancelled" in keyed.space.notice
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_export_is_cancelled_while_all_of_it_is_encoded(keyed, tmp_path, monkeypatch):
+    at_work, go_on = Event(), Event()
+
+    def slow(*_):
+        at_work.set()
+        go_on.wait()
+        return b"late"
+
+    monkeypatch.setitem(_ENCODERS, ".webp", (slow, 16383))
+    animating.export(keyed.space, tmp_path / "out.webp")
+    while not at_work.is_set() or not keyed.space.task.progress.text.startswith("Writing"):
+        keyed.frame()
+    keyed.dialog("Exporting out.webp", "Cancel")
+    assert keyed.space.task is None
+    go_on.set()
+    for thread in enumerate_threads():
+        if thread.name.startswith("encoder"):
+            thread.join()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_where_a_picture_cannot_be_drawn_the_export_ends_with_one_sentence(keyed, tmp_path, monkeypatch):
+    def fails(*_):
+        raise InputError("no memory for a picture")
+
+    monkeypatch.setattr(keyed.space.exporter, "render", fails)
+    animating.export(keyed.space, tmp_path / "out.webp")
+    keyed.settle()
+    assert keyed.space.error == "no memory for a picture"
+    assert keyed.space.task is None
     assert list(tmp_path.iterdir()) == []
 
 
