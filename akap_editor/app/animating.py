@@ -104,7 +104,8 @@ def ask(space: Workspace) -> None:
     """Ask what is to be made of the part between the marks."""
     start, end = space.transport.range
     if space.document is not None and end > start:
-        space.transport.stop()
+        if space.transport.playing:
+            space.transport.stop()
         space.animating = True
 
 

@@ -57,6 +57,15 @@ def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
     assert remembered(keyed.space).fps == 60
 
 
+def test_asking_does_not_change_what_is_seen(keyed):
+    keyed.space.key_player.leave()
+    before = keyed.session.state
+    animating.ask(keyed.space)
+    keyed.dialog(TITLE, "Cancel")
+    assert keyed.session.state is before
+    assert not keyed.session.visiting
+
+
 @pytest.mark.parametrize("kind", FORMATS, ids=[each.label for each in FORMATS])
 def test_every_format_is_written(keyed, tmp_path, kind):
     if kind.suffix in (".mp4", ".webm"):
