@@ -8,7 +8,6 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..editor.easing import KEY_EASINGS
 from ..editor.key_player import MOST_SKINS, STEP, KeyPlayer, stretched
-from ..editor.keyframes import LATEST_KEY
 from ..editor.time_view import TimeView
 from ..editor.tools import ZOOM_STEP
 from . import keying, widgets
@@ -84,7 +83,7 @@ def _onion(player: KeyPlayer, scale: float) -> None:
     imgui.end_disabled()
 
 
-class _Scale:
+class Scale:
     """Where the times of a view are on the track, which begins at ``left``."""
 
     def __init__(self, left: float, width: float, view: TimeView) -> None:
@@ -103,7 +102,7 @@ class _Scale:
         """At a place on the screen; where not all is shown, one that is."""
         share = (x - self._left) / self._width
         share = min(max(share, 0.0), 1.0) if self._view.zoomed else share
-        return min(max(self._view.start + share * self._view.seconds, 0.0), LATEST_KEY)
+        return max(self._view.start + share * self._view.seconds, 0.0)
 
 
 def draw(space: Workspace, scale: float) -> None:
@@ -113,12 +112,12 @@ def draw(space: Workspace, scale: float) -> None:
     room = imgui.calc_text_size("000.00 / 000.00 s").x + 12 * scale
     corner = imgui.get_cursor_screen_pos()
     width = max(imgui.get_content_region_avail().x - room, 40 * scale)
-    track = _Scale(corner.x + _REACH * scale, width - 2 * _REACH * scale, player.view)
+    track = Scale(corner.x + _REACH * scale, width - 2 * _REACH * scale, player.view)
     imgui.invisible_button("##keys", ImVec2(width, _BOTTOM * scale))
     space.attempt(lambda: _handle(space, track, corner.y, scale))
     if imgui.is_item_hovered() and not imgui.is_item_active():
         _explain(player, track, scale)
-        _zoom(player.view, track)
+        zoom(player.view, track)
     _drop_target(space, track)
     drawer = imgui.get_window_draw_list()
     drawer.push_clip_rect(corner, ImVec2(corner.x + width, corner.y + _BOTTOM * scale), True)
@@ -134,7 +133,7 @@ def draw(space: Workspace, scale: float) -> None:
 # -- the mouse ----------------------------------------------------------------------------------------------
 
 
-def _near(player: KeyPlayer, track: _Scale, scale: float) -> float | None:
+def _near(player: KeyPlayer, track: Scale, scale: float) -> float | None:
     """The time of the keyframe under the pointer."""
     x = imgui.get_mouse_pos().x
     time = min(player.animation.times, key=lambda each: abs(track.x(each) - x), default=None)
@@ -146,7 +145,7 @@ def _snapped(time: float) -> float:
     return round(time / STEP) * STEP
 
 
-def _handle(space: Workspace, track: _Scale, top: float, scale: float) -> None:
+def _handle(space: Workspace, track: Scale, top: float, scale: float) -> None:
     player = space.key_player
     if player.held and imgui.is_key_pressed(imgui.Key.escape, False):
         player.drop(keep=False)
@@ -169,7 +168,7 @@ def _handle(space: Workspace, track: _Scale, top: float, scale: float) -> None:
         imgui.end_popup()
 
 
-def _zoom(view: TimeView, track: _Scale) -> None:
+def zoom(view: TimeView, track: Scale) -> None:
     """The wheel zooms in on the time under the pointer; with Shift, or sideways, it goes along."""
     io = imgui.get_io()
     along = io.mouse_wheel if io.key_shift else -io.mouse_wheel_h
@@ -179,7 +178,7 @@ def _zoom(view: TimeView, track: _Scale) -> None:
         view.zoom(ZOOM_STEP**io.mouse_wheel, track.time(imgui.get_mouse_pos().x))
 
 
-def _press(space: Workspace, track: _Scale, top: float, scale: float) -> None:
+def _press(space: Workspace, track: Scale, top: float, scale: float) -> None:
     player, io = space.key_player, imgui.get_io()
     key, y = _near(player, track, scale), imgui.get_mouse_pos().y - top
     in_ruler = y < _RULER * scale
@@ -204,7 +203,7 @@ def _press(space: Workspace, track: _Scale, top: float, scale: float) -> None:
     player.scrub(key)
 
 
-def _drag(space: Workspace, track: _Scale, scale: float) -> None:
+def _drag(space: Workspace, track: Scale, scale: float) -> None:
     player, io, x = space.key_player, imgui.get_io(), imgui.get_mouse_pos().x
     if space.grip in ("start", "end"):
         player.cut_to(**{space.grip: _snapped(track.time(x))})
@@ -257,7 +256,7 @@ def _change(player: KeyPlayer, time: float) -> None:
     player.put(time)
 
 
-def _explain(player: KeyPlayer, track: _Scale, scale: float) -> None:
+def _explain(player: KeyPlayer, track: Scale, scale: float) -> None:
     time = _near(player, track, scale)
     key = next((each for each in player.animation.keys if each.time == time), None)
     if key is not None:
@@ -267,7 +266,7 @@ def _explain(player: KeyPlayer, track: _Scale, scale: float) -> None:
         )
 
 
-def _drop_target(space: Workspace, track: _Scale) -> None:
+def _drop_target(space: Workspace, track: Scale) -> None:
     """A pose that is dragged here becomes a keyframe."""
     if not imgui.begin_drag_drop_target():
         return
@@ -284,7 +283,7 @@ def _drop_target(space: Workspace, track: _Scale) -> None:
 
 
 def _draw_ruler(
-    drawer: imgui.ImDrawList, player: KeyPlayer, track: _Scale, corner: ImVec2, width: float, scale: float
+    drawer: imgui.ImDrawList, player: KeyPlayer, track: Scale, corner: ImVec2, width: float, scale: float
 ) -> None:
     """Ticks with their seconds, and the marks of the range."""
     low, high = ImVec2(corner.x, corner.y), ImVec2(corner.x + width, corner.y + _BOTTOM * scale)
@@ -305,12 +304,18 @@ def _draw_ruler(
             drawer.add_text(
                 font, size, ImVec2(x + 3 * scale, corner.y + 1 * scale), packed(QUIET), form % (number * step)
             )
-    if view.zoomed:
-        first, last = (corner.x + width * at / view.whole for at in (view.start, view.start + view.seconds))
-        ends = ImVec2(first, low.y), ImVec2(last, low.y + 2 * scale)
-        drawer.add_rect_filled(*ends, packed(QUIET), scale)
+    draw_part(drawer, view, corner, width, scale)
     if player.duration > 0:
         draw_marks(drawer, [track.x(mark) for mark in player.range], corner.y + (_BOTTOM - 1) * scale, scale)
+
+
+def draw_part(drawer: imgui.ImDrawList, view: TimeView, corner: ImVec2, width: float, scale: float) -> None:
+    """A line above the track: which part of all is shown, where it is not all."""
+    if view.zoomed:
+        first, last = (corner.x + width * at / view.whole for at in (view.start, view.start + view.seconds))
+        drawer.add_rect_filled(
+            ImVec2(first, corner.y), ImVec2(last, corner.y + 2 * scale), packed(QUIET), scale
+        )
 
 
 def draw_marks(drawer: imgui.ImDrawList, marks: list[float], bottom: float, scale: float) -> None:
@@ -322,7 +327,7 @@ def draw_marks(drawer: imgui.ImDrawList, marks: list[float], bottom: float, scal
 
 
 def _draw_keys(
-    drawer: imgui.ImDrawList, player: KeyPlayer, track: _Scale, middle: float, scale: float
+    drawer: imgui.ImDrawList, player: KeyPlayer, track: Scale, middle: float, scale: float
 ) -> None:
     """A diamond for each keyframe, a bar for each motion between two; a line where it holds."""
     keys = player.animation.keys
@@ -341,7 +346,7 @@ def _draw_keys(
         drawer.add_ngon_filled(center, size, packed(ACCENT if key.time in shown else TEXT), 4)
 
 
-def _draw_head(drawer: imgui.ImDrawList, player: KeyPlayer, track: _Scale, top: float, scale: float) -> None:
+def _draw_head(drawer: imgui.ImDrawList, player: KeyPlayer, track: Scale, top: float, scale: float) -> None:
     """Where one looks; quiet while the present pose is seen in place of that moment's."""
     x, half = track.x(player.at), 5 * scale
     color = packed(TEXT if player.following else QUIET, 1.0 if player.following else 0.6)
