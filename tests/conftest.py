@@ -32,6 +32,20 @@ def preferences_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+class Clock:
+    """Stands still but where a test moves it on."""
+
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
     """The folder of real cartoons beside the checkout; the test is skipped where it is absent."""

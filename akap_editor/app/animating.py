@@ -1,26 +1,20 @@
 """What is chosen for exports of the timeline, and writing them."""
 
-from collections.abc import Iterator
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from queue import Full, Queue
 from typing import Any
 
 from ..editor.easing import EASINGS
 from ..editor.framing import frame_box, joined, picture_size
-from ..editor.timeline import Frame, frame_times
-from ..errors import InputError
+from ..editor.timeline import Frame, closed, frame_times
 from ..io.frames import export_frames, export_kind
-from ..io.images import Picture
+from .encoder import Encoder
 from .requests import FileRequest
 from .tasks import Progress, Steps, Task
 from .workspace import Workspace
 
 REMEMBERED = "animation"  # the name of the choice in the preferences
-_AHEAD = 8  # pictures that wait for the encoder
-_WAIT = 0.02  # seconds
 
 
 @dataclass(frozen=True)
@@ -110,7 +104,8 @@ def ask(space: Workspace) -> None:
     """Ask what is to be made of the part between the marks."""
     start, end = space.transport.range
     if space.document is not None and end > start:
-        space.transport.stop()
+        if space.transport.playing:
+            space.transport.stop()
         space.animating = True
 
 
@@ -118,6 +113,14 @@ def frame_at(space: Workspace, moment: float) -> Frame:
     """What the timeline shows at a time."""
     keyed = space.timeline == "keyframes"
     return space.key_player.frame(moment) if keyed else space.player.frame(moment)
+
+
+def chosen_times(space: Workspace, choice: Choice) -> list[float]:
+    """When to look, for each frame. Of what repeats and ends as it begins, the end is left out."""
+    start, end = space.transport.range
+    times = choice.times(start, end)
+    over = choice.kind.repeats and choice.loop and not choice.ping_pong and len(times) > 2
+    return times[:-1] if over and closed(frame_at(space, start), frame_at(space, end)) else times
 
 
 def ask_file(space: Workspace) -> None:
@@ -146,7 +149,7 @@ def export(space: Workspace, path: Path) -> None:
 
 def _steps(space: Workspace, choice: Choice, path: Path, sheet: bool) -> Steps:
     """Poses, then pictures, which another thread encodes."""
-    times = choice.times(*space.transport.range)
+    times = chosen_times(space, choice)
     frames = []
     for number, time in enumerate(times):
         frames.append(frame_at(space, time))
@@ -154,45 +157,19 @@ def _steps(space: Workspace, choice: Choice, path: Path, sheet: bool) -> Steps:
     box = joined([frame_box(frame.drawing, [frame.pose]) for frame in frames])
     scale = min(1.0, choice.size / max(box[2] - box[0], box[3] - box[1]))
     picture_size(box, scale)
-    waiting: Queue[Picture | None] = Queue(_AHEAD)
-    cancelled = False
-
-    def pictures() -> Iterator[Picture]:
-        while (picture := waiting.get()) is not None:
-            yield picture
-        if cancelled:
-            raise InputError("the export was cancelled")
-
-    with ThreadPoolExecutor(1, "encoder") as worker:
-        written = worker.submit(export_frames, path, pictures(), choice.fps, 0 if choice.loop else 1, sheet)
-        try:
-            for number, frame in enumerate(frames):
-                picture = space.exporter.render(*frame[:2], box, scale, choice.behind, frame.order)
-                share = 0.3 + 0.6 * number / len(frames)
-                done = Progress(share, f"Drawing, frame {number + 1} of {len(frames)}")
+    encoder = Encoder(
+        partial(export_frames, path, fps=choice.fps, plays=0 if choice.loop else 1, sheet=sheet)
+    )
+    try:
+        for number, frame in enumerate(frames):
+            picture = space.exporter.render(*frame[:2], box, scale, choice.behind, frame.order)
+            share = 0.3 + 0.6 * number / len(frames)
+            done = Progress(share, f"Drawing, frame {number + 1} of {len(frames)}")
+            yield done
+            for _ in encoder.take(picture):
                 yield done
-                for _ in _offered(picture, waiting, written):
-                    yield done
-            for _ in _offered(None, waiting, written):
-                yield Progress(0.9, "Writing")
-            while not wait([written], _WAIT).done:
-                yield Progress(0.95, f"Writing {path.name}", final=True)
-        except GeneratorExit:
-            cancelled = True
-            for _ in _offered(None, waiting, written):
-                pass
-            raise
-    space.notice = f"Exported {path.name}, {len(frames)} frames, {written.result()}"
-
-
-def _offered(
-    picture: Picture | None, waiting: "Queue[Picture | None]", reader: "Future[str]"
-) -> Iterator[None]:
-    """Puts a picture into a queue as soon as there is room, or not at all where nobody reads any more."""
-    while not reader.done():
-        try:
-            waiting.put(picture, timeout=_WAIT)
-        except Full:
-            yield
-        else:
-            return
+        for _ in encoder.finish():
+            yield Progress(0.95, f"Writing {path.name}")
+    finally:
+        encoder.close()
+    space.notice = f"Exported {path.name}, {len(frames)} frames, {encoder.said}"

@@ -111,7 +111,7 @@ def _number(
 
 
 def _facts(space: Workspace, choice: Choice, scale: float) -> None:
-    count = len(choice.times(*space.transport.range))
+    count = len(animating.chosen_times(space, choice))
     seconds = f"{count / choice.fps:.1f}".removesuffix(".0")
     widgets.label("Makes", _LABEL * scale)
     imgui.text(f"{count} frame{'s' * (count != 1)}, {seconds} s")

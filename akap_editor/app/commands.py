@@ -1,90 +1,24 @@
 """Every command once, with its name, key and icon; menus, tool bar and keyboard all read this table."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Literal
 
 from imgui_bundle import icons_fontawesome_6 as icons
-from imgui_bundle import imgui
 
 from ..editor.key_player import STEP
 from ..editor.tool_turning import toggle_hold
 from ..resources import bundled_drawings
-from . import animating, keying, masking, poses
+from . import animating, keying, masking, poses, recordings
+from .command import CTRL, SHIFT, Command, Key, Submenu, always
 from .overlays import Measure
 from .requests import Palette
 from .workspace import Workspace
-
-CTRL, SHIFT = imgui.Key.mod_ctrl, imgui.Key.mod_shift
-Key = imgui.Key
-
-
-def _always(_: Workspace) -> bool:
-    return True
 
 
 def has_drawing(space: Workspace) -> bool:
     """Whether there is something to work on."""
     return space.document is not None
-
-
-@dataclass(frozen=True)
-class Command:
-    """label: as in menus; chords: keys, the first one is shown; checked: of a switch, whether it is on.
-
-    typed: a character in place of a key, since where it is on the keyboard differs between countries.
-    """
-
-    label: str
-    run: Callable[[Workspace], None]
-    chords: tuple[int, ...] = ()
-    icon: str = ""
-    enabled: Callable[[Workspace], bool] = _always
-    checked: Callable[[Workspace], bool] | None = None
-    typed: str = ""
-
-    @property
-    def key_name(self) -> str:
-        """The first key in words, e.g. "Ctrl+Shift+S"."""
-        return self.typed or (chord_name(self.chords[0]) if self.chords else "")
-
-    def is_pressed(self) -> bool:
-        """Whether one of its keys was pressed in this frame."""
-        if self.typed and ord(self.typed) in imgui.get_io().input_queue_characters:
-            return True
-        return any(imgui.is_key_chord_pressed(int(chord)) for chord in self.chords)
-
-
-@dataclass(frozen=True)
-class Submenu:
-    """A menu of files to open; files: what each is called, and its path."""
-
-    label: str
-    files: Callable[[Workspace], list[tuple[str, Path]]]
-
-
-_KEY_NAMES = {
-    "_1": "1",
-    "delete": "Del",
-    "equal": "+",
-    "minus": "-",
-    "left_bracket": "[",
-    "right_bracket": "]",
-    "comma": ",",
-    "period": ".",
-}
-
-
-def chord_name(chord: int) -> str:
-    """A key chord as it is printed on the keys."""
-    parts = []
-    for mod, name in ((CTRL, "Ctrl"), (SHIFT, "Shift")):
-        if chord & int(mod):
-            parts.append(name)
-            chord &= ~int(mod)
-    name = str(Key(chord).name)
-    return "+".join([*parts, _KEY_NAMES.get(name, name.upper() if len(name) == 1 else name.capitalize())])
 
 
 def _toggle(name: str) -> tuple[Callable[[Workspace], None], Callable[[Workspace], bool]]:
@@ -98,7 +32,7 @@ def _tool(name: Literal["pins", "hand", "brush"], label: str, key: Key, icon: st
     def choose(space: Workspace) -> None:
         space.editor.chosen_tool = name
 
-    return Command(label, choose, (key,), icon, _always, lambda space: space.editor.chosen_tool == name)
+    return Command(label, choose, (key,), icon, always, lambda space: space.editor.chosen_tool == name)
 
 
 def _has_brush(space: Workspace) -> bool:
@@ -205,7 +139,7 @@ SAVE_AS = Command("Save As...", Workspace.save_as, (CTRL | SHIFT | Key.s,), "", 
 EXPORT = Command("Export...", Workspace.ask_export, (CTRL | Key.e,), icons.ICON_FA_FILE_EXPORT, has_drawing)
 SAVE_POSE = Command("Save Pose...", poses.ask_save, (), "", has_drawing)
 APPLY_POSE = Command("Apply Pose...", poses.ask_apply, (), "", has_drawing)
-SAVE_RECORDING = Command("Save Recording...", Workspace.ask_save_recording, (), "", has_drawing)
+SAVE_RECORDING = Command("Save Recording...", recordings.ask_save, (), "", has_drawing)
 CLOSE = Command("Close", Workspace.close, (CTRL | Key.w,), "", has_drawing)
 QUIT = Command("Quit", Workspace.quit, (CTRL | Key.q,))
 
@@ -300,11 +234,11 @@ ZOOM_IN = Command(
 ZOOM_OUT = Command(
     "Zoom Out", lambda space: space.editor.zoom(0.8), (Key.minus, CTRL | Key.minus), "", has_drawing
 )
-SHOW_MESH = Command("Show Mesh", _mesh, (Key.m,), icons.ICON_FA_DRAW_POLYGON, _always, _mesh_on)
-SHOW_PINS = Command("Show Pins", _pins, (SHIFT | Key.p,), "", _always, _pins_on)
+SHOW_MESH = Command("Show Mesh", _mesh, (Key.m,), icons.ICON_FA_DRAW_POLYGON, always, _mesh_on)
+SHOW_PINS = Command("Show Pins", _pins, (SHIFT | Key.p,), "", always, _pins_on)
 SHOW_TIMELINE = Command("Timeline", _timeline, (SHIFT | Key.t,), "", has_drawing, _timeline_on)
 SPLIT = Command("Two Methods Side by Side", _split, (), icons.ICON_FA_TABLE_COLUMNS, has_drawing, _split_on)
-CHECKER = Command("Checkerboard", _checker, (Key.b,), "", _always, _checker_on)
+CHECKER = Command("Checkerboard", _checker, (Key.b,), "", always, _checker_on)
 SHOW_FIELD = Command("Vector Field of the Drag", _field, (Key.v,), "", has_drawing, _field_on)
 SHOW_AREA = Command("Distortion of Areas", _area, (Key.d,), "", has_drawing, _area_on)
 SHOW_ANGLE = Command("Distortion of Angles", _angle, (SHIFT | Key.d,), "", has_drawing, _angle_on)

@@ -1,12 +1,16 @@
 """The dialog for exports: format on the left, what can be chosen about it on the right."""
 
+from functools import partial
+from pathlib import Path
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document import Document
 from ..errors import InputError
-from ..io.export import FORMATS
+from ..io.export import FORMATS, export, format_of
 from . import widgets
 from .exporting import LARGEST, SCALES, SMALLEST, ExportChoice
+from .requests import FileRequest
 from .theme import ACCENT, QUIET
 from .workspace import Workspace
 
@@ -42,8 +46,30 @@ def draw(space: Workspace, scale: float) -> None:
         _close(choice)
     elif accepted or (widgets.enter() and not problem and not imgui.get_io().want_text_input):
         _close(choice)
-        space.choose_export_file()
+        ask_file(space)
     imgui.end_popup()
+
+
+def ask_file(space: Workspace) -> None:
+    """Ask where what was chosen goes."""
+    if space.document is not None:
+        suffixes, name = (space.export.format.suffix,), space.export.file_name(space.document)
+        use = partial(write, space)
+        space.request = FileRequest("Export to", suffixes, space.folder, use, name, saving=True)
+
+
+def write(space: Workspace, path: Path) -> None:
+    """Write what was chosen."""
+
+    def work() -> None:
+        assert space.document is not None
+        *beside, _ = export(space.document, path, space.export.options, space.exporter)
+        space.notice = f"Exported {', '.join([path.name, *(each.name for each in beside)])}"
+        if format_of(path).framed:
+            width, height = space.export.size(space.document)
+            space.notice += f", {width} × {height} pixels"
+
+    space.later(work, f"Exporting {path.name} ...")
 
 
 def _close(choice: ExportChoice) -> None:

@@ -1,13 +1,15 @@
 """The keyframes on the timeline: added, chosen, moved, copied, stretched and eased with the mouse."""
 
 from itertools import pairwise
+from math import ceil
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..editor.easing import KEY_EASINGS
 from ..editor.key_player import MOST_SKINS, STEP, KeyPlayer, stretched
-from ..editor.keyframes import LATEST_KEY
+from ..editor.time_view import TimeView
+from ..editor.tools import ZOOM_STEP
 from . import keying, widgets
 from .animation_dialog import EASING_LABELS
 from .theme import ACCENT, DARK, FRAME, QUIET, STRONG_LINE, TEXT, packed
@@ -35,7 +37,7 @@ def buttons(space: Workspace, scale: float) -> None:
         imgui.open_popup("easing menu")
     imgui.end_disabled()
     widgets.explain("Easing: how the motion between keyframes starts and ends")
-    if imgui.begin_popup("easing menu"):
+    if _begin_menu("easing menu", scale):
         widgets.quiet("Between all keyframes, unless one says otherwise")
         for name in KEY_EASINGS:
             if imgui.menu_item(EASING_LABELS[name], "", player.animation.ease == name)[0]:
@@ -48,9 +50,16 @@ def buttons(space: Workspace, scale: float) -> None:
         imgui.open_popup("onion menu")
     imgui.pop_style_color()
     widgets.explain("Onion skin (O): the poses before, blue, and after, orange")
-    if imgui.begin_popup("onion menu"):
+    if _begin_menu("onion menu", scale):
         _onion(player, scale)
         imgui.end_popup()
+
+
+def _begin_menu(name: str, scale: float) -> bool:
+    """A menu above the button that was drawn last, so that the timeline stays in sight."""
+    place = imgui.get_item_rect_min()
+    imgui.set_next_window_pos(ImVec2(place.x, place.y - 12 * scale), pivot=ImVec2(0, 1))
+    return bool(imgui.begin_popup(name))
 
 
 def _onion(player: KeyPlayer, scale: float) -> None:
@@ -74,23 +83,26 @@ def _onion(player: KeyPlayer, scale: float) -> None:
     imgui.end_disabled()
 
 
-class _Scale:
-    """Where times are on the track: of ``view`` seconds, which begin at ``left``."""
+class Scale:
+    """Where the times of a view are on the track, which begins at ``left``."""
 
-    def __init__(self, left: float, width: float, view: float) -> None:
+    def __init__(self, left: float, width: float, view: TimeView) -> None:
         self._left, self._width, self._view = left, width, view
 
     def x(self, time: float) -> float:
-        """On the screen, at the edge where it is beyond."""
-        return self._left + self._width * min(max(time / self._view, 0.0), 1.0)
+        """On the screen; where all is shown, at the edge if it is beyond."""
+        share = (time - self._view.start) / self._view.seconds
+        return self._left + self._width * (share if self._view.zoomed else min(max(share, 0.0), 1.0))
 
     def seconds(self, way: float) -> float:
         """How long so many points of the screen are."""
-        return way / self._width * self._view
+        return way / self._width * self._view.seconds
 
     def time(self, x: float) -> float:
-        """At a place on the screen."""
-        return min(max(self.seconds(x - self._left), 0.0), LATEST_KEY)
+        """At a place on the screen; where not all is shown, one that is."""
+        share = (x - self._left) / self._width
+        share = min(max(share, 0.0), 1.0) if self._view.zoomed else share
+        return max(self._view.start + share * self._view.seconds, 0.0)
 
 
 def draw(space: Workspace, scale: float) -> None:
@@ -100,16 +112,19 @@ def draw(space: Workspace, scale: float) -> None:
     room = imgui.calc_text_size("000.00 / 000.00 s").x + 12 * scale
     corner = imgui.get_cursor_screen_pos()
     width = max(imgui.get_content_region_avail().x - room, 40 * scale)
-    track = _Scale(corner.x + _REACH * scale, width - 2 * _REACH * scale, player.view)
+    track = Scale(corner.x + _REACH * scale, width - 2 * _REACH * scale, player.view)
     imgui.invisible_button("##keys", ImVec2(width, _BOTTOM * scale))
     space.attempt(lambda: _handle(space, track, corner.y, scale))
     if imgui.is_item_hovered() and not imgui.is_item_active():
         _explain(player, track, scale)
+        zoom(player.view, track)
     _drop_target(space, track)
     drawer = imgui.get_window_draw_list()
+    drawer.push_clip_rect(corner, ImVec2(corner.x + width, corner.y + _BOTTOM * scale), True)
     _draw_ruler(drawer, player, track, corner, width, scale)
     _draw_keys(drawer, player, track, corner.y + _LANE * scale, scale)
     _draw_head(drawer, player, track, corner.y, scale)
+    drawer.pop_clip_rect()
     below = corner.y + (_BOTTOM * scale - imgui.get_text_line_height()) / 2
     imgui.set_cursor_screen_pos(ImVec2(corner.x + width + 12 * scale, below))
     imgui.text_colored(ImVec4(*QUIET), label)
@@ -118,7 +133,7 @@ def draw(space: Workspace, scale: float) -> None:
 # -- the mouse ----------------------------------------------------------------------------------------------
 
 
-def _near(player: KeyPlayer, track: _Scale, scale: float) -> float | None:
+def _near(player: KeyPlayer, track: Scale, scale: float) -> float | None:
     """The time of the keyframe under the pointer."""
     x = imgui.get_mouse_pos().x
     time = min(player.animation.times, key=lambda each: abs(track.x(each) - x), default=None)
@@ -130,7 +145,7 @@ def _snapped(time: float) -> float:
     return round(time / STEP) * STEP
 
 
-def _handle(space: Workspace, track: _Scale, top: float, scale: float) -> None:
+def _handle(space: Workspace, track: Scale, top: float, scale: float) -> None:
     player = space.key_player
     if player.held and imgui.is_key_pressed(imgui.Key.escape, False):
         player.drop(keep=False)
@@ -153,7 +168,17 @@ def _handle(space: Workspace, track: _Scale, top: float, scale: float) -> None:
         imgui.end_popup()
 
 
-def _press(space: Workspace, track: _Scale, top: float, scale: float) -> None:
+def zoom(view: TimeView, track: Scale) -> None:
+    """The wheel zooms in on the time under the pointer; with Shift, or sideways, it goes along."""
+    io = imgui.get_io()
+    along = io.mouse_wheel if io.key_shift else -io.mouse_wheel_h
+    if along:
+        view.pan(-0.1 * view.seconds * along)
+    elif io.mouse_wheel:
+        view.zoom(ZOOM_STEP**io.mouse_wheel, track.time(imgui.get_mouse_pos().x))
+
+
+def _press(space: Workspace, track: Scale, top: float, scale: float) -> None:
     player, io = space.key_player, imgui.get_io()
     key, y = _near(player, track, scale), imgui.get_mouse_pos().y - top
     in_ruler = y < _RULER * scale
@@ -178,7 +203,7 @@ def _press(space: Workspace, track: _Scale, top: float, scale: float) -> None:
     player.scrub(key)
 
 
-def _drag(space: Workspace, track: _Scale, scale: float) -> None:
+def _drag(space: Workspace, track: Scale, scale: float) -> None:
     player, io, x = space.key_player, imgui.get_io(), imgui.get_mouse_pos().x
     if space.grip in ("start", "end"):
         player.cut_to(**{space.grip: _snapped(track.time(x))})
@@ -231,7 +256,7 @@ def _change(player: KeyPlayer, time: float) -> None:
     player.put(time)
 
 
-def _explain(player: KeyPlayer, track: _Scale, scale: float) -> None:
+def _explain(player: KeyPlayer, track: Scale, scale: float) -> None:
     time = _near(player, track, scale)
     key = next((each for each in player.animation.keys if each.time == time), None)
     if key is not None:
@@ -241,7 +266,7 @@ def _explain(player: KeyPlayer, track: _Scale, scale: float) -> None:
         )
 
 
-def _drop_target(space: Workspace, track: _Scale) -> None:
+def _drop_target(space: Workspace, track: Scale) -> None:
     """A pose that is dragged here becomes a keyframe."""
     if not imgui.begin_drag_drop_target():
         return
@@ -258,7 +283,7 @@ def _drop_target(space: Workspace, track: _Scale) -> None:
 
 
 def _draw_ruler(
-    drawer: imgui.ImDrawList, player: KeyPlayer, track: _Scale, corner: ImVec2, width: float, scale: float
+    drawer: imgui.ImDrawList, player: KeyPlayer, track: Scale, corner: ImVec2, width: float, scale: float
 ) -> None:
     """Ticks with their seconds, and the marks of the range."""
     low, high = ImVec2(corner.x, corner.y), ImVec2(corner.x + width, corner.y + _BOTTOM * scale)
@@ -267,7 +292,8 @@ def _draw_ruler(
     enough = track.seconds(52 * scale)
     step = next((tick for tick in _TICKS if tick >= enough), _TICKS[-1])
     form = "%.1f" if step < 1 else "%.0f"
-    for number in range(int(player.view / step + 1e-6) + 1):
+    view = player.view
+    for number in range(ceil(view.start / step - 1e-6), int((view.start + view.seconds) / step + 1e-6) + 1):
         x = track.x(number * step)
         drawer.add_line(
             ImVec2(x, corner.y + (_RULER - 4) * scale),
@@ -278,8 +304,18 @@ def _draw_ruler(
             drawer.add_text(
                 font, size, ImVec2(x + 3 * scale, corner.y + 1 * scale), packed(QUIET), form % (number * step)
             )
+    draw_part(drawer, view, corner, width, scale)
     if player.duration > 0:
         draw_marks(drawer, [track.x(mark) for mark in player.range], corner.y + (_BOTTOM - 1) * scale, scale)
+
+
+def draw_part(drawer: imgui.ImDrawList, view: TimeView, corner: ImVec2, width: float, scale: float) -> None:
+    """A line above the track: which part of all is shown, where it is not all."""
+    if view.zoomed:
+        first, last = (corner.x + width * at / view.whole for at in (view.start, view.start + view.seconds))
+        drawer.add_rect_filled(
+            ImVec2(first, corner.y), ImVec2(last, corner.y + 2 * scale), packed(QUIET), scale
+        )
 
 
 def draw_marks(drawer: imgui.ImDrawList, marks: list[float], bottom: float, scale: float) -> None:
@@ -291,7 +327,7 @@ def draw_marks(drawer: imgui.ImDrawList, marks: list[float], bottom: float, scal
 
 
 def _draw_keys(
-    drawer: imgui.ImDrawList, player: KeyPlayer, track: _Scale, middle: float, scale: float
+    drawer: imgui.ImDrawList, player: KeyPlayer, track: Scale, middle: float, scale: float
 ) -> None:
     """A diamond for each keyframe, a bar for each motion between two; a line where it holds."""
     keys = player.animation.keys
@@ -310,7 +346,7 @@ def _draw_keys(
         drawer.add_ngon_filled(center, size, packed(ACCENT if key.time in shown else TEXT), 4)
 
 
-def _draw_head(drawer: imgui.ImDrawList, player: KeyPlayer, track: _Scale, top: float, scale: float) -> None:
+def _draw_head(drawer: imgui.ImDrawList, player: KeyPlayer, track: Scale, top: float, scale: float) -> None:
     """Where one looks; quiet while the present pose is seen in place of that moment's."""
     x, half = track.x(player.at), 5 * scale
     color = packed(TEXT if player.following else QUIET, 1.0 if player.following else 0.6)

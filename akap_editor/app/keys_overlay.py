@@ -3,7 +3,8 @@
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from . import widgets
-from .commands import COMMANDS, KEYS, MENUS, Command
+from .command import Command
+from .commands import COMMANDS, KEYS, MENUS
 from .theme import ACTIVE, QUIET, TEXT, packed
 from .workspace import Workspace
 

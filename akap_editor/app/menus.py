@@ -3,7 +3,8 @@
 from imgui_bundle import imgui
 
 from . import widgets
-from .commands import MENUS, Command, Submenu
+from .command import Command, Submenu
+from .commands import MENUS
 from .workspace import Workspace
 
 _NAMES = [name for name, _ in MENUS]

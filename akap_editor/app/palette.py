@@ -7,7 +7,8 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 
 from . import widgets
-from .commands import COMMANDS, MENUS, Command, Submenu
+from .command import Command, Submenu
+from .commands import COMMANDS, MENUS
 from .theme import ACCENT, QUIET, TEXT, packed
 from .workspace import Workspace
 

@@ -19,7 +19,7 @@ from . import (
     timeline_panel,
     widgets,
 )
-from .commands import Command
+from .command import Command
 from .theme import ACCENT, QUIET, TEXT, packed
 from .workspace import Workspace
 

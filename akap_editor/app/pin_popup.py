@@ -8,7 +8,7 @@ from ..editor.document import Pin
 from ..editor.events import PinRequest
 from ..editor.tool_turning import set_angle
 from . import commands, widgets
-from .commands import Command
+from .command import Command
 from .workspace import Workspace
 
 _OFFSET = 14.0  # points from a pin's center to the popup's corner, so that the pin is still seen

@@ -124,15 +124,15 @@ def _begin_renaming(space: Workspace, pose: NamedPose) -> None:
 
 def _rename(space: Workspace, pose: NamedPose, width: float) -> None:
     """A field in place of the name: Enter or a click elsewhere takes what is in it, Escape nothing."""
-    if not space.new_name:
-        space.new_name = pose.name
+    if not space.new_name:  # again and again: a mouse that is still pressed takes the focus away
         imgui.set_keyboard_focus_here()
     imgui.set_next_item_width(width)
     flags = imgui.InputTextFlags_.auto_select_all
     imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
-    _, text = imgui.input_text("##name of pose", space.new_name, flags)
+    _, text = imgui.input_text("##name of pose", space.new_name or pose.name, flags)
     imgui.pop_style_var()
-    space.new_name = text or " "  # which is no name, and not the sign that the field is new
+    if imgui.is_item_active():
+        space.new_name = text or " "  # which is no name, and not the sign that the field is new
     if imgui.is_item_deactivated():
         name, space.renaming = space.new_name.strip(), None
         if name and name != pose.name and not imgui.is_key_pressed(imgui.Key.escape, False):

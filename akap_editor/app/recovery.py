@@ -49,7 +49,7 @@ class Recovery:
         imgui.spacing()
         if widgets.button("Recover", primary=True) or widgets.enter():
             imgui.close_current_popup()
-            space.attempt(lambda: space.recover(copy, document))
+            space.attempt(lambda: recover(space, copy, document))
         imgui.same_line()
         if widgets.button("Discard"):
             _drop(space)
@@ -87,6 +87,20 @@ class Recovery:
         draw.add_rect_filled(corner, ImVec2(corner.x + side, corner.y + side), packed(DARK), 0.03 * side)
         draw.add_image(imgui.ImTextureRef(self._texture.glo), low, ImVec2(low.x + width, low.y + height))
         imgui.dummy(ImVec2(side, side))
+
+
+def recover(space: Workspace, copy: Copy, document: Document) -> None:
+    """Go on with what a program that crashed has left; what else is lost is asked for another time."""
+    assert space.autosave is not None
+    space.show(document)
+    assert space.editor.session is not None
+    space.editor.session.mark_unsaved()
+    space.autosave.adopt(copy, document)
+    for other in space.lost:
+        if other is not copy:
+            other.leave()
+    space.lost = []
+    space.notice = f"Recovered {document.drawing.name}, which is not saved yet"
 
 
 def _facts(copy: Copy, document: Document, count: int, width: float) -> None:

@@ -26,10 +26,7 @@ def draw(space: Workspace, task: Task, scale: float) -> None:
         task.enough()
     if task.enough is not None:
         imgui.same_line()
-    imgui.begin_disabled(task.progress.final)
-    cancelled = widgets.button("Cancel") or (widgets.escape() and not task.progress.final)
-    imgui.end_disabled()
-    if cancelled:
+    if widgets.button("Cancel") or widgets.escape():
         task.cancel()
         widgets.close(space, "task", None)
         space.notice = f"{task.title}: cancelled"

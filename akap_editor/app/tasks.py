@@ -9,11 +9,10 @@ SLICE = 0.03  # seconds of work between two frames
 
 
 class Progress(NamedTuple):
-    """share: of the work that is done, 0 to 1; text: what is being done; final: if it is too late to stop."""
+    """share: of the work that is done, 0 to 1; text: what is being done."""
 
     share: float = 0.0
     text: str = "Beginning ..."
-    final: bool = False
 
 
 BEGINNING = Progress()

@@ -89,19 +89,19 @@ def _track(space: Workspace, scale: float) -> None:
     player, drawer = space.player, imgui.get_window_draw_list()
     label = f"{player.at if player.at is not None else player.duration:.1f} / {player.duration:.1f} s"
     room = imgui.calc_text_size("000.0 / 000.0 s").x + 12 * scale
-    corner = imgui.get_cursor_screen_pos()
-    width, height = max(imgui.get_content_region_avail().x - room, 10 * scale), 28 * scale
+    corner, rim = imgui.get_cursor_screen_pos(), 8 * scale  # so that both ends can be taken hold of
+    width, height = max(imgui.get_content_region_avail().x - room, 40 * scale), 28 * scale
     imgui.invisible_button("##track", ImVec2(width, height))
+    corner.x, width = corner.x + rim, width - 2 * rim
     held, hovered = imgui.is_item_active(), imgui.is_item_hovered()
-    length = player.duration or 1.0
-
-    def x_of(moment: float) -> float:
-        return corner.x + width * min(max(moment / length, 0.0), 1.0)
-
-    moment = (imgui.get_mouse_pos().x - corner.x) / width * length
+    player.view.fit(player.duration or 1.0)
+    track = key_track.Scale(corner.x, width, player.view)
+    if hovered and not held:
+        key_track.zoom(player.view, track)
+    moment = track.time(imgui.get_mouse_pos().x)
     if imgui.is_item_activated():
         near, below = 8 * scale, imgui.get_mouse_pos().y > corner.y + 0.6 * height
-        start, end = (abs(imgui.get_mouse_pos().x - x_of(mark)) for mark in player.range)
+        start, end = (abs(imgui.get_mouse_pos().x - track.x(mark)) for mark in player.range)
         on_mark = below and min(start, end) < near
         space.grip = ("start" if start < end else "end") if on_mark else "head"
     if held and player.shots:
@@ -112,15 +112,20 @@ def _track(space: Workspace, scale: float) -> None:
         else:
             player.scrub(moment)
     middle = corner.y + height / 2
-    low, high = (x_of(mark) for mark in player.range)
+    low, high = (track.x(mark) for mark in player.range)
+    drawer.push_clip_rect(
+        ImVec2(corner.x - rim, corner.y), ImVec2(corner.x + width + rim, corner.y + height), True
+    )
+    key_track.draw_part(drawer, player.view, corner, width, scale)
     _bar(drawer, corner.x, corner.x + width, middle, scale, packed(FRAME))
     _bar(drawer, low, high, middle, scale, packed(ACCENT, 0.55))
     key_track.draw_marks(drawer, [low, high], corner.y + height, scale)
     if player.taking is not None:
-        _bar(drawer, x_of(player.taking), x_of(length), middle, scale, packed(RED))
-    head = x_of(player.at if player.at is not None else length)
+        _bar(drawer, track.x(player.taking), track.x(player.duration), middle, scale, packed(RED))
+    head = track.x(player.at if player.at is not None else player.view.whole)
     thickness = (2.5 if held or hovered else 2) * scale
     drawer.add_line(ImVec2(head, corner.y), ImVec2(head, corner.y + height), packed(TEXT), thickness)
+    drawer.pop_clip_rect()
     imgui.same_line(0, 12 * scale)
     imgui.align_text_to_frame_padding()
     imgui.text_colored(ImVec4(*QUIET), label)

@@ -5,7 +5,7 @@ from bisect import bisect_left
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document import Settings
-from .commands import Command
+from .command import Command
 from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT, packed
 from .workspace import Workspace
 

@@ -23,9 +23,8 @@ from ..geometry.distortion import Distortion, distortion
 from ..io import project_file
 from ..io.autosave import Autosave, Copy
 from ..io.documents import MESH_SUFFIXES, PICTURE_SUFFIXES, PROJECT_SUFFIX, open_document
-from ..io.export import export, format_of
 from ..io.images import has_transparency, is_animation, read_image
-from ..io.recordings import RECORDING_SUFFIX, write_recording
+from ..io.recordings import RECORDING_SUFFIX
 from ..render.offscreen import OffscreenRenderer
 from ..render.overlays import Overlays
 from ..resources import bundled_drawings
@@ -197,6 +196,8 @@ class Workspace:
             self.editor.open(document if chosen is None or document.path else document.with_state(preferred))
         except InputError:
             self.editor.open(document)
+        if document.state.animation.keys:
+            self.timeline, self.show_timeline = "keyframes", True
         opaque = document.path is None and not has_transparency(document.drawing.image)
         self.notice = (
             "This picture has no transparent background, so the whole rectangle bends" if opaque else ""
@@ -279,19 +280,6 @@ class Workspace:
         if self.autosave is not None and session is not None and self.editor.modified:
             self.attempt(partial(self.autosave.rescue, session.kept))
 
-    def recover(self, copy: Copy, document: Document) -> None:
-        """Go on with what a program that crashed has left; what else is lost is asked for another time."""
-        assert self.autosave is not None
-        self.show(document)
-        assert self.editor.session is not None
-        self.editor.session.mark_unsaved()
-        self.autosave.adopt(copy, document)
-        for other in self.lost:
-            if other is not copy:
-                other.leave()
-        self.lost = []
-        self.notice = f"Recovered {document.drawing.name}, which is not saved yet"
-
     def save(self, go_on: Callable[[], None] | None = None) -> None:
         """Write to the document's own file, or ask for one; then ``go_on``."""
         if self.document is None:
@@ -351,44 +339,6 @@ class Workspace:
     def ask_export(self) -> None:
         """Ask what is to be exported."""
         self.export.shown = self.document is not None
-
-    def choose_export_file(self) -> None:
-        """Ask where what was chosen goes."""
-        if self.document is not None:
-            suffixes, name = (self.export.format.suffix,), self.export.file_name(self.document)
-            self.request = FileRequest("Export to", suffixes, self.folder, self.export_to, name, saving=True)
-
-    def export_to(self, path: Path) -> None:
-        """Write what was chosen."""
-
-        def work() -> None:
-            assert self.document is not None
-            *beside, _ = export(self.document, path, self.export.options, self.exporter)
-            self.notice = f"Exported {', '.join([path.name, *(each.name for each in beside)])}"
-            if format_of(path).framed:
-                width, height = self.export.size(self.document)
-                self.notice += f", {width} × {height} pixels"
-
-        self.later(work, f"Exporting {path.name} ...")
-
-    def ask_save_recording(self) -> None:
-        """Ask where the list of what was done goes."""
-        if self.document is not None:
-            name = f"{self.document.drawing.name}{RECORDING_SUFFIX}"
-            self.request = FileRequest(
-                "Save recording", (RECORDING_SUFFIX,), self.folder, self.save_recording, name, saving=True
-            )
-
-    def save_recording(self, path: Path) -> None:
-        """Write all that was done since the drawing was opened, and the drawing."""
-
-        def save() -> None:
-            session = self.editor.session
-            assert session is not None
-            write_recording(session.recording, path, session.drawing)
-            self.notice = f"Saved {path.name}, {session.recording.duration:.0f} seconds"
-
-        self.later(save, f"Saving {path.name} ...")
 
     def close(self) -> None:
         """Go to the start page, after asking about unsaved changes."""

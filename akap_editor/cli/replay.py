@@ -11,11 +11,12 @@ from ..editor.framing import frame_box, joined
 from ..editor.inbetween import Ways
 from ..editor.key_player import keyed_frame
 from ..editor.replay import replay
-from ..editor.timeline import Frame, Motion, frame_times, shorten_pauses
+from ..editor.timeline import Frame, Motion, closed, frame_times, shorten_pauses
 from ..errors import InputError
 from ..io.documents import PROJECT_SUFFIX, open_document
 from ..io.frames import export_frames, export_kind
 from ..io.recordings import read_recording, recorded_drawing
+from ..io.records import inside
 from .common import FILE, check_png, color, make_folder_of, write_picture
 
 # What a word of --variant sets.
@@ -100,17 +101,12 @@ def replay_recording(
     kind = export_kind(output, sheet)
     if pose is not None:
         check_png(pose)
-    if path.suffix.lower() == PROJECT_SUFFIX:
-        _refuse({"--drawing": drawing_path, "--method": method, "--variant": variant, "--pause": pause})
-        duration, play = _keyframes(path)
-    else:
-        duration, play = _recorded(path, drawing_path, settings_change(method, variant), pause)
+    duration, play = _source(path, drawing_path, method, variant, pause)
     first, last = _range(duration, start, end)
     times = [last] if kind == "picture" else frame_times(first, last, fps, speed, ease)
-    with click.progressbar(play(times), length=len(times), label="Bending") as bar:
+    with inside(path), click.progressbar(play(times), length=len(times), label="Bending") as bar:
         frames = list(bar)
-    if ping_pong:
-        frames += frames[-2:0:-1]
+    frames = _in_turn(frames, ping_pong, kind == "animation" and plays != 1)
     box = joined([frame_box(frame.drawing, [frame.pose]) for frame in frames])
     scale = min(1.0, size / max(box[2] - box[0], box[3] - box[1]))
     make_folder_of(output)
@@ -123,6 +119,13 @@ def replay_recording(
             write_picture(pose, renderer.render(*last_frame[:2], background=behind, order=last_frame.order))
             click.echo(f"Wrote {pose}, the last pose")
     click.echo(f"Wrote {output}, {len(frames)} frames, {written}")
+
+
+def _in_turn(frames: list[Frame], ping_pong: bool, repeated: bool) -> list[Frame]:
+    """What is shown one after the other; repeated and ending as it begins: without the end."""
+    if ping_pong:
+        return frames + frames[-2:0:-1]
+    return frames[:-1] if repeated and len(frames) > 2 and closed(frames[0], frames[-1]) else frames
 
 
 def _check_number(option: str, value: float, low: float, high: float) -> None:
@@ -161,6 +164,16 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
 
 # What gives drawing and pose at each of some times, which do not fall.
 Play = Callable[[Sequence[float]], Iterator[Frame]]
+
+
+def _source(
+    path: Path, drawing_path: Path | None, method: str | None, variant: str, pause: float | None
+) -> tuple[float, Play]:
+    """How long keyframes or a recording are, and what plays them."""
+    if path.suffix.lower() == PROJECT_SUFFIX:
+        _refuse({"--drawing": drawing_path, "--method": method, "--variant": variant, "--pause": pause})
+        return _keyframes(path)
+    return _recorded(path, drawing_path, settings_change(method, variant), pause)
 
 
 def _recorded(

@@ -10,7 +10,7 @@ from ..geometry.checks import Floats
 from .camera import Camera, Point, fit
 from .document import Document, Pin, Settings
 from .events import Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
-from .history import Entry
+from .nudges import Nudges
 from .poses import free_name
 from .session import Session
 from .sight import Sight
@@ -22,7 +22,6 @@ from .trails import Trails
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
 FRAME_BUDGET = 0.02  # seconds of stepping in one frame
 NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
-SERIES_PAUSE = 1.0  # seconds: arrow keys pressed in a row without a longer pause are one gesture
 ARROWS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}
 HELD_KEYS = ("space", "alt", "shift", "h")  # what they mean lasts as long as they are held
 
@@ -44,7 +43,7 @@ class Editor:
         self.request: PinRequest | None = None
         self.trails = Trails()
         self.newest_pin: int | None = None  # added by the last click: a second one on it is no double click
-        self._nudge: tuple[Entry | None, frozenset[int], float] | None = None  # entry, selection, time
+        self._nudges = Nudges(clock)
         self.tool: Tool = Idle(self)
         self._sight = Sight()
         self._clock = clock
@@ -214,21 +213,8 @@ class Editor:
 
     def nudge_selected(self, dx: float, dy: float) -> None:
         """Send the selected pins so many pixels on; nudges in a row are one gesture."""
-        if self.session is None or self.busy or not self.selection:
-            return
-        session, now = self.session, self._clock()
-        entry, selection, when = self._nudge or (None, self.selection, now)
-        joins = entry is not None and entry is session.history.last and selection == self.selection
-        session.begin("Nudge" if len(self.selection) == 1 else f"Nudge {len(self.selection)} pins")
-        try:
-            session.hold_pins()
-            moved = (session.state.pin(pin) for pin in sorted(self.selection))
-            session.set_targets({pin.id: (pin.target[0] + dx, pin.target[1] + dy) for pin in moved})
-        except Exception:
-            session.abort()
-            raise
-        session.commit(join=joins and now - when < SERIES_PAUSE)
-        self._nudge = session.history.last, self.selection, now
+        if self.session is not None and not self.busy and self.selection:
+            self._nudges.move(self.session, self.selection, dx, dy)
 
     def reset_pose(self) -> None:
         """The rest pose, with the pins where they then are."""

@@ -14,13 +14,14 @@ from .editor import Editor
 from .inbetween import Ways
 from .keyframes import LATEST_KEY, NO_ANIMATION, Animation, key_time
 from .session import Session
+from .time_view import TimeView
 from .timeline import Frame
 from .transport import Transport
 
 GAP = 0.5  # seconds between a keyframe and one that is put after it without a time
 STEP = 0.05  # seconds: what times snap to, and what keys move by
 MOST_SKINS = 6  # of the onion skin, on each side
-SHORTEST_VIEW = 2.0  # seconds on the timeline
+SHORTEST_VIEW = 2.0  # seconds on the timeline, where it shows all
 
 Edge = Literal["keyframes", "frames"]
 
@@ -42,8 +43,8 @@ class KeyPlayer(Transport):
     """Shows the keyframes of an editor's drawing at the moment ``at``; see `Session.visit`.
 
     Looking edits nothing. The next gesture takes the pose that is seen, and then it is the present one, until
-    another moment is looked at. chosen: times of the keyframes that are selected; view: seconds that the
-    timeline shows.
+    another moment is looked at. chosen: times of the keyframes that are selected; view: the part of the time
+    that the timeline shows.
     """
 
     def __init__(self, editor: Editor, clock: Callable[[], float] = time.monotonic) -> None:
@@ -58,7 +59,7 @@ class KeyPlayer(Transport):
         self.at: float = 0.0
         self.cut = self._played = None
         self.chosen: frozenset[float] = frozenset()
-        self.view = SHORTEST_VIEW
+        self.view = TimeView(SHORTEST_VIEW)
         self._moved: tuple[dict[float, float], bool] | None = None  # of a drag: times to times, as copies
         self._beneath: Floats | None = None  # the present pose while another one is followed
 
@@ -74,6 +75,15 @@ class KeyPlayer(Transport):
     def duration(self) -> float:
         """Seconds from 0 to the last keyframe."""
         return self.animation.duration
+
+    @property
+    def loop(self) -> bool:
+        """Whether playing starts over; kept with the keyframes."""
+        return self.animation.loop
+
+    @loop.setter
+    def loop(self, loop: bool) -> None:
+        self._edit("Play over and over" if loop else "Play once", "loop", loop=loop)
 
     @property
     def following(self) -> bool:
@@ -138,7 +148,7 @@ class KeyPlayer(Transport):
             return
         self.chosen &= set(self.kept_times)
         if not self.held:
-            self.view = max(SHORTEST_VIEW, 1.2 * self.duration, self.at)
+            self.view.fit(max(SHORTEST_VIEW, 1.2 * self.duration, self.at))
         if self._beneath is None or session.visiting or session.history.is_open:
             return
         if session.state.positions is self._beneath:  # what was edited is no pose
@@ -149,6 +159,7 @@ class KeyPlayer(Transport):
     def scrub(self, moment: float) -> None:
         """Look at a moment, also after the last keyframe; without keyframes the present pose stays."""
         self.at = min(max(moment, 0.0), LATEST_KEY)
+        self.view.reveal(self.at)
         self._show()
 
     def _show(self) -> None:

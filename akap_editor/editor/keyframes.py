@@ -34,10 +34,13 @@ class Keyframe:
 
 @dataclass(frozen=True, eq=False)
 class Animation:
-    """keys: in the order of their times, of which no two are alike; ease: between them, see `Keyframe`."""
+    """keys: in the order of their times, of which no two are alike; ease: between them, see `Keyframe`;
+    loop: whether it plays over and over.
+    """
 
     keys: tuple[Keyframe, ...] = ()
     ease: str = "in-out"
+    loop: bool = True
 
     def __post_init__(self) -> None:
         as_key_easing(self.ease)
@@ -92,7 +95,7 @@ class Animation:
         Raises InputError.
         """
         if times is None:
-            return Animation(self.keys, as_key_easing(ease))
+            return replace(self, ease=as_key_easing(ease))
         chosen = set(times)
         keys = (replace(key, ease=ease) if key.time in chosen else key for key in self.keys)
         return replace(self, keys=tuple(keys))
@@ -125,7 +128,8 @@ def changed(animation: Animation, do: str, values: Mapping[str, Any], pose: Floa
 
     do: "key" puts the pose, or values["positions"], at values["time"] with values["ease"]; "unkey" takes
     away those at values["times"]; "rekey" moves those at values["from"] to values["to"], or copies them there
-    where values["copy"]; "ease" sets values["ease"] from values["times"] on, in general where that is None.
+    where values["copy"]; "ease" sets values["ease"] from values["times"] on, in general where that is None;
+    "loop" sets values["loop"].
     Raises InputError on bad values, KeyError where some are missing.
     """
     if do == "key":
@@ -136,6 +140,10 @@ def changed(animation: Animation, do: str, values: Mapping[str, Any], pose: Floa
     if do == "rekey":
         times = dict(zip(map(key_time, values["from"]), map(key_time, values["to"]), strict=True))
         return animation.moved(times, values.get("copy") is True)
+    if do == "loop":
+        if type(values["loop"]) is not bool:
+            raise InputError(f"loop: expected true or false, got {values['loop']!r}")
+        return replace(animation, loop=values["loop"])
     times_or_all = values["times"]
     chosen = None if times_or_all is None else [key_time(time) for time in times_or_all]
     return animation.eased(chosen, values["ease"])

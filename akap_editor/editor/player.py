@@ -9,6 +9,7 @@ from .depth import face_order
 from .document import Drawing, EditState
 from .inbetween import Ways
 from .session import Session
+from .time_view import TimeView
 from .timeline import LONGEST_MOVE, Frame
 from .transport import Transport
 
@@ -46,6 +47,7 @@ class Player(Transport):
     def _forget(self) -> None:
         self.shots: list[Shot] = []
         self.at = self.cut = self._played = None  # at None is now
+        self.view = TimeView(1.0)  # the part of it that the timeline shows
         self.taking: float | None = None  # since when a take is recorded
         self._seen = self._clock()
 
@@ -93,6 +95,7 @@ class Player(Transport):
             self.now()
             return
         self.at = max(moment, 0.0)
+        self.view.reveal(self.at)
         shot = self.shot(self.at)
         if self.playing:
             self._session.visit(shot.state, shot.line, self.frame(self.at).pose)

@@ -47,6 +47,7 @@ _FIELDS: dict[str, tuple[str, ...]] = {
     "unkey": ("times",),
     "rekey": ("from", "to"),
     "ease": ("times", "ease"),
+    "loop": ("loop",),
 }
 
 
@@ -133,6 +134,8 @@ def opening_events(document: Document) -> list[Event]:
         events.append({"do": "key", "time": key.time, **ease, "positions": key.positions.tolist()})
     if state.animation.ease != Animation.ease:
         events.append({"do": "ease", "times": None, "ease": state.animation.ease})
+    if not state.animation.loop:
+        events.append({"do": "loop", "loop": False})
     return events
 
 

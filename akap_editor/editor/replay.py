@@ -22,7 +22,7 @@ _BAD_EVENT = (AssertionError, AttributeError, KeyError, OverflowError, TypeError
 # What changes one of the lists that a state has.
 _LISTS = {
     **dict.fromkeys(("keep", "forget", "rename", "order"), "poses"),
-    **dict.fromkeys(("key", "unkey", "rekey", "ease"), "keyframes"),
+    **dict.fromkeys(("key", "unkey", "rekey", "ease", "loop"), "keyframes"),
 }
 _SAME_PLACE = 1e-6  # pixels
 _SAME_SHAPE = 0.01  # pictures whose proportions differ by less show the same

@@ -1,4 +1,4 @@
-"""One drawing being bent: document, history, deformer and recording, without pointer or view."""
+"""One drawing being bent, with all edits of it, their history and recording; without pointer or view."""
 
 import time
 from collections.abc import Callable, Iterable, Mapping
@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..deform.deformer import StepResult
-from ..errors import InputError, SolverError
+from ..errors import InputError
 from ..geometry.checks import Floats, as_number, as_points
 from . import keyframes, poses
-from .angles import MOST_ANGLE, holding, pin_angles, stopped
+from .angles import MOST_ANGLE, holding
 from .bake import baked_state
 from .bending import Bending
+from .bent import PIN_TOLERANCE, Bent
 from .depth import check_depths, depth_at
 from .document import Document, Drawing, EditState, Pin, Settings
 from .event_log import EventLog
@@ -23,11 +24,6 @@ from .history import History
 from .recording import Recording, drawing_header, opening_events, pins_to_json, settings_to_json
 from .remesh import carried_over
 from .stiffness import as_stiffness, coverage, painted
-
-PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
-STILL = 0.02  # pixels: a step that moves no vertex farther has come to rest
-MOST_SETTLING = 400  # steps after the last change of a target, should a pose never come to rest
-ANGLE_TOLERANCE = 0.002  # radians: a pin turned more nearly than this has arrived
 
 Target = tuple[float, float]
 
@@ -44,7 +40,7 @@ class _Visit:
     taken: bool
 
 
-class Session:
+class Session(Bent):
     """The state of one open drawing and everything that may change it.
 
     Edits happen inside a gesture: `begin`, any number of edits and steps, then `commit` or `abort`. Adding or
@@ -58,27 +54,17 @@ class Session:
         clock: Callable[[], float] = time.monotonic,
         started: float | None = None,
     ) -> None:
-        self.document = document
+        super().__init__(document)
         self.history = History()
-        self.last_step: StepResult | None = None
         self._saved: EditState | None = document.state
-        self.jumps = 0  # how often the pose has changed in another way than by steps
         self._visit: _Visit | None = None
         self._taken: EditState | None = None  # as the open gesture began, where it took over a visited pose
-        self._settling = 0
-        self._opened = document.drawing
         self._clock, self._started = clock, clock() if started is None else started
         self.recording = Recording(drawing_header(document.drawing), EventLog())
-        self._bending = Bending(document.drawing.mesh, document.state)
         for event in opening_events(document):
             self._record(**event)
 
     # -- what is there -------------------------------------------------------------------------------------
-
-    @property
-    def state(self) -> EditState:
-        """The current state."""
-        return self.document.state
 
     @property
     def present(self) -> EditState:
@@ -96,48 +82,9 @@ class Session:
         )
 
     @property
-    def drawing(self) -> Drawing:
-        """The picture and its mesh."""
-        return self.document.drawing
-
-    @property
     def modified(self) -> bool:
         """Whether there is something that the file does not hold."""
         return self.present is not self._saved
-
-    @property
-    def posed(self) -> bool:
-        """Whether the drawing is anywhere but in its rest pose."""
-        return not np.array_equal(self.state.positions, self.drawing.mesh.vertices)
-
-    @property
-    def moving(self) -> bool:
-        """Whether pins are still on their way, or the drawing around them is."""
-        return self._settling > 0
-
-    def pin_positions(self) -> Floats:
-        """(k, 2): where the pins are now, as opposed to where they should be."""
-        return self.drawing.mesh.evaluate(self.state.points, self.state.positions)
-
-    @property
-    def near(self) -> bool:
-        """Whether pins are where they should be, as far as an eye can see it in motion."""
-        return self.pin_error() < 1.0 and self._bending.turn_error(self.state) < 0.05
-
-    def pin_error(self) -> float:
-        """Largest distance of a pin from where it should be, pixels."""
-        return float(np.linalg.norm(self._bending.off(self.state), axis=1).max(initial=0.0))
-
-    @property
-    def turns(self) -> bool:
-        """Whether the method lets pins hold angles."""
-        return self._bending.holds_angles
-
-    def pin_angle(self, pin_id: int) -> float:
-        """By how many radians the drawing around a pin is turned from rest now, in (−π, π]."""
-        pins = self.state.pins
-        angles = pin_angles(self.drawing.mesh, pins, self.state.positions, {pin_id})
-        return float(angles[[pin.id for pin in pins].index(pin_id)])
 
     # -- visits --------------------------------------------------------------------------------------------
 
@@ -364,44 +311,11 @@ class Session:
         self._restore(state)
         self._record("return", line=line)
 
-    # -- motion --------------------------------------------------------------------------------------------
-
     def step(self) -> StepResult:
         """One step of the deformer towards the current targets. On SolverError the pose is as it was."""
-        before, off = self.state.positions, self._bending.off(self.state)
-        try:
-            result = self._bending.step(self.state)
-        except SolverError:
-            self._settling = 0
-            raise
-        if result.field is not None and np.linalg.norm(off, axis=1).max(initial=0.0) > PIN_TOLERANCE:
-            self._bending.last_way = before, off
-        self._set_state(replace(self.state, positions=result.positions))
+        result = super().step()
         self._record("step")
-        moved = float(np.abs(result.positions - before).max())
-        arrived = self.pin_error() < PIN_TOLERANCE and self._bending.turn_error(self.state) < ANGLE_TOLERANCE
-        still = moved < (STILL if arrived else 0.1 * STILL)
-        self._settling = 0 if still else max(self._settling - 1, 0)
-        self.last_step = result
         return result
-
-    def fields(self) -> tuple[Floats, Floats] | None:
-        """U_opt and U°, (n, 2) each, of the last step that moved pins; None for a method without fields."""
-        return self._bending.fields(len(self.state.pins))
-
-    @property
-    def last_way(self) -> tuple[Floats, Floats] | None:
-        """Of the last step that moved pins: the pose before, (n, 2), and velocities of the pins, (k, 2)."""
-        return self._bending.last_way
-
-    def settle(self) -> None:
-        """Step until the pose has come to rest."""
-        while self.moving:
-            self.step()
-
-    def halt(self) -> None:
-        """Leave the pose as it is, though pins may be on their way."""
-        self._settling = 0
 
     # -- saving --------------------------------------------------------------------------------------------
 
@@ -416,40 +330,11 @@ class Session:
 
     # -- inside --------------------------------------------------------------------------------------------
 
-    def _bend_by(self, state: EditState) -> None:
-        """Take over a state that bends differently; nothing has changed where that is not possible."""
-        self._bending = Bending(self.drawing.mesh, state)
-        self._set_state(state)
-        self._settling = 0
-
     def _check_ids(self, name: str, ids: Iterable[int]) -> None:
         known = [pin.id for pin in self.state.pins]
         for pin_id in ids:
             if pin_id not in known:
                 raise InputError(f"{name}: expected ids of pins {sorted(known)}, got {pin_id}")
-
-    def _begin_settling(self) -> None:
-        self._settling = MOST_SETTLING + int(self._bending.steps_left(self.state))
-
-    def _put(self, pose: Floats) -> None:
-        self.jumps += 1
-        pins = stopped(self.drawing.mesh, self.state.pins, pose)
-        self._set_state(replace(self.state, pins=pins, positions=pose))
-        self._settling = 0
-
-    def _set_state(self, state: EditState) -> None:
-        self.document = replace(self.document.with_state(state), drawing=state.drawing or self._opened)
-
-    def _restore(self, state: EditState) -> None:
-        self.jumps += 1
-        self._set_state(state)
-        if self._bending.fits(self.drawing.mesh, state):
-            self._bending.last_way = None
-            self._bending.turns.forget()
-            self._bending.deformer.set_pins(state.points)
-        else:
-            self._bending = Bending(self.drawing.mesh, state)
-        self._settling = 0
 
     def _record(self, do: str, **values: object) -> None:
         self.recording.events.append({"t": round(self._clock() - self._started, 4), "do": do, **values})

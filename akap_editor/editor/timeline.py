@@ -29,6 +29,7 @@ class Frame(NamedTuple):
     order: Ints | None = None
 
 
+SAME = 0.01  # pixels: poses that differ by less look alike
 LONGEST_MOVE = 0.25  # seconds: what moved after a longer pause moved in the last of it
 
 
@@ -56,6 +57,11 @@ def frame_times(start: float, end: float, fps: float, speed: float = 1.0, ease: 
     eased, span = easing(ease), end - start
     count = int(span / speed * fps + 1e-6)
     return [*(start + span * eased(k * speed / fps / span) for k in range(count)), end]
+
+
+def closed(first: Frame, last: Frame) -> bool:
+    """Whether an animation ends as it begins, so that one of the two is enough where it repeats."""
+    return first.drawing is last.drawing and np.allclose(first.pose, last.pose, rtol=0.0, atol=SAME)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,9 +10,10 @@ class Transport(ABC):
     cut: the part that is played and exported, all of it where None.
     """
 
+    loop = True
+
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self.loop = True
         self.at: float | None = None
         self.cut: tuple[float, float] | None = None
         self._played: float | None = None  # the clock at the last frame of playing

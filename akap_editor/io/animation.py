@@ -11,7 +11,7 @@ from PIL import Image
 from scipy.spatial import cKDTree
 
 from ..errors import InputError
-from .atomic import write_atomic
+from .atomic import Write, write_atomic
 from .images import Picture, check_picture, either
 from .video import VIDEO_SUFFIXES, write_video
 
@@ -32,11 +32,14 @@ def animation_suffix(path: str | Path) -> str:
     return suffix
 
 
-def write_animation(path: str | Path, frames: Iterable[Picture], fps: float, plays: int = 0) -> None:
+def write_animation(
+    path: str | Path, frames: Iterable[Picture], fps: float, plays: int = 0, write: Write = write_atomic
+) -> None:
     """Write an animation; the name decides on GIF, WebP (.webp), APNG (.png, .apng), MP4 or WebM (`video`).
 
     frames: each (h, w, 4) uint8, straight alpha, all of one size; read once, in order, and held in memory
-    until the file is written; plays: how often they are shown, 0 for ever (by videos, once).
+    until the file is written; plays: how often they are shown, 0 for ever (by videos, once); write: does it
+    when all is encoded.
     Still frames in a row may be stored as one. WebP and APNG keep all that is
     visible. GIF has 255 colours, the same for all frames; alpha of 50 % and more becomes opaque, less becomes
     transparent. GIF counts time in units of 10 ms, so one frame may be shown 10 ms longer than the next, but
@@ -50,7 +53,7 @@ def write_animation(path: str | Path, frames: Iterable[Picture], fps: float, pla
     if not 0 <= plays <= MAX_PLAYS:
         raise InputError(f"plays: expected a number from 0 to {MAX_PLAYS}, got {plays}")
     if suffix in VIDEO_SUFFIXES:
-        write_video(path, frames, fps)
+        write_video(path, frames, fps, write)
         return
     encode, max_side = _ENCODERS[suffix]
     images = _collect(frames, max_side, suffix)
@@ -58,7 +61,7 @@ def write_animation(path: str | Path, frames: Iterable[Picture], fps: float, pla
         data = encode(images, fps, plays)
     except (OSError, OverflowError, RuntimeError, ValueError) as error:
         raise InputError(f"cannot write {path}: the encoder says {str(error)!r}") from error
-    write_atomic(path, data)
+    write(path, data)
 
 
 def _collect(frames: Iterable[Picture], max_side: int, suffix: str) -> list[Picture]:

@@ -5,12 +5,15 @@ import os
 import secrets
 import shutil
 import stat
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
 from ..errors import InputError
 
 MAX_FILE_BYTES = 2**30
+
+Write = Callable[[str | Path, bytes], None]  # as `write_atomic` does
 
 
 def read_file(path: str | Path, expected: str) -> bytes:

@@ -6,6 +6,7 @@ from typing import Literal
 
 from ..errors import InputError
 from .animation import animation_suffix, write_animation
+from .atomic import Write, write_atomic
 from .images import Picture, write_png
 from .sprites import write_frames, write_sheet
 from .video import VIDEO_SUFFIXES, require_av
@@ -36,15 +37,21 @@ def export_kind(path: str | Path, sheet: bool = False) -> Kind:
 
 
 def export_frames(
-    path: str | Path, frames: Iterable[Picture], fps: float, plays: int = 0, sheet: bool = False
+    path: str | Path,
+    frames: Iterable[Picture],
+    fps: float,
+    plays: int = 0,
+    sheet: bool = False,
+    write: Write = write_atomic,
 ) -> str:
     """Write frames, (h, w, 4) uint8 each, straight alpha, all of one size; a few words on what was written.
 
-    Of a .png it is the last frame, unless ``sheet``. plays: of an animation, 0 for ever. Raises InputError.
+    Of a .png it is the last frame, unless ``sheet``. plays: of an animation, 0 for ever; write: writes what
+    becomes one file, when all of it is encoded. Raises InputError.
     """
     kind = export_kind(path, sheet)
     if kind == "sheet":
-        columns, rows = write_sheet(path, frames, fps)
+        columns, rows = write_sheet(path, frames, fps, write)
         return f"a sheet of {columns} x {rows} sprites, and its index {Path(path).with_suffix('.json').name}"
     if kind == "frames":
         return f"{write_frames(path, frames)} pictures"
@@ -52,5 +59,5 @@ def export_frames(
         *_, last = frames
         write_png(path, last)
         return f"{last.shape[1]} x {last.shape[0]} pixels"
-    write_animation(path, frames, fps, plays)
+    write_animation(path, frames, fps, plays, write)
     return f"at {fps:g} frames per second"

@@ -16,7 +16,7 @@ _MAX_INDEX_BYTES = 2**21
 
 def keyframe_entries(animation: Animation) -> list[Entry]:
     """The entries of a file; none for an animation as it is before anything is chosen."""
-    if not animation.keys and animation.ease == Animation.ease:
+    if not animation.keys and animation.ease == Animation.ease and animation.loop:
         return []
     poses: dict[int, tuple[int, Floats]] = {}  # keyframes that share a pose do so in the file
     for key in animation.keys:
@@ -35,7 +35,8 @@ def keyframe_entries(animation: Animation) -> list[Entry]:
         }
         for key in animation.keys
     ]
-    index = json.dumps({"ease": animation.ease, "poses": len(poses), "keyframes": keys}).encode()
+    loop = {} if animation.loop else {"loop": False}
+    index = json.dumps({"ease": animation.ease, **loop, "poses": len(poses), "keyframes": keys}).encode()
     arrays = [(f"animation/{number}", pose.astype("<f8").tobytes(), True) for number, pose in poses.values()]
     return [(INDEX, index, True), *arrays]
 
@@ -55,7 +56,8 @@ def read_keyframes(archive: Archive, vertices: int) -> Animation:
             raise InputError(f"expected poses to be a number from 0 to {most}, got {count}")
     poses = [archive.read_array(f"animation/{number}", "<f8", vertices, 2) for number in range(count)]
     with inside(INDEX):
-        return Animation(tuple(_key(key, poses) for key in keys), get(record, "ease", str, Animation.ease))
+        ease, loop = get(record, "ease", str, Animation.ease), get(record, "loop", bool, Animation.loop)
+        return Animation(tuple(_key(key, poses) for key in keys), ease, loop)
 
 
 def _key(record: Json, poses: list[Floats]) -> Keyframe:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError
-from .atomic import write_atomic
+from .atomic import Write, write_atomic
 from .images import Picture, check_picture, encode_png, write_png
 
 MAX_SHEET_SIDE = 16384
@@ -37,7 +37,9 @@ def write_frames(folder: str | Path, frames: Iterable[Picture]) -> int:
     return count
 
 
-def write_sheet(path: str | Path, frames: Iterable[Picture], fps: float) -> tuple[int, int]:
+def write_sheet(
+    path: str | Path, frames: Iterable[Picture], fps: float, write: Write = write_atomic
+) -> tuple[int, int]:
     """Write frames as one PNG, row by row, and an index beside it, ``path`` with the ending .json.
 
     frames: (h, w, 4) uint8 each, all of one size. Margins that are empty in all of them are left out.
@@ -87,8 +89,8 @@ def write_sheet(path: str | Path, frames: Iterable[Picture], fps: float) -> tupl
         "scale": "1",
         "fps": fps,
     }
-    write_atomic(path, encode_png(sheet))
-    write_atomic(path.with_suffix(".json"), json.dumps({"frames": index, "meta": meta}, indent=1).encode())
+    write(path, encode_png(sheet))
+    write(path.with_suffix(".json"), json.dumps({"frames": index, "meta": meta}, indent=1).encode())
     return columns, rows
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from ..errors import InputError
-from .atomic import write_atomic
+from .atomic import Write, write_atomic
 from .images import Picture, check_picture
 
 # By ending: container, codec, pixel format, options. Quality is high, for flat areas and sharp rims.
@@ -24,11 +24,12 @@ _PAPER = 255  # grey value behind what is transparent where the format has no tr
 _BT709 = 1
 
 
-def write_video(path: str | Path, frames: Iterable[Picture], fps: float) -> None:
+def write_video(path: str | Path, frames: Iterable[Picture], fps: float, write: Write = write_atomic) -> None:
     """Write frames, each (h, w, 4) uint8, straight alpha, all of one size, to a .mp4 or .webm file.
 
     WebM (VP9) keeps transparency; in MP4 (H.264) transparent areas become white. Frames get one more column
     or row where their size is odd. Read once, in order; only the compressed video is held in memory.
+    write: does it when all is encoded.
     Raises InputError on bad frames or names, where the file cannot be written, or where av is not installed.
     """
     suffix = Path(path).suffix.lower()
@@ -41,7 +42,7 @@ def write_video(path: str | Path, frames: Iterable[Picture], fps: float) -> None
         data = _encode(av, suffix, frames, fps)
     except (av.error.FFmpegError, OSError) as error:
         raise InputError(f"cannot write {path}: the encoder says {str(error)!r}") from error
-    write_atomic(path, data)
+    write(path, data)
 
 
 def require_av() -> Any:

@@ -13,7 +13,8 @@ import imgui_bundle._imgui_bundle as native
 import numpy as np
 from numpy.typing import NDArray
 
-from akap_editor.app.commands import Command
+from akap_editor.app.command import Command
+from akap_editor.app.tasks import Task
 from akap_editor.app.window import Window
 from akap_editor.app.workspace import Workspace
 from akap_editor.editor.document import Document, Pin
@@ -268,3 +269,12 @@ class WindowDriver:
         """As GLFW tells of files dropped on the window."""
         self.window._on_drop(None, [str(path) for path in paths])
         self.settle()
+
+
+def one_step(task: Task) -> bool:
+    """In place of `Task.advance`, so that there is a frame after each step of a task."""
+    try:
+        task.progress = next(task.steps)
+    except StopIteration:
+        return True
+    return False

@@ -2,6 +2,8 @@
 
 import json
 from itertools import pairwise
+from threading import Event
+from threading import enumerate as enumerate_threads
 
 import numpy as np
 import pytest
@@ -11,6 +13,10 @@ from PIL import Image
 from akap_editor.app import animating
 from akap_editor.app.animating import FORMATS, Choice, remember, remembered
 from akap_editor.app.preferences import Preferences
+from akap_editor.errors import InputError
+from akap_editor.io.animation import _ENCODERS
+
+from .driver import one_step
 
 TITLE = "Export animation"
 
@@ -51,6 +57,15 @@ def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
     assert remembered(keyed.space).fps == 60
 
 
+def test_asking_does_not_change_what_is_seen(keyed):
+    keyed.space.key_player.leave()
+    before = keyed.session.state
+    animating.ask(keyed.space)
+    keyed.dialog(TITLE, "Cancel")
+    assert keyed.session.state is before
+    assert not keyed.session.visiting
+
+
 @pytest.mark.parametrize("kind", FORMATS, ids=[each.label for each in FORMATS])
 def test_every_format_is_written(keyed, tmp_path, kind):
     if kind.suffix in (".mp4", ".webm"):
@@ -87,6 +102,18 @@ def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
     assert np.abs(middle - 0.5 * (before + after)).max() < 0.2 * np.abs(after - before).max()
 
 
+def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
+    player = keyed.space.key_player
+    player.put(0.8, player.animation.keys[0].positions)
+    for choice, count in ((Choice("APNG", fps=10), 8), (Choice("APNG", fps=10, loop=False), 9)):
+        remember(keyed.space, choice)
+        animating.export(keyed.space, tmp_path / "out.apng")
+        keyed.settle()
+        assert f"{count} frames" in keyed.space.notice
+    player.cut_to(end=0.4)
+    assert len(animating.chosen_times(keyed.space, Choice("APNG", fps=10))) == 5
+
+
 def test_background_and_size(keyed, tmp_path):
     remember(keyed.space, Choice("APNG", fps=5, size=40, opaque=True, background=(1.0, 0.0, 0.0)))
     animating.export(keyed.space, tmp_path / "out.apng")
@@ -108,12 +135,37 @@ def test_an_export_is_cancelled_and_leaves_no_file(keyed, tmp_path, monkeypatch)
     assert list(tmp_path.iterdir()) == []
 
 
-def one_step(task):
-    try:
-        task.progress = next(task.steps)
-    except StopIteration:
-        return True
-    return False
+def test_an_export_is_cancelled_while_all_of_it_is_encoded(keyed, tmp_path, monkeypatch):
+    at_work, go_on = Event(), Event()
+
+    def slow(*_):
+        at_work.set()
+        go_on.wait()
+        return b"late"
+
+    monkeypatch.setitem(_ENCODERS, ".webp", (slow, 16383))
+    animating.export(keyed.space, tmp_path / "out.webp")
+    while not at_work.is_set() or not keyed.space.task.progress.text.startswith("Writing"):
+        keyed.frame()
+    keyed.dialog("Exporting out.webp", "Cancel")
+    assert keyed.space.task is None
+    go_on.set()
+    for thread in enumerate_threads():
+        if thread.name.startswith("encoder"):
+            thread.join()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_where_a_picture_cannot_be_drawn_the_export_ends_with_one_sentence(keyed, tmp_path, monkeypatch):
+    def fails(*_):
+        raise InputError("no memory for a picture")
+
+    monkeypatch.setattr(keyed.space.exporter, "render", fails)
+    animating.export(keyed.space, tmp_path / "out.webp")
+    keyed.settle()
+    assert keyed.space.error == "no memory for a picture"
+    assert keyed.space.task is None
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_that_is_not_there_is_one_sentence(keyed, tmp_path):

@@ -7,9 +7,9 @@ import glfw
 import numpy as np
 import pytest
 
+from akap_editor.editor.bent import PIN_TOLERANCE
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.editor import PICK_RADIUS
-from akap_editor.editor.session import PIN_TOLERANCE
 from akap_editor.errors import SolverError
 
 Key = imgui.Key

@@ -4,7 +4,8 @@ from imgui_bundle import imgui  # isort: skip
 import pytest
 
 from akap_editor.app import commands, panels
-from akap_editor.app.commands import COMMANDS, CTRL, MENUS, SHIFT, Command, Key, chord_name
+from akap_editor.app.command import CTRL, SHIFT, Command, Key, chord_name
+from akap_editor.app.commands import COMMANDS, MENUS
 from akap_editor.deform.deformer import method_names
 from akap_editor.deform.variants import VARIANTS, variant_of
 from akap_editor.editor.camera import Camera

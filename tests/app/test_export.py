@@ -4,7 +4,7 @@ import numpy as np
 import pygltflib
 import pytest
 
-from akap_editor.app.commands import CTRL, Key
+from akap_editor.app.command import CTRL, Key
 from akap_editor.editor.framing import crop_box
 from akap_editor.io.export import FORMATS
 from akap_editor.io.images import read_image

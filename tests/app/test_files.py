@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from akap_editor.app.commands import CTRL, SHIFT, Key
+from akap_editor.app.command import CTRL, SHIFT, Key
 from akap_editor.app.requests import FileRequest
 from akap_editor.editor.document import make_drawing, new_document
 from akap_editor.io.documents import open_document

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from akap_editor.editor.replay import replay
@@ -33,7 +34,8 @@ def on_track(ui, time, y=28):
     ui.do(lambda hand: found.setdefault("rect", hand.item_info("//Timeline/##keys").rect_full))
     rect, player = found["rect"], ui.space.key_player
     left, width = rect.min.x + 8, rect.max.x - rect.min.x - 16
-    return round(left + width * time / player.view), round(rect.min.y + y)
+    view = player.view
+    return round(left + width * (time - view.start) / view.seconds), round(rect.min.y + y)
 
 
 def at_time(ui, time, share):
@@ -182,6 +184,23 @@ def test_a_pose_is_renamed_with_f2(keyed):
     assert keyed.session.history.labels[-1] == "Rename Up"
 
 
+def test_a_pose_is_renamed_with_a_double_click(keyed):
+    keyed.editor.keep_pose("Up")
+    keyed.settle()
+
+    def rename(hand):
+        hand.mouse_move("//Panel/pose Up")
+        picture = hand.item_info("//Panel/pose Up").rect_full
+        hand.mouse_move_to_pos(imgui.ImVec2(picture.min.x + 8, picture.max.y + 12))
+        hand.mouse_double_click(0)
+        hand.yield_(5)
+        hand.key_chars_replace_enter("Wave")
+
+    keyed.do(rename)
+    assert [pose.name for pose in keyed.session.present.poses] == ["Wave"]
+    assert keyed.space.renaming is None
+
+
 def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):
     player = keyed.space.key_player
     player.scrub(0.5)
@@ -226,6 +245,30 @@ def test_keyframes_are_saved_and_opened(keyed, tmp_path):
     assert save(again, tmp_path / "b.akap").path is not None
     assert (tmp_path / "a.akap").read_bytes() == (tmp_path / "b.akap").read_bytes()
     np.testing.assert_array_equal(again.state.positions, keyed.session.present.positions)
+    keyed.space.show_in_timeline("session")
+    keyed.space.show_timeline = False
+    keyed.space.show(again)
+    assert keyed.space.timeline == "keyframes"
+    assert keyed.space.show_timeline
+
+
+def test_the_wheel_zooms_in_on_a_time_and_keyframes_are_taken_there(keyed):
+    player = keyed.space.key_player
+    place = on_track(keyed, 1.0)
+    keyed.wheel(place, 4)
+    assert 0 < player.view.start < 1.0 < player.view.start + player.view.seconds < 2.0
+    assert np.abs(np.subtract(on_track(keyed, 1.0), place)).max() <= 1
+    keyed.drag(place, on_track(keyed, 0.85))
+    assert times(keyed) == (0.0, 0.85)
+    keyed.wheel(place, -20)
+    assert (player.view.start, player.view.seconds) == (0.0, 2.0)
+
+
+def test_looping_is_a_step_of_undo(keyed):
+    keyed.do(lambda hand: hand.item_click(f"//Timeline/{icons.ICON_FA_REPEAT}##loop"))
+    assert not keyed.session.present.animation.loop
+    keyed.editor.undo()
+    assert keyed.space.key_player.loop
 
 
 def test_without_the_timeline_the_present_is_seen(keyed):

@@ -3,7 +3,8 @@
 from imgui_bundle import imgui  # isort: skip
 import pytest
 
-from akap_editor.app.commands import COMMANDS, CTRL, MENUS, Key, Submenu
+from akap_editor.app.command import CTRL, Key, Submenu
+from akap_editor.app.commands import COMMANDS, MENUS
 from akap_editor.app.palette import Entry, entries, match, ranked
 
 ALT = Key.mod_alt

@@ -8,18 +8,6 @@ from akap_editor.editor.editor import Editor
 from akap_editor.geometry.distortion import distortion
 
 
-class Clock:
-    now = 100.0
-
-    def __call__(self):
-        return self.now
-
-
-@pytest.fixture
-def clock():
-    return Clock()
-
-
 @pytest.fixture
 def session(drawing):
     editor = Editor()

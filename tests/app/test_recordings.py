@@ -5,6 +5,8 @@ import numpy as np
 from akap_editor.editor.replay import replay
 from akap_editor.io.recordings import read_recording, recorded_drawing, write_recording
 
+from .driver import one_step
+
 
 def test_what_was_done_by_hand_is_saved_and_done_again_to_the_last_bit(ui, tmp_path):
     ui.space.folder = tmp_path
@@ -78,7 +80,7 @@ def test_opening_a_recording_is_stopped_half_way_or_cancelled(ui, tmp_path, monk
     session = recorded(ui, tmp_path)
     ui.editor.mark_saved(None)
     monkeypatch.setattr("akap_editor.app.tasks.SLICE", 0.0)
-    monkeypatch.setattr("akap_editor.app.tasks.Task.advance", one_event)
+    monkeypatch.setattr("akap_editor.app.tasks.Task.advance", one_step)
     ui.space.open_path(tmp_path / "wave.akaprec")
     for _ in range(12):
         ui.frame()
@@ -92,15 +94,6 @@ def test_opening_a_recording_is_stopped_half_way_or_cancelled(ui, tmp_path, monk
     ui.dialog("Opening wave.akaprec", "Stop here")
     assert ui.session is not session
     assert 0 < len(ui.session.recording.events) < len(session.recording.events)
-
-
-def one_event(task):
-    """One step of a task, so that there are frames between them."""
-    try:
-        task.progress = next(task.steps)
-    except StopIteration:
-        return True
-    return False
 
 
 def test_a_bad_recording_is_refused_with_its_line_and_nothing_is_lost(ui, tmp_path):

@@ -1,5 +1,7 @@
 """The timeline and the poses, by mouse."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from imgui_bundle import imgui
@@ -51,6 +53,21 @@ def test_the_head_is_taken_at_the_end_and_the_mark_below_it(bent):
     assert player.cut is None
     bent.drag(on_track(bent, 0.995, 0.85), on_track(bent, 0.7, 0.85))
     assert player.range == pytest.approx((0.0, 0.7 * player.duration), abs=0.05)
+
+
+def test_the_wheel_shows_a_part_of_the_time_where_the_head_goes_slower(bent):
+    player = bent.space.player
+    player.shots = [replace(shot, time=float(number)) for number, shot in enumerate(player.shots)]
+    bent.wheel(on_track(bent, 0.5), 5)
+    start, seconds = player.view.start, player.view.seconds
+    assert 0 < start < start + seconds < player.duration
+    bent.drag(on_track(bent, 0.5), on_track(bent, 0.4))
+    assert start < player.at < start + seconds
+    assert player.at == pytest.approx(start + 0.4 * seconds, abs=0.02 * seconds)
+    player.scrub(0.0)
+    assert player.view.start == 0.0
+    bent.wheel(on_track(bent, 0.5), -40)
+    assert not player.view.zoomed
 
 
 def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(bent):

@@ -9,7 +9,8 @@ import pytest
 
 from akap_editor import cli
 from akap_editor.app import hints, keys_overlay
-from akap_editor.app.commands import COMMANDS, CTRL, Key
+from akap_editor.app.command import CTRL, Key
+from akap_editor.app.commands import COMMANDS
 from akap_editor.app.preferences import Preferences
 from akap_editor.app.workspace import Workspace
 from akap_editor.errors import InputError

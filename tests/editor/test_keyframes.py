@@ -21,18 +21,6 @@ from .driver import bits
 END = (105.0, 40.0)
 
 
-class Clock:
-    now = 0.0
-
-    def __call__(self):
-        return self.now
-
-
-@pytest.fixture
-def clock():
-    return Clock()
-
-
 @pytest.fixture
 def player(pinned, clock):
     """Keyframes of the rest pose at 0, and of a bent one at 1 second."""
@@ -83,6 +71,7 @@ def test_every_edit_is_undone_redone_and_recorded(player, pinned, drawing):
         lambda: player.nudge(0.05),
         player.duplicate,
         lambda: player.ease("out"),
+        lambda: setattr(player, "loop", False),
         lambda: player.ease("in", general=True),
         lambda: player.set_time(1.0, 2.0),
         player.remove,
@@ -241,6 +230,7 @@ def test_bad_keyframes_are_named(drawing, make, message):
         '{"t": 99, "do": "key", "time": 0, "ease": "up"}',
         '{"t": 99, "do": "key", "time": 0, "positions": [[0, 0]]}',
         '{"t": 99, "do": "unkey", "times": 5}',
+        '{"t": 99, "do": "loop", "loop": 1}',
         '{"t": 99, "do": "rekey", "from": [0], "to": []}',
         '{"t": 99, "do": "ease", "times": null, "ease": null}',
         '{"t": 99, "do": "rename", "name": "a", "to": "b"}',

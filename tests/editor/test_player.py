@@ -13,18 +13,6 @@ from .driver import bits
 END = (105.0, 40.0)
 
 
-class Clock:
-    now = 0.0
-
-    def __call__(self):
-        return self.now
-
-
-@pytest.fixture
-def clock():
-    return Clock()
-
-
 @pytest.fixture
 def player(pinned, clock):
     """Has watched a drag, a shot every twentieth of a second after a long pause."""

@@ -3,8 +3,9 @@ import pytest
 
 from akap_editor.deform.akap import AkapDeformer
 from akap_editor.deform.deformer import method_names
+from akap_editor.editor.bent import PIN_TOLERANCE
 from akap_editor.editor.document import Settings, new_document
-from akap_editor.editor.session import PIN_TOLERANCE, Session
+from akap_editor.editor.session import Session
 from akap_editor.errors import InputError, SolverError
 
 from .driver import Ticks, bits

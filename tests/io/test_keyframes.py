@@ -20,7 +20,7 @@ def document(make_document, picture):
     first.flags.writeable = False
     start = Keyframe(0, first)
     keys = start, Keyframe(0.25, second, "hold"), Keyframe(1.5, start.positions)
-    return make_document(picture, animation=Animation(keys, "out"))
+    return make_document(picture, animation=Animation(keys, "out", loop=False))
 
 
 def index(**values):
@@ -32,6 +32,7 @@ def test_keyframes_come_back_bit_for_bit_and_share_their_poses(document, tmp_pat
     save(document, tmp_path / "a.akap")
     again, kept = load(tmp_path / "a.akap").state.animation, document.state.animation
     assert again.ease == "out"
+    assert not again.loop
     assert [(key.time, key.ease) for key in again.keys] == [(0, None), (0.25, "hold"), (1.5, None)]
     for key, old in zip(again.keys, kept.keys, strict=True):
         np.testing.assert_array_equal(key.positions, old.positions)
@@ -53,8 +54,11 @@ def test_a_reader_takes_the_defaults_of_what_is_missing(document, tmp_path):
     save(document, tmp_path / "a.akap")
     record = json.loads(index()["animation.json"])
     del record["ease"]
+    assert "loop" not in record
     changed(tmp_path / "a.akap", {"animation.json": json.dumps(record).encode()})
-    assert load(tmp_path / "a.akap").state.animation.ease == "in-out"
+    animation = load(tmp_path / "a.akap").state.animation
+    assert animation.ease == "in-out"
+    assert animation.loop
 
 
 @pytest.mark.parametrize(
@@ -70,6 +74,7 @@ def test_a_reader_takes_the_defaults_of_what_is_missing(document, tmp_path):
         (index(keyframes=[{"time": 1, "pose": 0, "ease": "up"}]), "ease: expected one of"),
         (index(ease="up"), "ease: expected one of"),
         (index(ease=1), "expected ease to be a text"),
+        (index(loop=1), "expected loop to be"),
         (index(poses=3), "poses to be a number from 0 to 2, got 3"),
         (index(poses=-1), "poses to be a number"),
         (index(keyframes=[{"time": k, "pose": 0} for k in range(10_001)]), "at most 10000 keyframes"),

@@ -1,0 +1,144 @@
+"""A drawing on its way: its state, what bends it, and how it comes to rest; without edits and history."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..deform.deformer import StepResult
+from ..errors import SolverError
+from ..geometry.checks import Floats
+from .angles import pin_angles, stopped
+from .bending import Bending
+from .document import Document, Drawing, EditState
+
+PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
+STILL = 0.02  # pixels: a step that moves no vertex farther has come to rest
+MOST_SETTLING = 400  # steps after the last change of a target, should a pose never come to rest
+ANGLE_TOLERANCE = 0.002  # radians: a pin turned more nearly than this has arrived
+
+
+class Bent:
+    """A document whose drawing follows its pins, `step` by step."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.last_step: StepResult | None = None
+        self.jumps = 0  # how often the pose has changed in another way than by steps
+        self._settling = 0
+        self._opened = document.drawing
+        self._bending = Bending(document.drawing.mesh, document.state)
+
+    # -- what is there -------------------------------------------------------------------------------------
+
+    @property
+    def state(self) -> EditState:
+        """The current state."""
+        return self.document.state
+
+    @property
+    def drawing(self) -> Drawing:
+        """The picture and its mesh."""
+        return self.document.drawing
+
+    @property
+    def posed(self) -> bool:
+        """Whether the drawing is anywhere but in its rest pose."""
+        return not np.array_equal(self.state.positions, self.drawing.mesh.vertices)
+
+    @property
+    def moving(self) -> bool:
+        """Whether pins are still on their way, or the drawing around them is."""
+        return self._settling > 0
+
+    def pin_positions(self) -> Floats:
+        """(k, 2): where the pins are now, as opposed to where they should be."""
+        return self.drawing.mesh.evaluate(self.state.points, self.state.positions)
+
+    @property
+    def near(self) -> bool:
+        """Whether pins are where they should be, as far as an eye can see it in motion."""
+        return self.pin_error() < 1.0 and self._bending.turn_error(self.state) < 0.05
+
+    def pin_error(self) -> float:
+        """Largest distance of a pin from where it should be, pixels."""
+        return float(np.linalg.norm(self._bending.off(self.state), axis=1).max(initial=0.0))
+
+    @property
+    def turns(self) -> bool:
+        """Whether the method lets pins hold angles."""
+        return self._bending.holds_angles
+
+    def pin_angle(self, pin_id: int) -> float:
+        """By how many radians the drawing around a pin is turned from rest now, in (−π, π]."""
+        pins = self.state.pins
+        angles = pin_angles(self.drawing.mesh, pins, self.state.positions, {pin_id})
+        return float(angles[[pin.id for pin in pins].index(pin_id)])
+
+    # -- motion --------------------------------------------------------------------------------------------
+
+    def step(self) -> StepResult:
+        """One step of the deformer towards the current targets. On SolverError the pose is as it was."""
+        before, off = self.state.positions, self._bending.off(self.state)
+        try:
+            result = self._bending.step(self.state)
+        except SolverError:
+            self._settling = 0
+            raise
+        if result.field is not None and np.linalg.norm(off, axis=1).max(initial=0.0) > PIN_TOLERANCE:
+            self._bending.last_way = before, off
+        self._set_state(replace(self.state, positions=result.positions))
+        moved = float(np.abs(result.positions - before).max())
+        arrived = self.pin_error() < PIN_TOLERANCE and self._bending.turn_error(self.state) < ANGLE_TOLERANCE
+        still = moved < (STILL if arrived else 0.1 * STILL)
+        self._settling = 0 if still else max(self._settling - 1, 0)
+        self.last_step = result
+        return result
+
+    def fields(self) -> tuple[Floats, Floats] | None:
+        """U_opt and U°, (n, 2) each, of the last step that moved pins; None for a method without fields."""
+        return self._bending.fields(len(self.state.pins))
+
+    @property
+    def last_way(self) -> tuple[Floats, Floats] | None:
+        """Of the last step that moved pins: the pose before, (n, 2), and velocities of the pins, (k, 2)."""
+        return self._bending.last_way
+
+    def settle(self) -> None:
+        """Step until the pose has come to rest."""
+        while self.moving:
+            self.step()
+
+    def halt(self) -> None:
+        """Leave the pose as it is, though pins may be on their way."""
+        self._settling = 0
+
+    # -- inside --------------------------------------------------------------------------------------------
+
+    def _bend_by(self, state: EditState) -> None:
+        """Take over a state that bends differently; nothing has changed where that is not possible."""
+        self._bending = Bending(self.drawing.mesh, state)
+        self._set_state(state)
+        self._settling = 0
+
+    def _begin_settling(self) -> None:
+        self._settling = MOST_SETTLING + int(self._bending.steps_left(self.state))
+
+    def _put(self, pose: Floats) -> None:
+        self.jumps += 1
+        pins = stopped(self.drawing.mesh, self.state.pins, pose)
+        self._set_state(replace(self.state, pins=pins, positions=pose))
+        self._settling = 0
+
+    def _set_state(self, state: EditState) -> None:
+        self.document = replace(self.document.with_state(state), drawing=state.drawing or self._opened)
+
+    def _restore(self, state: EditState) -> None:
+        self.jumps += 1
+        self._set_state(state)
+        if self._bending.fits(self.drawing.mesh, state):
+            self._bending.last_way = None
+            self._bending.turns.forget()
+            self._bending.deformer.set_pins(state.points)
+        else:
+            self._bending = Bending(self.drawing.mesh, state)
+        self._settling = 0
