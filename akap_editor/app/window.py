@@ -21,7 +21,7 @@ from ..errors import AkapError, DisplayError, GraphicsError
 from ..io.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from ..render.renderer import CANVAS, Background, Renderer
-from . import commands, palette, panels, split_view, theme
+from . import commands, key_order, palette, panels, split_view, theme
 from .canvas import Canvas
 from .dialogs import Dialogs, has_native_dialogs
 from .overlays import draw_legend
@@ -88,7 +88,8 @@ class Window:
         self.ctx = moderngl.create_context(require=330)
         self.renderer = Renderer(self.ctx)
         self.space.exporter = OffscreenRenderer(self.ctx)
-        # Callbacks only queue: an exception in one would come out of poll_events. ImGui uses none of these.
+        # Callbacks only queue: an exception in one would come out of poll_events. ImGui calls those it needs.
+        glfw.set_key_callback(self._handle, key_order.on_key)
         glfw.set_drop_callback(self._handle, self._on_drop)  # type: ignore[arg-type]  # its stub is wrong
         glfw.set_window_refresh_callback(self._handle, lambda _: self._refresh())
         glfw.set_window_content_scale_callback(self._handle, lambda *_: self._apply_scale())
