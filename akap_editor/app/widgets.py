@@ -196,6 +196,13 @@ def escape() -> bool:
 
 
 def enter() -> bool:
+    """Whether an Enter key was pressed, and not to use the button that the keyboard is at."""
+    io = imgui.get_io()
+    at_item = io.nav_visible and imgui.is_any_item_focused() and not io.want_text_input
+    return not at_item and enter_pressed()
+
+
+def enter_pressed() -> bool:
     """Whether one of the Enter keys was pressed."""
     keys = (imgui.Key.enter, imgui.Key.keypad_enter)
     return any(imgui.is_key_pressed(key, False) for key in keys)

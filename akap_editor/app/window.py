@@ -153,8 +153,10 @@ class Window:
         else:
             self._remember()
             self._sleep()
-        # ImGui takes some events one per frame, and panels show the pose of the frame before
-        if imgui.get_current_context().input_events_queue.size() or self.space.moving:
+        # ImGui takes some events one per frame and fades, and panels show the pose of the frame before
+        context = imgui.get_current_context()
+        fading = 0 < context.dim_bg_ratio < 1
+        if context.input_events_queue.size() or fading or self.space.moving:
             self.wake()
         if self._busy:
             self._awake -= 1
