@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from ..editor.editor import ARROWS, HELD_KEYS
+from ..editor.editor import ARROWS, FRAME_BUDGET, HELD_KEYS
 from ..editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
 from ..editor.tool_turning import PointingRing, TurningPin, hovered_ring
 from ..editor.tools import DraggingPin, Idle, PointingPin, RubberBand
@@ -146,6 +146,15 @@ class Canvas:
             draw.add_rect_filled(low, high, packed(ACCENT, 0.12))
             draw.add_rect(low, high, packed(ACCENT, 0.9))
         draw.pop_clip_rect()
+
+
+def panels_first(space: Workspace) -> bool:
+    """Whether a menu or panel got input in this frame, to be answered before a step that takes long."""
+    session, context, io = space.editor.session, imgui.get_current_context(), imgui.get_io()
+    if session is None or session.last_step is None or session.last_step.report.seconds < FRAME_BUDGET:
+        return False
+    news = context.input_events_trail.size() + context.input_events_queue.size() > 0
+    return news and (io.want_capture_mouse or io.want_text_input)
 
 
 def _draw_label(draw: imgui.ImDrawList, place: tuple[float, float], text: str, scale: float) -> None:
