@@ -84,6 +84,7 @@ class Canvas:
             return
         if imgui.is_key_pressed(imgui.Key.escape, False):
             editor.handle_event(KeyEvent("escape"))
+            imgui.set_window_focus(None)  # from a panel that was walked into
         # a panel that was clicked must not take the arrows away; one that is walked through with keys does
         if imgui.is_mouse_released(0) and not io.nav_visible and not imgui.is_any_item_active():
             imgui.set_window_focus(None)
@@ -146,6 +147,20 @@ class Canvas:
             draw.add_rect_filled(low, high, packed(ACCENT, 0.12))
             draw.add_rect(low, high, packed(ACCENT, 0.9))
         draw.pop_clip_rect()
+
+
+def give_keys_to_panels(space: Workspace) -> None:
+    """With Tab to the side panel or the start page, with Shift+Tab to the tools; before these are drawn."""
+    context, io = imgui.get_current_context(), imgui.get_io()
+    taken = io.want_text_input or io.nav_visible or imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
+    if taken or io.key_ctrl or io.key_alt or not imgui.is_key_pressed(imgui.Key.tab, False):
+        return
+    name = "Start" if space.document is None else "Tools" if io.key_shift else "Panel"
+    window = imgui.internal.find_window_by_name(name)
+    if window is not None and (context.nav_window is None or context.nav_window.name != name):
+        imgui.internal.focus_window(window)
+        imgui.internal.nav_init_window(window, True)
+        imgui.set_nav_cursor_visible(True)
 
 
 def panels_first(space: Workspace) -> bool:

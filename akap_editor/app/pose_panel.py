@@ -80,7 +80,7 @@ def _pose(space: Workspace, pose: NamedPose, scale: float) -> None:
     corner, side = imgui.get_cursor_screen_pos(), round(_SIDE * scale)
     drawer = imgui.get_window_draw_list()
     imgui.begin_group()
-    if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side)):
+    if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side), imgui.ButtonFlags_.enable_nav):
         space.notice = ""
         space.attempt(lambda: space.editor.set_pose(pose.positions, f"Apply {pose.name}"))
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()

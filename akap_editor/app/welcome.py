@@ -19,6 +19,7 @@ _WINDOW = (
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_bring_to_front_on_focus
 ) & ~imgui.WindowFlags_.no_scrollbar
+_BY_KEYS = imgui.ButtonFlags_.enable_nav
 _WIDTH = 720  # of the column in the middle, in design points, as all sizes here
 _DROP_HEIGHT = 132
 _GAP = 12
@@ -69,7 +70,7 @@ class Welcome:
         for path in paths:
             corner = imgui.get_cursor_screen_pos()
             name_height = imgui.get_text_line_height() + 8 * scale
-            if imgui.invisible_button(path.stem, ImVec2(side, side + name_height)):
+            if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BY_KEYS):
                 space.open_path(path)
             hovered = imgui.is_item_hovered() or imgui.is_item_focused()
             end = ImVec2(corner.x + side, corner.y + side)
@@ -118,7 +119,7 @@ def _heading(title: str) -> None:
 
 def _drop_zone(space: Workspace, scale: float, column: float) -> None:
     corner, height = imgui.get_cursor_screen_pos(), _DROP_HEIGHT * scale
-    if imgui.invisible_button("Drop a picture here", ImVec2(column, height)):
+    if imgui.invisible_button("Drop a picture here", ImVec2(column, height), _BY_KEYS):
         widgets.run(space, commands.OPEN)
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
     if imgui.is_item_hovered():

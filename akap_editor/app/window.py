@@ -22,7 +22,7 @@ from ..io.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from ..render.renderer import CANVAS, Background, Renderer
 from . import commands, key_order, palette, panels, split_view, theme
-from .canvas import Canvas, panels_first
+from .canvas import Canvas, give_keys_to_panels, panels_first
 from .dialogs import Dialogs, has_native_dialogs
 from .overlays import draw_legend
 from .preferences import Preferences
@@ -239,6 +239,7 @@ class Window:
         self._watch_focus()
         while self._dropped:
             space.open_dropped(self._dropped.pop(0))
+        give_keys_to_panels(space)
         modal = _popup_is_open()  # before as well as after: the key that closes one must not do more
         space.editor.canvas = split_view.draw(space, panels.draw(space, self.scale), self.scale)
         if space.document is None:
