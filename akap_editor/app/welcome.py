@@ -71,7 +71,7 @@ class Welcome:
             corner = imgui.get_cursor_screen_pos()
             name_height = imgui.get_text_line_height() + 8 * scale
             if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BY_KEYS):
-                space.open_path(path)
+                _open(space, path)
             hovered = imgui.is_item_hovered() or imgui.is_item_focused()
             end = ImVec2(corner.x + side, corner.y + side)
             draw.add_rect_filled(corner, end, packed(HOVER if hovered else PANEL), 8 * scale)
@@ -99,6 +99,13 @@ class Welcome:
             texture = self._ctx.texture(picture.size, 4, picture.tobytes(), alignment=1)
             self._textures[path, pixels] = texture
         return self._textures[path, pixels]
+
+
+def _open(space: Workspace, path: Path) -> None:
+    """Open a file; keys belong to the canvas then."""
+    space.open_path(path)
+    imgui.set_window_focus(None)
+    imgui.set_nav_cursor_visible(False)
 
 
 def _title() -> None:
@@ -173,7 +180,7 @@ def _recent(space: Workspace, column: float) -> None:
     for index, path in enumerate(files[: max(room, 3)]):
         name = widgets.shortened(path.name, 0.4 * column)
         if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
-            space.open_path(path)
+            _open(space, path)
         widgets.explain(str(path))
         folder = widgets.shortened(str(path.parent), 0.55 * column, end=True)
         room_left = imgui.get_content_region_avail().x

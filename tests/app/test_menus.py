@@ -237,3 +237,4 @@ def test_a_drawing_is_opened_from_the_start_page_by_keys(pinned):
     pinned.key(Key.tab, Key.down_arrow, Key.enter)
     pinned.settle()
     assert pinned.document.drawing.name in [path.stem for path in bundled_drawings()]
+    assert not imgui.get_io().nav_visible, "keys belong to the drawing"
