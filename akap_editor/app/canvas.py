@@ -11,6 +11,7 @@ from .pin_popup import PinPopup
 from .theme import ACCENT, DARK, packed
 from .workspace import Workspace
 
+ANSWER_FRAMES = 3  # in which what was clicked is seen: ImGui measures a menu before it shows it
 _BUTTONS: tuple[Button, ...] = ("left", "right", "middle")  # in ImGui's order
 _ARROW_KEYS = {name: imgui.Key[f"{name}_arrow"] for name in ARROWS}
 _HOLDING = (PointingPin, DraggingPin, PointingRing, TurningPin)  # tools
@@ -27,6 +28,7 @@ class Canvas:
         self._last = (0.0, 0.0)
         self._taking = False  # whether the gesture is recorded as a take
         self._popup = PinPopup()
+        self._answering = 0  # frames that menus and panels still need
 
     def read_input(self, space: Workspace) -> None:
         """Pass this frame's pointer and keys on, unless a panel wants them."""
@@ -91,6 +93,16 @@ class Canvas:
         for name, key in _ARROW_KEYS.items():
             if imgui.is_key_pressed(key) and not io.nav_visible:
                 editor.handle_event(KeyEvent(name, shift=io.key_shift))
+
+    def panels_first(self, space: Workspace) -> bool:
+        """Whether menus and panels are still answering to input, and a step that takes long has to wait."""
+        context, io = imgui.get_current_context(), imgui.get_io()
+        news = context.input_events_trail.size() > 0 and (io.want_capture_mouse or io.want_text_input)
+        self._answering = ANSWER_FRAMES if news else max(self._answering - 1, 0)
+        session = space.editor.session
+        if session is None or session.last_step is None or session.last_step.report.seconds < FRAME_BUDGET:
+            return False
+        return self._answering > 0 or context.input_events_queue.size() > 0
 
     def draw_popup(self, space: Workspace, scale: float) -> None:
         """The menu or the values of a pin, if asked for."""
@@ -161,15 +173,6 @@ def give_keys_to_panels(space: Workspace) -> None:
         imgui.internal.focus_window(window)
         imgui.internal.nav_init_window(window, True)
         imgui.set_nav_cursor_visible(True)
-
-
-def panels_first(space: Workspace) -> bool:
-    """Whether a menu or panel got input in this frame, to be answered before a step that takes long."""
-    session, context, io = space.editor.session, imgui.get_current_context(), imgui.get_io()
-    if session is None or session.last_step is None or session.last_step.report.seconds < FRAME_BUDGET:
-        return False
-    news = context.input_events_trail.size() + context.input_events_queue.size() > 0
-    return news and (io.want_capture_mouse or io.want_text_input)
 
 
 def _draw_label(draw: imgui.ImDrawList, place: tuple[float, float], text: str, scale: float) -> None:

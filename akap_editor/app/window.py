@@ -22,7 +22,7 @@ from ..io.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from ..render.renderer import CANVAS, Background, Renderer
 from . import commands, key_order, palette, panels, split_view, theme
-from .canvas import Canvas, give_keys_to_panels, panels_first
+from .canvas import Canvas, give_keys_to_panels
 from .dialogs import Dialogs, has_native_dialogs
 from .overlays import draw_legend
 from .preferences import Preferences
@@ -255,7 +255,7 @@ class Window:
         else:
             self._canvas.read_input(space)
             self._canvas.choose_cursor(space)
-        if not panels_first(space):
+        if not self._canvas.panels_first(space):
             space.editor.advance()
         self._canvas.draw_overlay(space, self.scale)
         draw_legend(space.view, space.editor, self.scale)

@@ -9,6 +9,7 @@ import pytest
 
 from akap_editor.app import canvas as canvas_module
 from akap_editor.app import window as window_module
+from akap_editor.app.canvas import ANSWER_FRAMES
 from akap_editor.editor.editor import FRAME_BUDGET
 
 
@@ -85,7 +86,7 @@ def test_a_frame_stops_stepping_when_its_time_is_over(pinned, monkeypatch):
 
 
 def test_panels_answer_before_a_slow_step(pinned, monkeypatch):
-    """In frames that see the pointer move over a panel, nothing bends; in those without news, it does."""
+    """While a panel answers to the pointer's move, nothing bends; then it goes on."""
     steps, seen, step = [], [], pinned.session.step
     monkeypatch.setattr(canvas_module, "FRAME_BUDGET", 0.0)
     monkeypatch.setattr(pinned.session, "step", lambda: (steps.append(1), step())[1])
@@ -100,14 +101,15 @@ def test_panels_answer_before_a_slow_step(pinned, monkeypatch):
         hand.yield_()
         pinned.window.after_draw.append(lambda: seen.append((imgui.get_io().mouse_pos.y, len(steps))))
         hand.mouse_teleport_to_pos(imgui.ImVec2(20, 410))
-        hand.yield_(2)
+        hand.yield_(ANSWER_FRAMES)
 
     pinned.do(act)
     pinned.window.after_draw.clear()
     first = next(i for i, (y, _) in enumerate(seen) if y == 410)
+    last = first + ANSWER_FRAMES - 1
     assert steps
-    assert seen[first][1] == seen[first - 1][1]
-    assert seen[first + 1][1] == seen[first][1] + 1
+    assert seen[first - 1][1] == seen[last][1]
+    assert seen[last + 1][1] == seen[last][1] + 1
 
 
 @pytest.mark.parametrize("press", ["wheel", "key"])
