@@ -19,8 +19,8 @@ HEAD = """# Keys and mouse
 ![The command palette with the letters "sho" typed](images/palette.png)
 
 Menus open with `F10`, or `Alt` and their first letter; arrows walk through them, `Enter` takes a line, `Esc`
-leaves. In panels and dialogs, `Tab` and the arrows move from one thing to the next, `Enter` uses it, `Esc`
-gives the keys back to the drawing.
+leaves. `Tab` goes from the drawing to the side panel, `Shift+Tab` to the tools. There and in dialogs, `Tab`
+and the arrows move from one thing to the next, `Enter` uses it, `Esc` gives the keys back to the drawing.
 
 This page is written by `tools/make_shortcuts.py`.
 """

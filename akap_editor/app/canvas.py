@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from ..editor.editor import ARROWS, HELD_KEYS
+from ..editor.editor import ARROWS, FRAME_BUDGET, HELD_KEYS
 from ..editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
 from ..editor.tool_turning import PointingRing, TurningPin, hovered_ring
 from ..editor.tools import DraggingPin, Idle, PointingPin, RubberBand
@@ -11,6 +11,7 @@ from .pin_popup import PinPopup
 from .theme import ACCENT, DARK, packed
 from .workspace import Workspace
 
+ANSWER_FRAMES = 3  # in which what was clicked is seen: ImGui measures a menu before it shows it
 _BUTTONS: tuple[Button, ...] = ("left", "right", "middle")  # in ImGui's order
 _ARROW_KEYS = {name: imgui.Key[f"{name}_arrow"] for name in ARROWS}
 _HOLDING = (PointingPin, DraggingPin, PointingRing, TurningPin)  # tools
@@ -27,6 +28,7 @@ class Canvas:
         self._last = (0.0, 0.0)
         self._taking = False  # whether the gesture is recorded as a take
         self._popup = PinPopup()
+        self._answering = 0  # frames that menus and panels still need
 
     def read_input(self, space: Workspace) -> None:
         """Pass this frame's pointer and keys on, unless a panel wants them."""
@@ -84,12 +86,23 @@ class Canvas:
             return
         if imgui.is_key_pressed(imgui.Key.escape, False):
             editor.handle_event(KeyEvent("escape"))
+            imgui.set_window_focus(None)  # from a panel that was walked into
         # a panel that was clicked must not take the arrows away; one that is walked through with keys does
         if imgui.is_mouse_released(0) and not io.nav_visible and not imgui.is_any_item_active():
             imgui.set_window_focus(None)
         for name, key in _ARROW_KEYS.items():
             if imgui.is_key_pressed(key) and not io.nav_visible:
                 editor.handle_event(KeyEvent(name, shift=io.key_shift))
+
+    def panels_first(self, space: Workspace) -> bool:
+        """Whether menus and panels are still answering to input, and a step that takes long has to wait."""
+        context, io = imgui.get_current_context(), imgui.get_io()
+        news = context.input_events_trail.size() > 0 and (io.want_capture_mouse or io.want_text_input)
+        self._answering = ANSWER_FRAMES if news else max(self._answering - 1, 0)
+        session = space.editor.session
+        if session is None or session.last_step is None or session.last_step.report.seconds < FRAME_BUDGET:
+            return False
+        return self._answering > 0 or context.input_events_queue.size() > 0
 
     def draw_popup(self, space: Workspace, scale: float) -> None:
         """The menu or the values of a pin, if asked for."""
@@ -146,6 +159,20 @@ class Canvas:
             draw.add_rect_filled(low, high, packed(ACCENT, 0.12))
             draw.add_rect(low, high, packed(ACCENT, 0.9))
         draw.pop_clip_rect()
+
+
+def give_keys_to_panels(space: Workspace) -> None:
+    """With Tab to the side panel or the start page, with Shift+Tab to the tools; before these are drawn."""
+    context, io = imgui.get_current_context(), imgui.get_io()
+    taken = io.want_text_input or io.nav_visible or imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
+    if taken or io.key_ctrl or io.key_alt or not imgui.is_key_pressed(imgui.Key.tab, False):
+        return
+    name = "Start" if space.document is None else "Tools" if io.key_shift else "Panel"
+    window = imgui.internal.find_window_by_name(name)
+    if window is not None and (context.nav_window is None or context.nav_window.name != name):
+        imgui.internal.focus_window(window)
+        imgui.internal.nav_init_window(window, True)
+        imgui.set_nav_cursor_visible(True)
 
 
 def _draw_label(draw: imgui.ImDrawList, place: tuple[float, float], text: str, scale: float) -> None:

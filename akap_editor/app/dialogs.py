@@ -154,20 +154,19 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
 
 
 def _list_entries(request: FileRequest, scale: float) -> bool:
-    """The folder's content; whether a file was double-clicked."""
+    """The folder's content; whether a file was taken, by a double click or Enter. A folder is opened then."""
     chosen = False
+    taken = imgui.is_mouse_double_clicked(0) or widgets.enter_pressed()
     height = min(260 * scale, imgui.get_main_viewport().size.y - 220 * scale)
     imgui.begin_child("##entries", ImVec2(520 * scale, height), imgui.ChildFlags_.borders)
     for name, is_folder in request.entries():
         icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
         flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups
         if imgui.selectable(f"{icon}  {name}", name == request.name, flags)[0]:
-            if is_folder:
-                if imgui.is_mouse_double_clicked(0):
-                    request.folder /= name
-            else:
-                request.name = name
-                chosen = bool(imgui.is_mouse_double_clicked(0))
+            if not is_folder:
+                request.name, chosen = name, taken
+            elif taken:
+                request.folder /= name
     imgui.end_child()
     return chosen
 

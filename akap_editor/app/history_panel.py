@@ -1,7 +1,8 @@
 """The list of steps, to click through."""
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec4, imgui
 
+from . import widgets
 from .theme import QUIET
 from .workspace import Workspace
 
@@ -14,8 +15,7 @@ def draw(space: Workspace, scale: float) -> None:
     session = space.editor.session
     assert session is not None
     depth, names = session.history.depth, [_START, *session.history.labels]
-    line = imgui.get_text_line_height_with_spacing()
-    imgui.begin_child("##history", ImVec2(0, min(len(names), _ROWS) * line + 6 * scale))
+    widgets.begin_list("##history", len(names), _ROWS)
     for index, name in enumerate(names):
         if index > depth:
             imgui.push_style_color(imgui.Col_.text, ImVec4(*QUIET))

@@ -23,8 +23,8 @@ from .theme import DARK, QUIET, TEXT, packed
 
 Measure = Literal["area", "angle"]
 
-GREEN, BLUE = (0.30, 0.85, 0.45, 1.0), (0.30, 0.55, 1.0, 1.0)  # U_opt and U° as in the paper's Fig. 4
-TRAIL = (1.0, 0.71, 0.23, 1.0)
+GREEN, BLUE = (0.35, 0.95, 0.45, 1.0), (0.30, 0.55, 1.0, 1.0)  # U_opt and U° as in the paper's Fig. 4
+TRAIL = (0.95, 0.95, 0.95, 1.0)
 RANGES = (1.1, 1.25, 1.5, 2.0, 4.0)  # at the ends of the distortion scale
 STIFF = (0.62, 0.36, 1.0)  # of parts that bend less, while the brush is at hand
 GHOST, REFERENCE = 0.3, 0.5  # opacity

@@ -116,7 +116,7 @@ def draw(space: Workspace, scale: float) -> None:
     chosen = 0 if changed else palette.chosen + sum(steps)
     palette.chosen = max(0, min(chosen, len(found) - 1))
     picked = _list(found, palette.chosen, is_new or changed or bool(steps), scale)
-    if found and widgets.enter() and not is_new:
+    if found and widgets.enter_pressed() and not is_new:
         picked = found[palette.chosen][0]
     if picked is not None and not picked.enabled:
         picked = None

@@ -98,6 +98,8 @@ def _values(space: Workspace, pin: Pin, scale: float) -> None:
     widgets.explain("Where limbs cross, the higher number passes in front.")
     _angle(space, pin)
     imgui.pop_item_width()
+    if widgets.escape():  # ImGui would only leave the field
+        widgets.close_popup()
     if depth is not None:
         space.attempt(lambda: space.editor.set_depth(pin.id, depth))
     if new_x is not None or new_y is not None:

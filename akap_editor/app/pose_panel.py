@@ -1,5 +1,6 @@
 """The side panel's poses: kept by name, applied with a click, and mixed."""
 
+from collections.abc import Sequence
 from weakref import WeakKeyDictionary
 
 import moderngl
@@ -14,7 +15,7 @@ from .theme import ACCENT, FRAME, HOVER, QUIET, packed
 from .workspace import Workspace
 
 _SIDE = 66  # of a thumbnail, in design points
-_COLUMNS = 3
+_COLUMNS, _ROWS = 3, 4  # of thumbnails that are seen at once
 
 
 class Thumbnails:
@@ -51,10 +52,7 @@ def draw(space: Workspace, scale: float) -> None:
     poses = space.document.state.poses
     if not poses:
         widgets.quiet("None yet. Keep a pose here to come back to it with a click.")
-    for number, pose in enumerate(poses):
-        if number % _COLUMNS:
-            imgui.same_line(0, 6 * scale)
-        _pose(space, pose, scale)
+    _all_poses(space, poses, scale)
     if imgui.button(f"{icons.ICON_FA_PLUS}  Keep this pose", ImVec2(-1, 0)):
         space.notice = ""
         space.attempt(space.editor.keep_pose)
@@ -62,12 +60,27 @@ def draw(space: Workspace, scale: float) -> None:
         _mixer(space, scale)
 
 
+def _all_poses(space: Workspace, poses: Sequence[NamedPose], scale: float) -> None:
+    """The thumbnails in rows; where there are many, the rest are to be scrolled to."""
+    scrolls = len(poses) > _COLUMNS * _ROWS
+    if scrolls:
+        gaps = 2 * imgui.get_style().item_spacing.y
+        row = round(_SIDE * scale) + 0.86 * imgui.get_text_line_height() + gaps
+        imgui.begin_child("##poses", ImVec2(0, (_ROWS + 0.5) * row))  # half a row says that there are more
+    for number, pose in enumerate(poses):
+        if number % _COLUMNS:
+            imgui.same_line(0, 6 * scale)
+        _pose(space, pose, scale)
+    if scrolls:
+        imgui.end_child()
+
+
 def _pose(space: Workspace, pose: NamedPose, scale: float) -> None:
     """A thumbnail: a click applies it, a right click asks what else."""
     corner, side = imgui.get_cursor_screen_pos(), round(_SIDE * scale)
     drawer = imgui.get_window_draw_list()
     imgui.begin_group()
-    if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side)):
+    if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side), imgui.ButtonFlags_.enable_nav):
         space.notice = ""
         space.attempt(lambda: space.editor.set_pose(pose.positions, f"Apply {pose.name}"))
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()

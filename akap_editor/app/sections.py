@@ -32,8 +32,7 @@ def pins(space: Workspace, scale: float) -> None:
     if not state.pins:
         widgets.quiet("None yet. Click on the drawing where it should hold still.")
         return
-    line = imgui.get_text_line_height_with_spacing()
-    imgui.begin_child("##pins", ImVec2(0, min(len(state.pins), 6) * line))
+    widgets.begin_list("##pins", len(state.pins), 6)
     for pin in state.pins:
         label = f"  Pin {pin.id}##pin"
         chosen = pin.id in editor.selection

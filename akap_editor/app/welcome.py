@@ -19,6 +19,7 @@ _WINDOW = (
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_bring_to_front_on_focus
 ) & ~imgui.WindowFlags_.no_scrollbar
+_BY_KEYS = imgui.ButtonFlags_.enable_nav
 _WIDTH = 720  # of the column in the middle, in design points, as all sizes here
 _DROP_HEIGHT = 132
 _GAP = 12
@@ -69,8 +70,8 @@ class Welcome:
         for path in paths:
             corner = imgui.get_cursor_screen_pos()
             name_height = imgui.get_text_line_height() + 8 * scale
-            if imgui.invisible_button(path.stem, ImVec2(side, side + name_height)):
-                space.open_path(path)
+            if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BY_KEYS):
+                _open(space, path)
             hovered = imgui.is_item_hovered() or imgui.is_item_focused()
             end = ImVec2(corner.x + side, corner.y + side)
             draw.add_rect_filled(corner, end, packed(HOVER if hovered else PANEL), 8 * scale)
@@ -100,6 +101,13 @@ class Welcome:
         return self._textures[path, pixels]
 
 
+def _open(space: Workspace, path: Path) -> None:
+    """Open a file; keys belong to the canvas then."""
+    space.open_path(path)
+    imgui.set_window_focus(None)
+    imgui.set_nav_cursor_visible(False)
+
+
 def _title() -> None:
     imgui.push_font(None, imgui.get_style().font_size_base * 2.0)
     imgui.text("akap-editor")
@@ -118,7 +126,7 @@ def _heading(title: str) -> None:
 
 def _drop_zone(space: Workspace, scale: float, column: float) -> None:
     corner, height = imgui.get_cursor_screen_pos(), _DROP_HEIGHT * scale
-    if imgui.invisible_button("Drop a picture here", ImVec2(column, height)):
+    if imgui.invisible_button("Drop a picture here", ImVec2(column, height), _BY_KEYS):
         widgets.run(space, commands.OPEN)
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
     if imgui.is_item_hovered():
@@ -172,7 +180,7 @@ def _recent(space: Workspace, column: float) -> None:
     for index, path in enumerate(files[: max(room, 3)]):
         name = widgets.shortened(path.name, 0.4 * column)
         if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
-            space.open_path(path)
+            _open(space, path)
         widgets.explain(str(path))
         folder = widgets.shortened(str(path.parent), 0.55 * column, end=True)
         room_left = imgui.get_content_region_avail().x

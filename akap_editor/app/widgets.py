@@ -96,6 +96,13 @@ def _cut(text: str, count: int, end: bool) -> str:
     return f"…{text[len(text) - count :]}" if end else f"{text[:count].rstrip()}…"
 
 
+def begin_list(name: str, count: int, most: int) -> None:
+    """As high as its rows, or as ``most`` of them, to be scrolled; `imgui.end_child` must follow."""
+    imgui.begin_child(name, ImVec2(0, min(count, most) * imgui.get_text_line_height_with_spacing()))
+    # what marks a row reaches half the space between rows beyond its text, above the first one, too
+    imgui.set_cursor_pos_y(0.5 * imgui.get_style().item_spacing.y)
+
+
 def quiet(text: str) -> None:
     """A quiet sentence, wrapped at the panel's edge."""
     imgui.push_text_wrap_pos(0.0)
@@ -189,6 +196,13 @@ def escape() -> bool:
 
 
 def enter() -> bool:
+    """Whether an Enter key was pressed, and not to use the button that the keyboard is at."""
+    io = imgui.get_io()
+    at_item = io.nav_visible and imgui.is_any_item_focused() and not io.want_text_input
+    return not at_item and enter_pressed()
+
+
+def enter_pressed() -> bool:
     """Whether one of the Enter keys was pressed."""
     keys = (imgui.Key.enter, imgui.Key.keypad_enter)
     return any(imgui.is_key_pressed(key, False) for key in keys)

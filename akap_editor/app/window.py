@@ -21,8 +21,8 @@ from ..errors import AkapError, DisplayError, GraphicsError
 from ..io.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from ..render.renderer import CANVAS, Background, Renderer
-from . import commands, palette, panels, split_view, theme
-from .canvas import Canvas
+from . import commands, key_order, palette, panels, split_view, theme
+from .canvas import Canvas, give_keys_to_panels
 from .dialogs import Dialogs, has_native_dialogs
 from .overlays import draw_legend
 from .preferences import Preferences
@@ -88,7 +88,8 @@ class Window:
         self.ctx = moderngl.create_context(require=330)
         self.renderer = Renderer(self.ctx)
         self.space.exporter = OffscreenRenderer(self.ctx)
-        # Callbacks only queue: an exception in one would come out of poll_events. ImGui uses none of these.
+        # Callbacks only queue: an exception in one would come out of poll_events. ImGui calls those it needs.
+        glfw.set_key_callback(self._handle, key_order.on_key)
         glfw.set_drop_callback(self._handle, self._on_drop)  # type: ignore[arg-type]  # its stub is wrong
         glfw.set_window_refresh_callback(self._handle, lambda _: self._refresh())
         glfw.set_window_content_scale_callback(self._handle, lambda *_: self._apply_scale())
@@ -152,8 +153,10 @@ class Window:
         else:
             self._remember()
             self._sleep()
-        # ImGui takes some events one per frame, and panels show the pose of the frame before
-        if imgui.get_current_context().input_events_queue.size() or self.space.moving:
+        # ImGui takes some events one per frame and fades, and panels show the pose of the frame before
+        context = imgui.get_current_context()
+        fading = 0 < context.dim_bg_ratio < 1
+        if context.input_events_queue.size() or fading or self.space.moving:
             self.wake()
         if self._busy:
             self._awake -= 1
@@ -236,6 +239,7 @@ class Window:
         self._watch_focus()
         while self._dropped:
             space.open_dropped(self._dropped.pop(0))
+        give_keys_to_panels(space)
         modal = _popup_is_open()  # before as well as after: the key that closes one must not do more
         space.editor.canvas = split_view.draw(space, panels.draw(space, self.scale), self.scale)
         if space.document is None:
@@ -251,7 +255,8 @@ class Window:
         else:
             self._canvas.read_input(space)
             self._canvas.choose_cursor(space)
-        space.editor.advance()
+        if not self._canvas.panels_first(space):
+            space.editor.advance()
         self._canvas.draw_overlay(space, self.scale)
         draw_legend(space.view, space.editor, self.scale)
 

@@ -180,12 +180,20 @@ class TriMesh:
     def _pose(self, positions: ArrayLike | None) -> Floats:
         return self.vertices if positions is None else as_points(positions, "positions", len(self.vertices))
 
+    @cached_property
+    def _corners(self) -> Ints:
+        """(3, m) the faces again, as numpy looks things up fastest."""
+        return np.ascontiguousarray(self.faces.T, dtype=np.intp)
+
     def _find(self, point: Floats, pose: Floats, order: Ints | None = None) -> MeshPoints | None:
-        corners = pose[self.faces]
         margin = _ROUNDING * np.abs(point).max()
-        near = (corners.min(axis=1) <= point + margin) & (corners.max(axis=1) >= point - margin)
-        inside = np.flatnonzero(near.all(axis=1))
-        weights = barycentric(corners[inside], point)
+        bits = np.zeros(len(pose), dtype=np.uint8)  # on which sides of the point a corner is
+        for axis in (0, 1):
+            bits |= (pose[:, axis] <= point[axis] + margin).view(np.uint8) << np.uint8(2 * axis)
+            bits |= (pose[:, axis] >= point[axis] - margin).view(np.uint8) << np.uint8(2 * axis + 1)
+        a, b, c = self._corners
+        inside = np.flatnonzero((bits.take(a) | bits.take(b) | bits.take(c)) == 0b1111)
+        weights = barycentric(pose[self.faces[inside]], point)
         hits = np.flatnonzero(weights.min(axis=1) >= -_ROUNDING)
         if not len(hits):
             return None

@@ -1,9 +1,10 @@
 """Each command by its menu, its button and its keys; the side panel; the two pages of help."""
 
 from imgui_bundle import imgui  # isort: skip
+import glfw
 import pytest
 
-from akap_editor.app import commands, panels
+from akap_editor.app import commands, key_order, panels
 from akap_editor.app.command import CTRL, SHIFT, Command, Key, chord_name
 from akap_editor.app.commands import COMMANDS, MENUS
 from akap_editor.deform.deformer import method_names
@@ -262,6 +263,20 @@ def test_undo_and_redo_restore_bit_for_bit(pinned):
     assert pinned.session.state.positions.tobytes() == bent.positions.tobytes()
     pinned.key(CTRL | Key.z, CTRL | Key.y)
     assert pinned.session.state.positions.tobytes() == bent.positions.tobytes()
+
+
+def test_a_shortcut_within_one_frame_is_not_its_key_alone(pinned):
+    pinned.editor.select({1})
+    io = imgui.get_io()
+    io.add_key_event(CTRL, True)
+    io.add_key_event(Key.d, True)
+    key_order.on_key(None, glfw.KEY_LEFT_CONTROL, 0, glfw.RELEASE, 0)
+    io.add_key_event(CTRL, False)
+    io.add_key_event(Key.d, False)
+    pinned.settle()
+    assert not pinned.editor.selection
+    assert pinned.space.overlays(1.0).heat is None
+    assert not io.key_ctrl
 
 
 def test_space_presses_no_button_that_was_clicked_before(pinned):

@@ -7,7 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from akap_editor.app import canvas as canvas_module
 from akap_editor.app import window as window_module
+from akap_editor.app.canvas import ANSWER_FRAMES
 from akap_editor.editor.editor import FRAME_BUDGET
 
 
@@ -81,6 +83,33 @@ def test_a_frame_stops_stepping_when_its_time_is_over(pinned, monkeypatch):
     counts = [count for _, _, count, _ in frames.seen[frames.first - 1 :]]
     assert counts[1] - counts[0] in (1, 2)
     assert max(np.diff(counts)) == 2
+
+
+def test_panels_answer_before_a_slow_step(pinned, monkeypatch):
+    """While a panel answers to the pointer's move, nothing bends; then it goes on."""
+    steps, seen, step = [], [], pinned.session.step
+    monkeypatch.setattr(canvas_module, "FRAME_BUDGET", 0.0)
+    monkeypatch.setattr(pinned.session, "step", lambda: (steps.append(1), step())[1])
+    monkeypatch.setattr(pinned.editor, "advance", lambda: pinned.session.moving and pinned.session.step())
+
+    def act(hand):
+        hand.mouse_teleport_to_pos(imgui.ImVec2(20, 400))
+        x, y = pinned.pin_place(3)
+        pinned.session.begin("Bend")
+        pinned.session.set_targets({3: (x, y - 140)})
+        pinned.session.commit()
+        hand.yield_()
+        pinned.window.after_draw.append(lambda: seen.append((imgui.get_io().mouse_pos.y, len(steps))))
+        hand.mouse_teleport_to_pos(imgui.ImVec2(20, 410))
+        hand.yield_(ANSWER_FRAMES)
+
+    pinned.do(act)
+    pinned.window.after_draw.clear()
+    first = next(i for i, (y, _) in enumerate(seen) if y == 410)
+    last = first + ANSWER_FRAMES - 1
+    assert steps
+    assert seen[first - 1][1] == seen[last][1]
+    assert seen[last + 1][1] == seen[last][1] + 1
 
 
 @pytest.mark.parametrize("press", ["wheel", "key"])

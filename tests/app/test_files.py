@@ -5,6 +5,7 @@ import zipfile
 
 import numpy as np
 import pytest
+from imgui_bundle import icons_fontawesome_6 as icons
 from PIL import Image
 
 from akap_editor.app.command import CTRL, SHIFT, Key
@@ -62,6 +63,38 @@ def test_save_as_and_open_again_restore_every_bit(bent, tmp_path):
     assert bits(bent.session.state) == before
     assert bent.session.history.depth == 0
     assert not bent.editor.selection
+
+
+def enter_at(ui, item):
+    """Walk to an item by keyboard and press Enter."""
+
+    def walk(hand):
+        hand.nav_move_to(item)
+        hand.key_press(Key.enter)
+
+    ui.do(walk)
+
+
+@pytest.mark.parametrize(("button", "left"), [("Discard", False), ("Cancel", True)])
+def test_enter_uses_the_button_that_the_keyboard_is_at(bent, button, left):
+    bent.key(CTRL | Key.w)
+    assert bent.space.question is not None
+    enter_at(bent, f"//{UNSAVED}###dialog {UNSAVED}/{button}")
+    assert bent.space.question is None
+    assert bent.space.request is None, "nothing is to be saved"
+    assert (bent.space.document is not None) == left
+
+
+def test_enter_goes_into_the_folder_that_the_keyboard_is_at(bent, tmp_path):
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    save(bent.document, inner / "there.akap")
+    bent.key(CTRL | Key.o)
+    enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/{icons.ICON_FA_FOLDER}  inner")
+    assert bent.space.request.folder == inner
+    enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/{icons.ICON_FA_FILE}  there.akap")
+    assert bent.space.request is None
+    finish(bent)
 
 
 def test_save_asks_once_and_then_writes_to_the_same_file(bent, tmp_path):

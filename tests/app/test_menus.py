@@ -3,9 +3,10 @@
 from imgui_bundle import imgui  # isort: skip
 import pytest
 
-from akap_editor.app.command import CTRL, Key, Submenu
+from akap_editor.app.command import CTRL, SHIFT, Key, Submenu
 from akap_editor.app.commands import COMMANDS, MENUS
 from akap_editor.app.palette import Entry, entries, match, ranked
+from akap_editor.resources import bundled_drawings
 
 ALT = Key.mod_alt
 
@@ -208,3 +209,33 @@ def test_a_drawing_is_opened_by_its_name(pinned):
     type_into_palette(pinned, Key.f3, "bundled bar", Key.enter)
     pinned.settle()
     assert pinned.document.drawing.name == "bar"
+
+
+# -- panels -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("chord", "name"), [(Key.tab, "Panel"), (SHIFT | Key.tab, "Tools")])
+def test_tab_goes_from_the_drawing_to_a_panel_and_escape_back(pinned, chord, name):
+    pinned.editor.select({3})
+    before = pinned.pin_place(3)
+    seen = []
+
+    def walk(hand):
+        for key in (chord, Key.right_arrow, Key.escape, Key.right_arrow):
+            hand.key_press(int(key))
+            hand.yield_(2)
+            window = imgui.get_current_context().nav_window
+            moved = pinned.session.state.pin(3).target[0] - before[0]
+            seen.append((window and window.name, imgui.get_io().nav_visible, round(float(moved))))
+
+    pinned.do(walk)
+    assert seen == [(name, True, 0), (name, True, 0), (None, False, 0), (None, False, 1)]
+
+
+def test_a_drawing_is_opened_from_the_start_page_by_keys(pinned):
+    pinned.editor.close()
+    pinned.settle()
+    pinned.key(Key.tab, Key.down_arrow, Key.enter)
+    pinned.settle()
+    assert pinned.document.drawing.name in [path.stem for path in bundled_drawings()]
+    assert not imgui.get_io().nav_visible, "keys belong to the drawing"

@@ -111,6 +111,13 @@ def test_a_double_click_opens_the_values_which_move_the_pin(pinned):
     assert pinned.session.history.labels == ["Place pin"]
 
 
+def test_escape_closes_the_values_at_once(pinned):
+    before = pinned.session.state
+    at_pin(pinned, 3, 0, 2, lambda hand: (hand.key_chars_replace("19"), hand.key_press(Key.escape)))
+    assert pinned.editor.request is None
+    assert pinned.session.state is before
+
+
 def test_a_double_click_on_the_drawing_adds_one_pin(ui):
     def act(hand):
         hand.mouse_move_to_pos(imgui.ImVec2(*ui.screen((100.0, 80.0))))

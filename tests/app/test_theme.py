@@ -7,10 +7,12 @@ import pytest
 
 imgui = pytest.importorskip("imgui_bundle").imgui
 
-from akap_editor.app import theme  # noqa: E402
+from akap_editor.app import key_track, numbers_panel, overlays, theme  # noqa: E402
+from akap_editor.render import colormaps  # noqa: E402
 
 GROUNDS = ("PANEL", "DARK", "POPUP", "FRAME", "HOVER")
 TEXT_AA, PARTS_AA = 4.5, 3.0  # success criteria 1.4.3 and 1.4.11
+APART = 0.15  # in OKLab, where black is 1 from white: thin lines of two colors are told apart
 
 # Machado, Oliveira and Fernandes 2009, severity 1: linear RGB as seen without one kind of cones.
 DEFICIENCIES = {
@@ -104,3 +106,28 @@ def test_what_is_on_differs_from_what_is_off_for_everybody(name):
     for on, off in pairs:
         low, high = sorted(luminance(seen @ linear(of(color))) for color in (on, off))
         assert (high + 0.05) / (low + 0.05) >= PARTS_AA
+
+
+TOGETHER = {
+    "fields of the drag": (overlays.GREEN, overlays.BLUE),
+    "trails and followed field": (overlays.TRAIL, overlays.GREEN),
+    "trails and other field": (overlays.TRAIL, overlays.BLUE),
+    "trails and chosen pins": (overlays.TRAIL, theme.ACCENT),
+    "energies": (numbers_panel.AREA_COLOR, numbers_panel.ANGLE_COLOR),
+    "poses before and after": (overlays.BEFORE, overlays.AFTER),
+    "shrunk and grown": tuple(colormaps.diverging()[[0, -1]]),
+    "recorded and rest of a timeline": (key_track.RED, theme.ACCENT),
+    "chosen keyframes and others": (theme.ACCENT, theme.TEXT),
+}
+
+
+def oklab(rgb):
+    roots = np.cbrt(np.clip(rgb, 0, 1) @ np.linalg.inv(colormaps._TO_LINEAR).T)
+    return roots @ np.linalg.inv(colormaps._TO_ROOTS).T
+
+
+@pytest.mark.parametrize("pair", TOGETHER)
+@pytest.mark.parametrize("name", DEFICIENCIES)
+def test_colors_that_are_seen_together_are_told_apart_by_everybody(name, pair):
+    one, other = (oklab(np.array(DEFICIENCIES[name]) @ linear(color)) for color in TOGETHER[pair])
+    assert np.linalg.norm(one - other) >= APART

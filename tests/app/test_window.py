@@ -80,6 +80,12 @@ def test_input_that_comes_with_the_last_frame_is_taken_in_whole(loop):
     assert not imgui.is_key_down(imgui.Key.m)
 
 
+def test_it_does_not_sleep_until_a_dialog_has_dimmed_the_rest(loop):
+    loop.ui.space.about = True
+    loop.run(1)
+    assert imgui.get_current_context().dim_bg_ratio == 1.0
+
+
 def test_it_draws_until_the_drawing_has_come_to_rest_and_shows_it(loop):
     """The last frame before the sleep shows, in the panel's numbers too, what any later frame would."""
     ui, shots = loop.ui, []

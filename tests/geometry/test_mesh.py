@@ -198,6 +198,16 @@ def test_where_faces_overlap_the_one_drawn_last_is_seen():
     assert TriMesh(mesh.vertices, mesh.faces[::-1]).locate([[0.3, 0.3]]).faces.tolist() == [1]
 
 
+def test_in_a_folded_pose_the_last_of_all_faces_that_hold_a_point_is_found(mesh):
+    rng = np.random.default_rng(12)
+    pose = mesh.vertices + rng.normal(0, 0.1 * np.ptp(mesh.vertices), mesh.vertices.shape)
+    order = rng.permutation(len(mesh.faces))
+    for point in rng.uniform(pose.min(axis=0), pose.max(axis=0), (30, 2)):
+        holding = barycentric(pose[mesh.faces[order]], point).min(axis=1) >= 0
+        found = mesh.find(point, pose, order)
+        assert ([] if found is None else found.faces.tolist()) == order[holding][-1:].tolist()
+
+
 @pytest.mark.parametrize("shift", [0.1, 1 / 3, 1000.7])
 def test_rounding_puts_no_boundary_point_outside(shift):
     mesh = TriMesh(SQUARE + shift, [[0, 1, 2], [0, 2, 3]])
