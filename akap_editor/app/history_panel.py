@@ -20,6 +20,7 @@ def draw(space: Workspace, scale: float) -> None:
         if index > depth:
             imgui.push_style_color(imgui.Col_.text, ImVec4(*QUIET))
         if imgui.selectable(f"  {name}##step {index}", index == depth)[0]:
+            space.notice = ""
             space.attempt(lambda index=index: space.editor.go_to(index))  # type: ignore[misc]
         if index > depth:
             imgui.pop_style_color()

@@ -94,10 +94,12 @@ def test_a_click_on_a_step_goes_there_and_back(pinned):
         start = pinned.screen(pinned.pin_place(pin))
         pinned.drag(start, (start[0], start[1] + dy))
         poses.append(pinned.session.state)
+    pinned.space.notice = "Saved figure.akap"
     for index in (1, 0, 3, 2):
         name = "Bend" if index else "As opened"
         pinned.do(lambda hand, label=f"**/  {name}##step {index}": click(hand, label))
         assert pinned.session.history.depth == index
+        assert not pinned.space.notice, "it is about something else"
         assert pinned.session.state.positions.tobytes() == poses[index].positions.tobytes()
     assert pinned.session.history.labels == ["Bend"] * 3
 
