@@ -18,6 +18,7 @@ from .cholesky import SparseCholesky
 from .deformer import StepReport, StepResult
 from .log_spiral import LogSpirals, linear_flow
 from .rest_memory import SymmetricDirichlet, descend
+from .reuse import dot
 from .turning import Turning
 
 Trajectory = Literal["spiral", "linear"]
@@ -324,7 +325,7 @@ class AkapDeformer:
                 total = rest.value(columns + far * change) + self._misfit(off + far * pins)
                 return total if turning is None else total + turning.misfit(twisted + far * turns)
 
-            slope = float(np.vdot(gradient, direction).real)
+            slope = dot(gradient, direction)
             far = descend(value, value(0.0), slope, min(length, _SAFE * rest.longest(columns, change)))
             return pose + far * direction, far
 

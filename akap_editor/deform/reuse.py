@@ -79,7 +79,7 @@ class ReusedCholesky:
 
     def energy(self, values: Complexes) -> float:
         """xᵀ A x with the matrix last set."""
-        return _dot(values, self.multiply(values))
+        return dot(values, self.multiply(values))
 
     def multiply(self, values: Complexes) -> Complexes:
         """A x with the matrix last set."""
@@ -103,7 +103,7 @@ class ReusedCholesky:
         previous, first = np.inf, 0.0
         for count in range(_MOST_ITERATIONS):
             step = self._precondition(residual)
-            square = _dot(residual, step)
+            square = dot(residual, step)
             size = _largest(step)
             first = first or size
             if size <= tolerance:
@@ -112,7 +112,7 @@ class ReusedCholesky:
                 return solution + step
             direction = step + (square / previous) * direction
             image = self.multiply(direction)
-            length = square / _dot(direction, image)
+            length = square / dot(direction, image)
             solution = solution + length * direction
             residual = residual - length * image
             previous = square
@@ -129,16 +129,16 @@ class ReusedCholesky:
         for values in earlier:
             turned = self._frame * values
             image = self.multiply(turned)
-            before = _dot(turned, image)
+            before = dot(turned, image)
             if previous is not None:  # the second one is made orthogonal to the first
                 first, first_image, size = previous
-                share = _dot(first_image, turned) / size
+                share = dot(first_image, turned) / size
                 turned = turned - share * first
                 image = image - share * first_image
-            size = _dot(turned, image)
+            size = dot(turned, image)
             if size <= _SAME * before:
                 continue
-            share = _dot(turned, residual) / size
+            share = dot(turned, residual) / size
             solution = solution + share * turned
             residual = residual - share * image
             previous = turned, image, size
@@ -165,8 +165,13 @@ def _product(starts: Ints, vertices: Ints, nonzeros: Floats, values: Complexes) 
     return result
 
 
-def _dot(a: Complexes, b: Complexes) -> float:
-    return float(np.vdot(a, b).real)
+@compiled
+def dot(a: Complexes, b: Complexes) -> float:
+    """Re aᴴ b of two vectors; BLAS would call in threads, which on a busy machine wait for one another."""
+    total = 0.0
+    for k in range(len(a)):
+        total += a[k].real * b[k].real + a[k].imag * b[k].imag
+    return total
 
 
 def _largest(values: Complexes) -> float:
