@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from ..editor.editor import ARROWS, FRAME_BUDGET, HELD_KEYS
+from ..editor.editor import ARROWS, HELD_KEYS
 from ..editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
 from ..editor.tool_turning import PointingRing, TurningPin, hovered_ring
 from ..editor.tools import DraggingPin, Idle, PointingPin, RubberBand
@@ -11,7 +11,6 @@ from .pin_popup import PinPopup
 from .theme import ACCENT, DARK, packed
 from .workspace import Workspace
 
-ANSWER_FRAMES = 3  # in which what was clicked is seen: ImGui measures a menu before it shows it
 _BUTTONS: tuple[Button, ...] = ("left", "right", "middle")  # in ImGui's order
 _ARROW_KEYS = {name: imgui.Key[f"{name}_arrow"] for name in ARROWS}
 _HOLDING = (PointingPin, DraggingPin, PointingRing, TurningPin)  # tools
@@ -28,7 +27,6 @@ class Canvas:
         self._last = (0.0, 0.0)
         self._taking = False  # whether the gesture is recorded as a take
         self._popup = PinPopup()
-        self._answering = 0  # frames that menus and panels still need
 
     def read_input(self, space: Workspace) -> None:
         """Pass this frame's pointer and keys on, unless a panel wants them."""
@@ -93,16 +91,6 @@ class Canvas:
         for name, key in _ARROW_KEYS.items():
             if imgui.is_key_pressed(key) and not io.nav_visible:
                 editor.handle_event(KeyEvent(name, shift=io.key_shift))
-
-    def panels_first(self, space: Workspace) -> bool:
-        """Whether menus and panels are still answering to input, and a step that takes long has to wait."""
-        context, io = imgui.get_current_context(), imgui.get_io()
-        news = context.input_events_trail.size() > 0 and (io.want_capture_mouse or io.want_text_input)
-        self._answering = ANSWER_FRAMES if news else max(self._answering - 1, 0)
-        session = space.editor.session
-        if session is None or session.last_step is None or session.last_step.report.seconds < FRAME_BUDGET:
-            return False
-        return self._answering > 0 or context.input_events_queue.size() > 0
 
     def draw_popup(self, space: Workspace, scale: float) -> None:
         """The menu or the values of a pin, if asked for."""

@@ -1,6 +1,7 @@
 """What the canvas shows besides the drawing: fields, distortion, rest pose, trails, a reference picture."""
 
 import time
+from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -10,7 +11,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from numpy.typing import NDArray
 
 from ..editor.document import Drawing
-from ..editor.editor import Editor
+from ..editor.editor import FRAME_BUDGET, Editor
 from ..editor.session import Session
 from ..editor.stiffness import STIFFEST
 from ..editor.tool_brush import shown_stiffness
@@ -106,6 +107,16 @@ class ViewState:
             reference=self.reference if self.show_reference else None,
         )
 
+    @property
+    def moving(self) -> bool:
+        """Whether fields are still to come."""
+        return self._fields.coming is not None
+
+    @property
+    def waiting(self) -> bool:
+        """Whether they are being computed."""
+        return self._fields.coming is not None and not self._fields.coming.done()
+
     def _tint_of(self, editor: Editor) -> Heat | None:
         """What bends less, while the brush is at hand; one object for each stiffness."""
         stiffness = shown_stiffness(editor)
@@ -188,12 +199,17 @@ def arrows(starts: Floats, vectors: Floats, head: float) -> Floats:
 
 
 class _Fields:
-    """The vector fields of the last move of the pins, computed no more often than there is time for."""
+    """The vector fields of the last move of the pins, computed no more often than there is time for.
+
+    coming: those that the worker computes.
+    """
 
     def __init__(self) -> None:
+        self.coming: Future[tuple[Floats, Floats] | None] | None = None
         self._way: object = None
+        self._drawing: Drawing | None = None
         self._fields: tuple[Floats, Floats] | None = None
-        self._cost = self._until = 0.0
+        self._begun = self._until = 0.0
         self._chosen: tuple[Drawing, float, Ints] | None = None
 
     def strokes(self, editor: Editor, session: Session, scale: float) -> list[Strokes]:
@@ -215,12 +231,17 @@ class _Fields:
         return [*outlined(below, BLUE, 3.2 * scale), Strokes(above, GREEN, 1.4 * scale)]
 
     def _update(self, editor: Editor, session: Session) -> None:
+        """Take over what the worker has computed, and let it compute what is new."""
+        if session.drawing is not self._drawing:
+            self._drawing, self._way, self._fields, self.coming = session.drawing, None, None, None
         way, now = session.last_way, time.perf_counter()
-        if way is self._way or (editor.moving and now < self._until):
-            return
-        self._way, self._fields = way, session.fields()
-        self._cost = time.perf_counter() - now
-        self._until = now + self._cost / SHARE
+        if self.coming is None and way is not self._way and not (editor.moving and now < self._until):
+            self._way, self._begun = way, now
+            self.coming = editor.worker.submit(session.fields)
+            wait([self.coming], FRAME_BUDGET)
+        if self.coming is not None and self.coming.done():
+            self._fields, self.coming = self.coming.result(), None
+            self._until = self._begun + (time.perf_counter() - self._begun) / SHARE
 
     def _vertices(self, drawing: Drawing, spacing: float) -> Ints:
         if self._chosen is None or self._chosen[0] is not drawing or self._chosen[1] != spacing:

@@ -5,6 +5,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ..deform.variants import VARIANTS, variant_of
 from ..editor.camera import Camera
+from ..editor.editor import FRAME_BUDGET
 from ..editor.events import ScrollEvent
 from ..editor.session import Session
 from ..geometry.distortion import Distortion
@@ -40,7 +41,7 @@ def draw(space: Workspace, canvas: Canvas, scale: float) -> Canvas:
         space.beside.close()
         return canvas
     left, right = halves(canvas)
-    if not space.attempt(lambda: space.beside.follow(session)):
+    if not space.attempt(lambda: space.beside.follow(session, space.editor.worker, FRAME_BUDGET)):
         space.split = False
         return canvas
     settings = session.state.settings

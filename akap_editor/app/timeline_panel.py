@@ -13,7 +13,6 @@ HEIGHT, KEYED_HEIGHT = 44, 64  # design points, as all sizes here
 
 def draw(space: Workspace, scale: float) -> None:
     """The bar; nothing without a drawing, or where it is switched off."""
-    space.player.watch(space.editor.session)
     if space.document is None or not space.show_timeline:
         space.show_present()
         return

@@ -35,7 +35,8 @@ SMALLEST = (640, 400)
 GRASP = 64  # screen coordinates of a window's corner that must be on a screen for a hand to move it
 PLAIN = Background(color=CANVAS.color)
 SETTLE_FRAMES = 3  # ImGui needs so many frames after an event until everything stands where it belongs
-IDLE_SECONDS = 1.0
+IDLE_SECONDS, BLINK_SECONDS = 1.0, 0.4
+STEP_SECONDS = 0.004  # between two looks whether the engine is done with a step
 
 
 def _warm_up() -> None:
@@ -148,27 +149,34 @@ class Window:
     def _turn(self) -> None:
         """Once around the loop: sleep or draw a frame."""
         self.space.protect()
-        if self._busy:
+        if self._due:
             glfw.poll_events()
+        elif self._busy:
+            self._sleep(STEP_SECONDS)
         else:
             self._remember()
-            self._sleep()
+            self._rest()
         # ImGui takes some events one per frame and fades, and panels show the pose of the frame before
         context = imgui.get_current_context()
         fading = 0 < context.dim_bg_ratio < 1
-        if context.input_events_queue.size() or fading or self.space.moving:
+        if context.input_events_queue.size() or fading or (self.space.moving and not self.space.stalled):
             self.wake()
-        if self._busy:
+        if self._due:
             self._awake -= 1
             if not self.frame():
                 glfw.wait_events_timeout(0.25)  # minimised
 
     @property
-    def _busy(self) -> bool:
+    def _due(self) -> bool:
+        """Whether there may be something new to be seen."""
         space = self.space
-        return (
-            self._awake > 0 or space.moving or space.waiting or self._dialogs.waiting or bool(self._dropped)
-        )
+        moves = space.moving and not space.stalled
+        return self._awake > 0 or moves or space.waiting or self._dialogs.waiting or bool(self._dropped)
+
+    @property
+    def _busy(self) -> bool:
+        """Whether there is, or soon will be."""
+        return self._due or self.space.stalled
 
     def wake(self) -> None:
         """Draw the next few frames, whatever happens."""
@@ -185,16 +193,20 @@ class Window:
             preferences.put("place", list(glfw.get_window_pos(self._handle)))
         self.space.remember()
 
-    def _sleep(self) -> None:
-        """Wait in the operating system until something happens."""
+    def _rest(self) -> None:
+        """Sleep until something happens; only a caret blinks."""
         typing = imgui.get_io().want_text_input
-        limit = 0.4 if typing else IDLE_SECONDS  # a caret blinks
+        if not self._sleep(BLINK_SECONDS if typing else IDLE_SECONDS) and typing:
+            self._awake = 1
+
+    def _sleep(self, limit: float) -> bool:
+        """Wait in the operating system for so many seconds, or until something happens; whether it did."""
         started = time.perf_counter()
         glfw.wait_events_timeout(limit)
-        if time.perf_counter() - started < 0.98 * limit:
-            self.wake()
-        elif typing:
-            self._awake = 1
+        if time.perf_counter() - started >= 0.98 * limit:
+            return False
+        self.wake()
+        return True
 
     def frame(self) -> bool:
         """Draw one frame; False where there is nothing to draw on."""
@@ -255,8 +267,9 @@ class Window:
         else:
             self._canvas.read_input(space)
             self._canvas.choose_cursor(space)
-        if not self._canvas.panels_first(space):
-            space.editor.advance()
+        space.editor.advance()
+        space.player.watch(space.editor.session)
+        space.editor.go_on()
         self._canvas.draw_overlay(space, self.scale)
         draw_legend(space.view, space.editor, self.scale)
 

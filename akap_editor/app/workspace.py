@@ -1,6 +1,7 @@
 """What the window holds besides the drawing's own state: view switches, files, messages, questions."""
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -47,7 +48,7 @@ class Workspace:
     notice: a sentence for the status bar that goes with the next edit; error: one that must be read first.
     """
 
-    editor: Editor = field(default_factory=Editor)
+    editor: Editor = field(default_factory=lambda: Editor(worker=ThreadPoolExecutor(1, "engine")))
     show_mesh: bool = False
     show_pins: bool = True
     show_timeline: bool = False
@@ -358,9 +359,20 @@ class Workspace:
         self.unless_unsaved(close)
 
     @property
+    def _motions(self) -> tuple[tuple[bool, bool], ...]:
+        """Of all that may move: whether it does, and whether it only waits for the engine."""
+        parts = (self.editor, self.beside, self.view)
+        return *((part.moving, part.waiting) for part in parts), (self.transport.playing, False)
+
+    @property
     def moving(self) -> bool:
-        """Whether the drawing, or the second one beside it, has not come to rest."""
-        return self.editor.moving or self.beside.moving or self.transport.playing
+        """Whether anything that is seen has not come to rest."""
+        return any(moves for moves, _ in self._motions)
+
+    @property
+    def stalled(self) -> bool:
+        """Whether nothing new can be seen before the engine is done with a step."""
+        return self.moving and all(waits for moves, waits in self._motions if moves)
 
     def overlays(self, scale: float) -> Overlays:
         """What the renderer shows besides the drawing. scale: framebuffer pixels per point of the design."""

@@ -1,5 +1,7 @@
 """What bends a drawing as its state says, and how far one step goes."""
 
+from collections.abc import Callable
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -22,18 +24,24 @@ class Bending:
     """
 
     def __init__(self, mesh: TriMesh, state: EditState) -> None:
-        self._mesh = mesh
+        self._mesh, self._one_at_a_time = mesh, Lock()
         self.settings, self.stiffness = state.settings, state.stiffness
         method, parameters = state.settings.method, dict(state.settings.parameters)
         if state.stiffness is not None and takes_stiffness(method):
             parameters["stiffness"] = state.stiffness
         # Any: of a method that may have more than the contract asks for
         self.deformer: Any = make_deformer(method, mesh, **parameters)
-        self.deformer.set_pins(state.points)
+        self.set_pins(state)
         self.holds_angles = holds_angles(method)
         self.turns = Turns()
         self.last_way: tuple[Floats, Floats] | None = None
         self._reach = REACH * float(np.sqrt(mesh.rest_areas.sum()))
+
+    def set_pins(self, state: EditState) -> None:
+        """Choose the pins of a state; moves nothing."""
+        with self._one_at_a_time:
+            self.deformer.set_pins(state.points)
+            self._pins = len(state.pins)
 
     def fits(self, mesh: TriMesh, state: EditState) -> bool:
         """Whether it bends this mesh as this state says, whatever the pins are."""
@@ -60,18 +68,28 @@ class Bending:
         way = np.linalg.norm(self.off(state), axis=1).max(initial=0.0)
         return float(max(way / self._reach, self.turn_error(state) / MOST_TURN))
 
-    def step(self, state: EditState) -> StepResult:
-        """One step from a state towards its targets and angles. Raises SolverError."""
+    def way(self, state: EditState) -> Callable[[], StepResult]:
+        """One step from a state towards its targets and angles, to be computed in any thread.
+
+        It raises SolverError.
+        """
         here, turn = self._mesh.evaluate(state.points, state.positions), self.angles_off(state)
         share = 1.0 / max(1.0, self.steps_left(state))
         goals = state.targets if share == 1.0 else here + share * (state.targets - here)
         angles = (state.angles - (1.0 - share) * turn,) if np.isfinite(turn).any() else ()
-        result: StepResult = self.deformer.step(state.positions, goals, *angles)
-        return result
 
-    def fields(self, pins: int) -> tuple[Floats, Floats] | None:
-        """U_opt and U°, (n, 2) each, of the last way of so many pins; None without one."""
-        if self.last_way is None or len(self.last_way[1]) != pins:
-            return None
-        optimal, smooth = self.deformer.vector_fields(*self.last_way)
+        def step() -> StepResult:
+            with self._one_at_a_time:
+                result: StepResult = self.deformer.step(state.positions, goals, *angles)
+            return result
+
+        return step
+
+    def fields(self) -> tuple[Floats, Floats] | None:
+        """U_opt and U°, (n, 2) each, of the last way of these pins; None without one. From any thread."""
+        with self._one_at_a_time:
+            way = self.last_way
+            if way is None or len(way[1]) != self._pins:
+                return None
+            optimal, smooth = self.deformer.vector_fields(*way)
         return optimal, smooth

@@ -1,6 +1,7 @@
 """A drawing on its way: its state, what bends it, and how it comes to rest; without edits and history."""
 
-from dataclasses import replace
+from concurrent.futures import Executor, Future, wait
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from ..geometry.checks import Floats
 from .angles import pin_angles, stopped
 from .bending import Bending
 from .document import Document, Drawing, EditState
+from .worker import AT_ONCE
 
 PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
 STILL = 0.02  # pixels: a step that moves no vertex farther has come to rest
@@ -17,14 +19,28 @@ MOST_SETTLING = 400  # steps after the last change of a target, should a pose ne
 ANGLE_TOLERANCE = 0.002  # radians: a pin turned more nearly than this has arrived
 
 
+@dataclass(frozen=True, eq=False)
+class _UnderWay:
+    """A step that is being computed, from the state ``before``, with pins ``off``, (k, 2), their targets."""
+
+    before: EditState
+    off: Floats
+    result: Future[StepResult]
+
+
 class Bent:
-    """A document whose drawing follows its pins, `step` by step."""
+    """A document whose drawing follows its pins, `step` by step.
+
+    A step may be computed in another thread (`start_step`). Until `step` takes it over, the pose is the one
+    before it, and of the state nothing but targets and angles may change.
+    """
 
     def __init__(self, document: Document) -> None:
         self.document = document
         self.last_step: StepResult | None = None
         self.jumps = 0  # how often the pose has changed in another way than by steps
         self._settling = 0
+        self._under_way: _UnderWay | None = None
         self._opened = document.drawing
         self._bending = Bending(document.drawing.mesh, document.state)
 
@@ -76,27 +92,47 @@ class Bent:
 
     # -- motion --------------------------------------------------------------------------------------------
 
+    @property
+    def stepping(self) -> bool:
+        """Whether a step is under way, or waits to be taken over."""
+        return self._under_way is not None
+
+    def start_step(self, worker: Executor) -> None:
+        """Let a worker compute the next step towards the current targets, unless one is under way."""
+        if self._under_way is None:
+            off, way = self._bending.off(self.state), self._bending.way(self.state)
+            self._under_way = _UnderWay(self.state, off, worker.submit(way))
+
+    def step_is_ready(self, seconds: float = 0.0) -> bool:
+        """Whether `step` will not wait for a worker; look for so long."""
+        way = self._under_way
+        return way is not None and bool(wait([way.result], max(seconds, 0.0)).done)
+
     def step(self) -> StepResult:
-        """One step of the deformer towards the current targets. On SolverError the pose is as it was."""
-        before, off = self.state.positions, self._bending.off(self.state)
+        """The step under way, or else a new one; waits for it. On SolverError the pose is as it was."""
+        self.start_step(AT_ONCE)
+        way, self._under_way = self._under_way, None
+        assert way is not None
         try:
-            result = self._bending.step(self.state)
+            result = way.result.result()
         except SolverError:
             self._settling = 0
             raise
-        if result.field is not None and np.linalg.norm(off, axis=1).max(initial=0.0) > PIN_TOLERANCE:
-            self._bending.last_way = before, off
+        before = way.before.positions
+        if result.field is not None and np.linalg.norm(way.off, axis=1).max(initial=0.0) > PIN_TOLERANCE:
+            self._bending.last_way = before, way.off
+        asked_since = self.state.pins is not way.before.pins
         self._set_state(replace(self.state, positions=result.positions))
         moved = float(np.abs(result.positions - before).max())
         arrived = self.pin_error() < PIN_TOLERANCE and self._bending.turn_error(self.state) < ANGLE_TOLERANCE
-        still = moved < (STILL if arrived else 0.1 * STILL)
+        still = moved < (STILL if arrived else 0.1 * STILL) and not asked_since
         self._settling = 0 if still else max(self._settling - 1, 0)
         self.last_step = result
         return result
 
     def fields(self) -> tuple[Floats, Floats] | None:
         """U_opt and U°, (n, 2) each, of the last step that moved pins; None for a method without fields."""
-        return self._bending.fields(len(self.state.pins))
+        return self._bending.fields()
 
     @property
     def last_way(self) -> tuple[Floats, Floats] | None:
@@ -110,6 +146,8 @@ class Bent:
 
     def halt(self) -> None:
         """Leave the pose as it is, though pins may be on their way."""
+        if self.stepping:
+            self.step()
         self._settling = 0
 
     # -- inside --------------------------------------------------------------------------------------------
@@ -138,7 +176,7 @@ class Bent:
         if self._bending.fits(self.drawing.mesh, state):
             self._bending.last_way = None
             self._bending.turns.forget()
-            self._bending.deformer.set_pins(state.points)
+            self._bending.set_pins(state)
         else:
             self._bending = Bending(self.drawing.mesh, state)
         self._settling = 0

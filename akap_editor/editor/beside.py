@@ -1,11 +1,13 @@
 """The same pins bent by a second method at the same time, to be seen beside the first."""
 
+from concurrent.futures import Executor
 from dataclasses import replace
 
 from ..geometry.checks import Floats
 from ..geometry.distortion import Distortion, distortion
 from .document import Document, Pin, Settings
 from .session import Session
+from .worker import AT_ONCE
 
 FIRST = "arap"
 
@@ -27,12 +29,23 @@ class Beside:
         """Whether it has not come to rest under its pins."""
         return self.session is not None and self.session.moving
 
-    def follow(self, main: Session) -> None:
+    @property
+    def waiting(self) -> bool:
+        """Whether nothing moves until a worker is done with a step."""
+        return self.session is not None and self.session.stepping and not self.session.step_is_ready()
+
+    def follow(self, main: Session, worker: Executor = AT_ONCE, budget: float = 0.0) -> None:
         """Once a frame: take over what was done to the pins of ``main``, and go one step.
+
+        worker: computes it; budget: seconds to wait for that; a longer step is left to a later call.
 
         A new drawing or method starts from the pose of ``main``, and where that is at rest, so is this one.
         Raises InputError where the drawing is none for the method, SolverError.
         """
+        if self.session is not None and self.session.stepping:
+            if not self.session.step_is_ready(budget):
+                return
+            self.session.step()
         own, at_rest = self.session, not (main.posed or main.moving)
         known = own is not None and own.drawing is main.drawing and self._made == self.spec
         known = known and own is not None and own.state.stiffness is main.state.stiffness
@@ -50,7 +63,9 @@ class Beside:
         ):
             self._aim(own, main.state.pins)
         if own.moving:
-            own.step()
+            own.start_step(worker)
+            if own.step_is_ready(budget):
+                own.step()
 
     def close(self) -> None:
         """Forget the pose."""

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterable
+from concurrent.futures import Executor
 from pathlib import Path
 from typing import Literal
 
@@ -18,18 +19,23 @@ from .tool import Tool, distance
 from .tool_brush import Brush
 from .tools import ZOOM_STEP, Idle
 from .trails import Trails
+from .worker import AT_ONCE
 
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
-FRAME_BUDGET = 0.02  # seconds of stepping in one frame
+FRAME_BUDGET = 0.012  # seconds in which a frame waits for steps
 NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
 ARROWS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}
 HELD_KEYS = ("space", "alt", "shift", "h")  # what they mean lasts as long as they are held
 
 
 class Editor:
-    """A session with a pointer, a selection and a camera."""
+    """A session with a pointer, a selection and a camera.
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    worker: computes the steps of `advance`, one at a time; by default they are done at once.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic, worker: Executor = AT_ONCE) -> None:
+        self.worker = worker
         self.session: Session | None = None
         self.camera = Camera()
         self._canvas = (0.0, 0.0, 1280.0, 800.0)
@@ -140,26 +146,43 @@ class Editor:
         """Whether `advance` has something to do."""
         return self.session is not None and self.session.moving
 
-    def advance(self, budget: float = FRAME_BUDGET) -> bool:
-        """Take the drawing closer to its pins' targets, for about ``budget`` seconds; whether it moved.
+    @property
+    def waiting(self) -> bool:
+        """Whether nothing moves until the worker is done with a step."""
+        session = self.session
+        return session is not None and session.stepping and not session.step_is_ready()
 
-        On SolverError the gesture is cancelled, the pose is the one from before it, and the error is raised.
+    def advance(self, budget: float = FRAME_BUDGET) -> bool:
+        """Take the drawing closer to its pins' targets, waiting about ``budget`` seconds; whether it moved.
+
+        A step that takes longer goes on meanwhile, and a later call takes it over. On SolverError the gesture
+        is cancelled, the pose is the one from before it, and the error is raised.
         """
-        if self.session is None or not self.session.moving:
+        session = self.session
+        if session is None or not session.moving:
             return False
-        started = time.perf_counter()
-        self.trails.follow(self.session)
+        until, moved = time.perf_counter() + budget, False
+        self.trails.follow(session)
         try:
-            while True:
-                self.session.step()
-                self.trails.follow(self.session)
-                if not self.session.moving or self.session.near:
-                    return True
-                if time.perf_counter() - started > budget:
-                    return True
+            while session.moving and not (moved and (session.near or time.perf_counter() > until)):
+                session.start_step(self.worker)
+                if not session.step_is_ready(until - time.perf_counter()):
+                    break
+                session.step()
+                moved = True
+                self.trails.follow(session)
         except SolverError:
             self.cancel()
             raise
+        return moved
+
+    def go_on(self) -> None:
+        """Let the worker begin with the next step while a frame is drawn, if steps take longer than that."""
+        session = self.session
+        if session is None or session.last_step is None or not session.moving:
+            return
+        if session.last_step.report.seconds > FRAME_BUDGET:
+            session.start_step(self.worker)
 
     # -- edits, one gesture each ---------------------------------------------------------------------------
 

@@ -61,7 +61,7 @@ class Player(Transport):
         if session is not self._session:
             self._session = session
             self._forget()
-        if session is None or session.visiting:
+        if session is None or session.visiting or not session.recorded:
             return
         if self.at is not None:  # a gesture went on from there
             self.shots = self.shots[: self._index(self.at) + 1]

@@ -2,15 +2,17 @@
 
 import time
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..deform.deformer import StepResult
-from ..errors import InputError
+from ..errors import InputError, SolverError
 from ..geometry.checks import Floats, as_number, as_points
 from . import keyframes, poses
 from .angles import MOST_ANGLE, holding
@@ -26,6 +28,8 @@ from .remesh import carried_over
 from .stiffness import as_stiffness, coverage, painted
 
 Target = tuple[float, float]
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,12 +44,27 @@ class _Visit:
     taken: bool
 
 
+def _after_step(
+    edit: Callable[Concatenate["Session", P], T],
+) -> Callable[Concatenate["Session", P], T]:
+    """An edit that begins where the step under way ends, and raises what that raises."""
+
+    @wraps(edit)
+    def after_step(self: "Session", *args: P.args, **kwargs: P.kwargs) -> T:
+        if self.stepping:
+            self.step()
+        return edit(self, *args, **kwargs)
+
+    return after_step
+
+
 class Session(Bent):
     """The state of one open drawing and everything that may change it.
 
     Edits happen inside a gesture: `begin`, any number of edits and steps, then `commit` or `abort`. Adding or
     removing pins moves no vertex; only `step` does. All edits are written to `recording`, with times from
-    ``clock`` (seconds) since it was ``started``, by default now.
+    ``clock`` (seconds) since it was ``started``, by default now. While a step is under way, targets and
+    angles may change, and are recorded after it; all other edits wait for it.
     """
 
     def __init__(
@@ -60,6 +79,7 @@ class Session(Bent):
         self._visit: _Visit | None = None
         self._taken: EditState | None = None  # as the open gesture began, where it took over a visited pose
         self._clock, self._started = clock, clock() if started is None else started
+        self._asked: list[tuple[str, dict[str, object]]] = []  # edits to be recorded after the step under way
         self.recording = Recording(drawing_header(document.drawing), EventLog())
         for event in opening_events(document):
             self._record(**event)
@@ -93,6 +113,7 @@ class Session(Bent):
         """Whether another moment is shown in place of the present one."""
         return self._visit is not None
 
+    @_after_step
     def visit(
         self, state: EditState, line: int | None = None, seen: Floats | None = None, take: bool = False
     ) -> None:
@@ -120,6 +141,7 @@ class Session(Bent):
 
     # -- gestures ------------------------------------------------------------------------------------------
 
+    @_after_step
     def begin(self, label: str) -> None:
         """Start a gesture; while another moment is visited, from there, see `visit`."""
         visit = self._visit
@@ -142,6 +164,7 @@ class Session(Bent):
         self.history.rename(label)
         self._record("label", label=label)
 
+    @_after_step
     def commit(self, join: bool = False) -> None:
         """End the gesture: one undo entry, or none where nothing changed. The pose may go on to settle.
 
@@ -159,12 +182,16 @@ class Session(Bent):
 
     def abort(self) -> None:
         """End the gesture and restore the state from before it, bit for bit."""
+        with suppress(SolverError):
+            if self.stepping:
+                self.step()
         settling = self._settling if self.history.unchanged(self.state) else 0
         self._taken = None
         self._restore(self.history.abort())
         self._settling = settling
         self._record("abort")
 
+    @_after_step
     def undo(self) -> None:
         """Back to the state before the last gesture, if there is one."""
         self.leave()
@@ -172,6 +199,7 @@ class Session(Bent):
             self._restore(self.history.undo(self.state))
             self._record("undo")
 
+    @_after_step
     def redo(self) -> None:
         """Forward again, if something was undone."""
         self.leave()
@@ -181,6 +209,7 @@ class Session(Bent):
 
     # -- edits, inside a gesture ---------------------------------------------------------------------------
 
+    @_after_step
     def add_pin(self, at: Target) -> int | None:
         """A pin exactly on what is seen at ``at`` in the current pose; its id, or None beside the drawing."""
         mesh, pins = self.drawing.mesh, self.state.pins
@@ -203,13 +232,14 @@ class Session(Bent):
         check_depths(depths)
         self.set_pins(tuple(replace(pin, depth=depths.get(pin.id, pin.depth)) for pin in self.state.pins))
 
+    @_after_step
     def set_pins(self, pins: tuple[Pin, ...]) -> None:
         """Replace all pins; moves nothing. The pins that stay are told to stay where they are."""
         if self._settling:
             here = dict(zip((pin.id for pin in self.state.pins), self.pin_positions(), strict=True))
             pins = tuple(replace(pin, target=here[pin.id]) if pin.id in here else pin for pin in pins)
         state = replace(self.state, pins=pins)
-        self._bending.deformer.set_pins(state.points)
+        self._bending.set_pins(state)
         self._set_state(state)
         self._settling = 0
         self._record("pins", pins=pins_to_json(self.drawing.mesh, pins))
@@ -236,27 +266,32 @@ class Session(Bent):
         self._begin_settling()
         self._record("angles", angles={str(pin_id): angle for pin_id, angle in held.items()})
 
+    @_after_step
     def hold_angles(self, ids: Iterable[int], hold: bool = True) -> None:
         """Let pins hold the angles that they have, or turn as they will again; moves nothing."""
         self.set_pins(holding(self.drawing.mesh, self.state.pins, self.state.positions, set(ids), hold))
 
+    @_after_step
     def hold_pins(self) -> None:
         """Before a new drag: pins that were stopped on their way, by undo or Escape, stay where they are."""
         if not self.moving and self.pin_error() > PIN_TOLERANCE:
             here = self.pin_positions().tolist()
             self.set_targets({pin.id: (x, y) for pin, (x, y) in zip(self.state.pins, here, strict=True)})
 
+    @_after_step
     def set_settings(self, settings: Settings) -> None:
         """Bend differently from now on; moves nothing. Raises InputError, and then nothing has changed."""
         self._bend_by(replace(self.state, settings=settings))
         self._record("settings", **settings_to_json(settings))
 
+    @_after_step
     def set_stiffness(self, factors: ArrayLike | None) -> None:
         """Let faces bend less by factors (m,), None for 1 everywhere; moves nothing. Raises InputError."""
         stiffness = None if factors is None else as_stiffness(factors, len(self.drawing.mesh.faces))
         self._bend_by(replace(self.state, stiffness=stiffness))
         self._record("stiffness", factors=None if stiffness is None else stiffness.tolist())
 
+    @_after_step
     def paint_stiffness(self, dabs: ArrayLike, radius: float, factor: float) -> None:
         """Let bend less what a brush covers, at places ``dabs`` (d, 2) of the rest pose; moves nothing.
 
@@ -267,6 +302,7 @@ class Session(Bent):
         self._bend_by(replace(self.state, stiffness=stiffness))
         self._record("paint", dabs=places.tolist(), radius=radius, factor=factor)
 
+    @_after_step
     def set_drawing(self, drawing: Drawing, carried: EditState | None = None) -> None:
         """Bend another mesh of the same picture, made by `remeshed`, from now on; pins and pose stay.
 
@@ -276,46 +312,62 @@ class Session(Bent):
         self._restore(carried or carried_over(self.state, self.drawing.mesh, drawing))
         self._record("mesh", **asdict(drawing.meshing))
 
+    @_after_step
     def set_pose(self, positions: Floats) -> None:
         """Take over a pose (n, 2); the pins stay on the drawing and go there with it. Raises InputError."""
         pose = poses.as_pose(positions, "positions", len(self.drawing.mesh.vertices))
         self._put(pose)
         self._record("pose", positions=pose.tolist())
 
+    @_after_step
     def reset_pose(self) -> None:
         """Back to the rest pose; the pins stay on the drawing and go there with it."""
         if self.posed:
             self._put(self.drawing.mesh.vertices)
             self._record("reset")
 
+    @_after_step
     def bake_pose(self) -> None:
         """Make the pose the rest pose; nothing moves. Raises InputError, and then nothing has changed."""
         if self.posed:
             self._restore(baked_state(self.state, self.drawing))
             self._record("bake")
 
+    @_after_step
     def change_poses(self, do: str, **values: Any) -> None:
         """Change the poses with names, see `poses.changed`; nothing moves. Raises InputError, KeyError."""
         kept = poses.changed(self.state.poses, do, values, self.state.positions)
         self._set_state(replace(self.state, poses=kept))
         self._record(do, **values)
 
+    @_after_step
     def animate(self, do: str, **values: Any) -> None:
         """Change the keyframes, see `keyframes.changed`; nothing moves. Raises InputError, KeyError."""
         animation = keyframes.changed(self.state.animation, do, values, self.state.positions)
         self._set_state(replace(self.state, animation=animation))
         self._record(do, **values)
 
+    @_after_step
     def go_back(self, state: EditState, line: int) -> None:
         """Take over the state after an earlier ``line`` of the recording, where what came after it stays."""
         self._restore(state)
         self._record("return", line=line)
 
     def step(self) -> StepResult:
-        """One step of the deformer towards the current targets. On SolverError the pose is as it was."""
-        result = super().step()
-        self._record("step")
+        """The step under way, or else a new one; waits for it. On SolverError the pose is as it was."""
+        try:
+            result = super().step()
+            self._record("step")
+        finally:
+            asked, self._asked = self._asked, []
+            for do, values in asked:
+                self._record(do, **values)
         return result
+
+    @property
+    def recorded(self) -> bool:
+        """Whether the recording says all that led to the current state."""
+        return not self._asked
 
     # -- saving --------------------------------------------------------------------------------------------
 
@@ -337,4 +389,7 @@ class Session(Bent):
                 raise InputError(f"{name}: expected ids of pins {sorted(known)}, got {pin_id}")
 
     def _record(self, do: str, **values: object) -> None:
+        if self.stepping:
+            self._asked.append((do, values))
+            return
         self.recording.events.append({"t": round(self._clock() - self._started, 4), "do": do, **values})

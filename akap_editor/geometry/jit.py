@@ -13,9 +13,13 @@ F = TypeVar("F", bound=Callable[..., object])
 
 
 def compiled(function: F) -> F:
-    """The same function of numbers and arrays, compiled; as in numpy, a division by zero raises nothing."""
+    """The same function of numbers and arrays, compiled; as in numpy, a division by zero raises nothing.
+
+    Other threads go on meanwhile.
+    """
+    options = {"nogil": True, "error_model": "numpy"}
     try:
-        made: F = numba.njit(function, cache=True, error_model="numpy")
+        made: F = numba.njit(function, cache=True, **options)
     except RuntimeError:  # neither the package's folder nor the user's cache can be written
-        made = numba.njit(function, error_model="numpy")
+        made = numba.njit(function, **options)
     return made

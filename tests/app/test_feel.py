@@ -2,15 +2,15 @@
 
 from imgui_bundle import imgui  # isort: skip
 import time
+from threading import Event
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from akap_editor.app import canvas as canvas_module
 from akap_editor.app import window as window_module
-from akap_editor.app.canvas import ANSWER_FRAMES
 from akap_editor.editor.editor import FRAME_BUDGET
+from akap_editor.editor.worker import AT_ONCE
 
 
 def one_frame(ui):
@@ -57,6 +57,7 @@ class Frames:
 
 
 def test_a_moved_pin_is_seen_moved_in_the_very_frame_that_sees_the_pointer_move(pinned):
+    pinned.editor.worker = AT_ONCE  # however slow the machine is at the moment
     frames = Frames(pinned, -32)
     before, earlier, now = (frames.seen[frames.first + i] for i in (-2, -1, 0))
     np.testing.assert_array_equal(before[1], earlier[1])
@@ -68,7 +69,8 @@ def test_a_moved_pin_is_seen_moved_in_the_very_frame_that_sees_the_pointer_move(
 
 
 def test_a_frame_stops_stepping_when_its_time_is_over(pinned, monkeypatch):
-    """However slow a step is, the next frame, and the next event, come after one step over the budget."""
+    """However many steps there are to go, the next frame comes when its time is over."""
+    pinned.editor.worker = AT_ONCE
     steps, now, step = [], [0.0], pinned.session.step
 
     def slow():
@@ -85,31 +87,88 @@ def test_a_frame_stops_stepping_when_its_time_is_over(pinned, monkeypatch):
     assert max(np.diff(counts)) == 2
 
 
-def test_panels_answer_before_a_slow_step(pinned, monkeypatch):
-    """While a panel answers to the pointer's move, nothing bends; then it goes on."""
-    steps, seen, step = [], [], pinned.session.step
-    monkeypatch.setattr(canvas_module, "FRAME_BUDGET", 0.0)
-    monkeypatch.setattr(pinned.session, "step", lambda: (steps.append(1), step())[1])
-    monkeypatch.setattr(pinned.editor, "advance", lambda: pinned.session.moving and pinned.session.step())
+@pytest.fixture
+def held(pinned, monkeypatch):
+    """A drag whose first step is computed until ``open`` is set."""
+    gate, deformer = Event(), pinned.session._bending.deformer
+    step = deformer.step
+
+    def wait(*arguments):
+        assert gate.wait(60)
+        return step(*arguments)
+
+    monkeypatch.setattr(deformer, "step", wait)
+    x, y = pinned.pin_place(3)
+    pinned.session.begin("Bend")
+    pinned.session.set_targets({3: (x, y - 40)})
+    pinned.session.commit()
+    yield SimpleNamespace(ui=pinned, open=gate, goal=(x, y - 40), pose=pinned.session.state.positions)
+    gate.set()
+    pinned.settle()
+
+
+def test_menus_view_and_drags_answer_while_a_step_is_computed(held):
+    ui, zoom = held.ui, held.ui.editor.camera.zoom
 
     def act(hand):
-        hand.mouse_teleport_to_pos(imgui.ImVec2(20, 400))
-        x, y = pinned.pin_place(3)
-        pinned.session.begin("Bend")
-        pinned.session.set_targets({3: (x, y - 140)})
-        pinned.session.commit()
-        hand.yield_()
-        pinned.window.after_draw.append(lambda: seen.append((imgui.get_io().mouse_pos.y, len(steps))))
-        hand.mouse_teleport_to_pos(imgui.ImVec2(20, 410))
-        hand.yield_(ANSWER_FRAMES)
+        hand.set_ref("##MainMenuBar")
+        hand.menu_click("View")
+        assert imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
+        hand.key_press(imgui.Key.escape)
+        hand.mouse_move_to_pos(imgui.ImVec2(*ui.beside))
+        hand.mouse_wheel_y(2.0)
+        hand.yield_(2)
+        assert ui.editor.camera.zoom > zoom
+        assert ui.editor.waiting
+        assert ui.session.state.positions is held.pose
 
-    pinned.do(act)
-    pinned.window.after_draw.clear()
-    first = next(i for i, (y, _) in enumerate(seen) if y == 410)
-    last = first + ANSWER_FRAMES - 1
-    assert steps
-    assert seen[first - 1][1] == seen[last][1]
-    assert seen[last + 1][1] == seen[last][1] + 1
+    ui.do(act, settle=False)
+    held.open.set()
+    ui.settle()
+    np.testing.assert_allclose(ui.pin_place(3), held.goal, atol=0.25)
+
+
+def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held):
+    window = held.ui.window
+    while window._awake or not held.ui.editor.waiting:
+        window._turn()
+    frames = window.frames
+    for _ in range(5):
+        window._turn()
+    assert window.frames == frames
+    assert window._busy
+    imgui.get_io().add_mouse_pos_event(300.0, 300.0)
+    window._turn()
+    window._turn()
+    assert window.frames > frames
+    held.open.set()
+    while held.ui.editor.moving:
+        window._turn()
+    np.testing.assert_allclose(held.ui.pin_place(3), held.goal, atol=0.25)
+
+
+def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatch):
+    pinned.space.view.vectors = True
+    gate, deformer = Event(), pinned.session._bending.deformer
+    fields = deformer.vector_fields
+    monkeypatch.setattr(deformer, "vector_fields", lambda *way: gate.wait(60) and fields(*way))
+    x, y = pinned.pin_place(3)
+    pinned.session.begin("Bend")
+    pinned.session.set_targets({3: (x, y - 40)})
+    while not pinned.space.view.waiting:
+        pinned.frame()
+    frames = pinned.window.frames
+    pinned.frame()
+    assert pinned.window.frames == frames + 1
+    assert not pinned.space.overlays(1.0).strokes
+    gate.set()
+    seen = []
+    while pinned.space.moving:
+        pinned.frame()
+        seen.append(len(pinned.space.overlays(1.0).strokes))
+    pinned.session.commit()
+    assert max(seen) > 0
+    pinned.settle()
 
 
 @pytest.mark.parametrize("press", ["wheel", "key"])

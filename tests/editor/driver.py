@@ -1,6 +1,7 @@
 """Drives an editor as a hand would, and checks after every event what must always hold."""
 
 from collections.abc import Callable
+from concurrent.futures import Executor
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from akap_editor.editor.document import Document, EditState
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
 from akap_editor.editor.session import Session
+from akap_editor.editor.worker import AT_ONCE
 from akap_editor.geometry.mesh import signed_areas
 
 Point = tuple[float, float]
@@ -42,8 +44,10 @@ def bits(state: EditState) -> tuple[Any, ...]:
 class Driver:
     """An editor with one drawing open; places are in drawing pixels."""
 
-    def __init__(self, document: Document, clock: Callable[[], float] | None = None) -> None:
-        self.editor = Editor(clock or Ticks())
+    def __init__(
+        self, document: Document, clock: Callable[[], float] | None = None, worker: Executor = AT_ONCE
+    ) -> None:
+        self.editor = Editor(clock or Ticks(), worker)
         self.editor.open(document)
         self._revision = 0
         self.check()
@@ -112,7 +116,7 @@ class Driver:
         self.handle(ScrollEvent(self.editor.camera.to_screen(at), amount))
 
     def advance(self) -> None:
-        """One step, if anything moves."""
+        """One step, if anything moves; a worker's is taken over later."""
         self.editor.advance(budget=0.0)
         self.check()
 

@@ -1,11 +1,16 @@
 """Whatever a hand does, in any order: what must always hold does, and all of it can be undone."""
 
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
 from akap_editor.editor.document import new_document
 from akap_editor.editor.events import KeyEvent, PointerEvent
+from akap_editor.editor.replay import replay
+from akap_editor.editor.worker import AT_ONCE
 
 from .driver import BESIDE, Driver, bits
 
@@ -18,13 +23,13 @@ places = st.one_of(
 buttons = st.sampled_from(["left", "left", "left", "middle", "right"])
 
 
-def machine(drawing):
+def machine(drawing, worker):
     class Editing(RuleBasedStateMachine):
         """A hand that does anything; the driver checks after each event what must always hold."""
 
         @initialize()
         def begin(self):
-            self.driver = Driver(new_document(drawing))
+            self.driver = Driver(new_document(drawing), worker=worker)
             self.editor = self.driver.editor
             self.first = bits(self.driver.state)
             self.driver.click(HEAD)
@@ -106,6 +111,10 @@ def machine(drawing):
 
         def teardown(self):
             self.editor.cancel()
+            if self.driver.session.stepping:
+                self.driver.session.step()
+            *_, moment = replay(self.driver.session.recording, drawing)
+            assert bits(moment.state) == bits(self.driver.state)
             states = [bits(self.driver.state)]
             while self.driver.depth:
                 self.driver.undo()
@@ -118,5 +127,8 @@ def machine(drawing):
     return Editing
 
 
-def test_whatever_is_done_can_be_undone_and_redone(drawing):
-    run_state_machine_as_test(machine(drawing), settings=settings(max_examples=20, stateful_step_count=30))
+@pytest.mark.parametrize("beside", [False, True], ids=["at once", "in a thread"])
+def test_whatever_is_done_can_be_undone_and_redone_and_replayed(drawing, beside):
+    with ThreadPoolExecutor(1) as thread:
+        kind = machine(drawing, thread if beside else AT_ONCE)
+        run_state_machine_as_test(kind, settings=settings(max_examples=20, stateful_step_count=30))
