@@ -128,8 +128,9 @@ def test_menus_view_and_drags_answer_while_a_step_is_computed(held):
     np.testing.assert_allclose(ui.pin_place(3), held.goal, atol=0.25)
 
 
-def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held):
+def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, monkeypatch):
     window = held.ui.window
+    monkeypatch.setattr(window_module.glfw, "wait_events_timeout", time.sleep)  # the screen's own events apart
     while window._awake or not held.ui.editor.waiting:
         window._turn()
     frames = window.frames
