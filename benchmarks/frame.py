@@ -1,9 +1,10 @@
-"""One dragged frame of the editor, taken apart: what does each part of it cost?
+"""The editor while a pin is dragged: how often it draws, how long it keeps a hand waiting, and on what.
 
-Run from the project's root: python benchmarks/frame.py [--frames N] [--drawing NAME]
+Run from the project's root: python benchmarks/frame.py [--seconds S] [--drawing NAME]
 Opens the real window on GLFW's null platform (no display needed), drags the trunk of the bundled elephant
-with pointer events, and prints for each mesh size the median and the 95th percentile of one frame in
-milliseconds, split into the parts named in `PARTS`, and the process's peak memory.
+a hundred times a second by pointer events, with the window's own loop, and prints for each mesh size the
+median and the 95th percentile, in milliseconds: of the time between two frames, of the parts of a frame named
+in `PARTS`, and of the steps that the engine's thread computes meanwhile; and the process's peak memory.
 """
 
 import os
@@ -22,99 +23,129 @@ from timing import Clock
 
 from akap_editor.app import window as window_module
 from akap_editor.app.window import Window
-from akap_editor.deform.akap import AkapDeformer
-from akap_editor.deform.akvf import KillingSystem
 from akap_editor.editor.document import make_drawing, new_document
-from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
+from akap_editor.editor.session import Session
 from akap_editor.io.images import read_image
 from akap_editor.render.renderer import Renderer
 from akap_editor.resources import resource
 
-SIZES = (1000, 3000, 10000)
+SIZES = (1000, 3000, 10000, 30000)
 PINS = ((135, 800), (285, 795), (445, 795), (625, 800), (260, 420))
 GRIP, REACH = (915, 180), (-250.0, -90.0)
-PARTS = ("solve", "spirals", "memory", "upload", "draw", "interface", "frame")
+RATE = 100  # moves of the hand a second
+PARTS = ("wait", "upload", "draw", "interface")
+COLUMNS = ("interval", *PARTS, "step")
 
 
-def instrument(clock: Clock) -> None:
-    """Sort the parts of a frame; whatever no other part claims is the interface."""
-    clock.wrap(KillingSystem, "prepare", "solve")
-    clock.wrap(KillingSystem, "field", "solve")
-    clock.wrap(AkapDeformer, "_move", "spirals")
-    clock.wrap(AkapDeformer, "_remember", "memory")
+class Hand:
+    """Drags the trunk there and back in so many seconds."""
+
+    def __init__(self, window: Window, seconds: float) -> None:
+        self._editor, self._seconds = window.space.editor, seconds
+        self._to_screen = self._editor.camera.to_screen
+        self._editor.handle_event(PointerEvent("press", self._to_screen(GRIP)))
+        self._started = time.perf_counter()
+        self._moves = 0
+
+    @property
+    def passed(self) -> float:
+        """Seconds since the press."""
+        return time.perf_counter() - self._started
+
+    def move(self) -> bool:
+        """Go to where the hand is now, if it has moved since the last look; whether it has."""
+        moves = int(self.passed * RATE)
+        if moves == self._moves:
+            return False
+        self._moves = moves
+        t = 0.5 - 0.5 * np.cos(2 * np.pi * self.passed / self._seconds)
+        at = GRIP[0] + t * REACH[0], GRIP[1] + t * REACH[1]
+        self._editor.handle_event(PointerEvent("move", self._to_screen(at)))
+        return True
+
+    def sleep(self, seconds: float) -> None:
+        """As the window sleeps: until then, or until the hand moves."""
+        time.sleep(max(min(seconds, (self._moves + 1) / RATE - self.passed), 0.0))
+
+
+def instrument(clock: Clock, window: Window) -> list[float]:
+    """Sort the parts of a frame, whatever no other part claims is the interface; seconds of steps to come."""
+    clock.wrap(Session, "step_is_ready", "wait")
     clock.wrap(Renderer, "show", "upload")
     clock.wrap(Renderer, "draw", "draw")
-    # llvmpipe draws when it must: the wait for the picture belongs to drawing.
+    # Without a screen no frame ever ends by itself, and what was drawn for it stays in memory.
+    window_module.glfw.swap_buffers = lambda _: window.ctx.finish()
     clock.wrap(window_module.glfw, "swap_buffers", "draw")
     clock.wrap(Window, "_frame", "interface")
+    steps: list[float] = []
+    step = Session.step
+
+    def counted(session: Session) -> object:
+        result = step(session)
+        steps.append(result.report.seconds)
+        return result
+
+    Session.step = counted  # type: ignore[assignment, method-assign]
+    return steps
 
 
-def measure(vertices: int, frames: int, name: str) -> tuple[int, list[dict[str, float]], float]:
-    """Drag for ``frames`` frames; the vertex count, the seconds of each frame, steps per frame."""
+def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[str, float]], list[float]]:
+    """Drag for so long; the vertex count, the seconds of each frame, and those of each step."""
     clock = Clock(PARTS)
-    instrument(clock)
-    steps = [0]
-    original = Editor.advance
-
-    def advance(editor: Editor, budget: float = 0.0) -> bool:
-        steps[0] += 1
-        return original(editor, 0.0)  # one step a frame, so that sizes compare
-
-    Editor.advance = advance  # type: ignore[method-assign]
     image = read_image(resource("assets", "drawings", f"{name}.png"))
-    rows = []
     with Window(null=True) as window:
-        for _ in range(4):
-            window.frame()
         window.space.show(new_document(make_drawing(image, vertices=vertices, name=name)))
         editor = window.space.editor
         for pin in PINS:
             editor.add_pin(pin)
-        to_screen = editor.camera.to_screen
-        editor.handle_event(PointerEvent("press", to_screen(GRIP)))
-        for frame in range(1, frames + 1):
-            t = 0.5 - 0.5 * np.cos(2 * np.pi * frame / frames)
-            editor.handle_event(
-                PointerEvent("move", to_screen((GRIP[0] + t * REACH[0], GRIP[1] + t * REACH[1])))
-            )
-            clock.take()
-            started = time.perf_counter()
+        for _ in range(20):  # panels find their places, and the drawing is fitted between them
             window.frame()
-            total = time.perf_counter() - started
-            rows.append({**clock.take(), "frame": total})
+        steps = instrument(clock, window)
+        hand = Hand(window, seconds)
+        window_module.glfw.wait_events_timeout = hand.sleep
+        rows: list[dict[str, float]] = []
+        before = window.frames, time.perf_counter()
+        while hand.passed < seconds:
+            if hand.move():
+                window.wake()
+            window._turn()
+            now = window.frames, time.perf_counter()
+            if now[0] > before[0]:
+                rows.append({**clock.take(), "interval": now[1] - before[1]})
+                before = now
         assert editor.session is not None
         count = len(editor.session.drawing.mesh.vertices)
-    return count, rows[3:], steps[0] / frames
+    return count, rows[3:], steps
 
 
-def print_table(count: int, rows: list[dict[str, float]]) -> None:
-    """Median and 95th percentile of each part, milliseconds."""
+def print_table(count: int, rows: list[dict[str, float]], steps: list[float], seconds: float) -> None:
+    """Median, 95th percentile and longest of each column, milliseconds."""
     memory = system.getrusage(system.RUSAGE_SELF).ru_maxrss / (1024**2 if sys.platform == "darwin" else 1024)
-    for label, quantile in (("median", 50), ("95 %", 95)):
-        values = [1000 * float(np.percentile([row[part] for row in rows], quantile)) for part in PARTS]
-        lead = f"{count:>8,}" if quantile == 50 else " " * 8
-        tail = f"{1000 / values[-1]:7.0f} fps  {memory:6.0f} MB" if quantile == 50 else ""
-        print(
-            f"{lead}  {label:>6} " + "".join(f"{value:10.2f}" for value in values) + f"  {tail}", flush=True
-        )
+    columns = {name: [row[name] for row in rows] for name in COLUMNS[:-1]} | {"step": steps}
+    for label, quantile in (("median", 50), ("95 %", 95), ("most", 100)):
+        values = [1000 * float(np.percentile(columns[name], quantile)) for name in COLUMNS]
+        first = quantile == 50
+        rates = f"  {len(rows) / seconds:6.0f} {len(steps) / seconds:6.0f} /s  {memory:5.0f} MB"
+        line = "".join(f"{value:10.2f}" for value in values)
+        print(f"{count if first else '':>8}  {label:>6} {line}{rates if first else ''}", flush=True)
 
 
 def main() -> None:
-    """Each size in a process of its own, so that peak memory is its own as well."""
+    """Each size in a process of its own, so that its peak memory is its own."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--frames", type=int, default=90)
+    parser.add_argument("--seconds", type=float, default=6.0)
     parser.add_argument("--drawing", default="elephant", choices=["elephant"])
     parser.add_argument("--size", type=int, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.size:
-        count, rows, _ = measure(options.size, options.frames, options.drawing)
-        print_table(count, rows)
+        count, rows, steps = measure(options.size, options.seconds, options.drawing)
+        print_table(count, rows, steps, options.seconds)
         return
-    print(f"One dragged frame, milliseconds ({options.drawing}, {len(PINS) + 1} pins, 1280×800, one thread)")
-    print(f"{'vertices':>8}  {'':>6} " + "".join(f"{part:>10}" for part in PARTS))
+    print(f"While a pin is dragged, milliseconds ({options.drawing}, {len(PINS) + 1} pins, 1280×800)")
+    print(f"{'vertices':>8}  {'':>6} " + "".join(f"{name:>10}" for name in COLUMNS) + "  frames  steps")
     for size in SIZES:
-        command = [sys.executable, __file__, "--size", str(size), "--frames", str(options.frames)]
+        command = [sys.executable, __file__, "--size", str(size), "--seconds", str(options.seconds)]
         subprocess.run(command, check=True)
 
 

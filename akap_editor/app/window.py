@@ -6,7 +6,6 @@ import ctypes
 import time
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -20,11 +19,11 @@ from ..editor.document import Document
 from ..errors import AkapError, DisplayError, GraphicsError
 from ..io.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
-from ..render.renderer import CANVAS, Background, Renderer
 from . import commands, key_order, palette, panels, split_view, theme
 from .canvas import Canvas, give_keys_to_panels
 from .dialogs import Dialogs, has_native_dialogs
 from .overlays import draw_legend
+from .picture import Picture
 from .preferences import Preferences
 from .recovery import Recovery
 from .welcome import Welcome
@@ -33,7 +32,6 @@ from .workspace import Workspace
 SIZE = (1280, 800)
 SMALLEST = (640, 400)
 GRASP = 64  # screen coordinates of a window's corner that must be on a screen for a hand to move it
-PLAIN = Background(color=CANVAS.color)
 SETTLE_FRAMES = 3  # ImGui needs so many frames after an event until everything stands where it belongs
 IDLE_SECONDS, BLINK_SECONDS = 1.0, 0.4
 STEP_SECONDS = 0.004  # between two looks whether the engine is done with a step
@@ -87,7 +85,7 @@ class Window:
         if self.space.preferences.get("maximized", False):
             glfw.maximize_window(self._handle)
         self.ctx = moderngl.create_context(require=330)
-        self.renderer = Renderer(self.ctx)
+        self._picture = Picture(self.ctx)
         self.space.exporter = OffscreenRenderer(self.ctx)
         # Callbacks only queue: an exception in one would come out of poll_events. ImGui calls those it needs.
         glfw.set_key_callback(self._handle, key_order.on_key)
@@ -122,7 +120,7 @@ class Window:
         self.space.exporter.__exit__()
         self._welcome.release()
         self._recovery.release()
-        self.renderer.release()
+        self._picture.release()
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         imgui.destroy_context()
@@ -236,7 +234,7 @@ class Window:
             self._recover(recovery, f"Something went wrong in the program ({type(error).__name__}: {error})")
             self.space.editor.cancel()
         render_imgui()
-        self._draw(framebuffer)
+        self._picture.draw(self.space, framebuffer, glfw.get_window_size(self._handle), self.scale)
         imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
         self.frames += 1
         for action in self.after_draw:
@@ -281,24 +279,6 @@ class Window:
         io.config_error_recovery_enable_assert = True
         self.space.error = message
         self.wake()
-
-    def _draw(self, framebuffer: tuple[int, int]) -> None:
-        space = self.space
-        background = replace(CANVAS, cell=CANVAS.cell * self.scale) if space.checker else PLAIN
-        document = space.document
-        if document is None:
-            self.renderer.hide()
-        else:
-            self.renderer.show(document.drawing, document.state.positions, document.order)
-        width, height = glfw.get_window_size(self._handle)
-        self.renderer.draw(
-            self.ctx.screen,
-            framebuffer,
-            space.editor.camera.view(width, height),
-            background=background,
-            overlays=space.overlays(self.scale * framebuffer[0] / max(width, 1)),
-        )
-        split_view.render(space, self.renderer, self.ctx.screen, framebuffer, (width, height), background)
 
     # -- the window ------------------------------------------------------------------------------------------
 

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from akap_editor.app import picture as picture_module
 from akap_editor.app import window as window_module
 from akap_editor.editor.editor import FRAME_BUDGET
 from akap_editor.editor.worker import AT_ONCE
@@ -130,7 +131,8 @@ def test_menus_view_and_drags_answer_while_a_step_is_computed(held):
 
 def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, monkeypatch):
     window = held.ui.window
-    monkeypatch.setattr(window_module.glfw, "wait_events_timeout", time.sleep)  # the screen's own events apart
+    # without the events that the screen itself sends
+    monkeypatch.setattr(window_module.glfw, "wait_events_timeout", time.sleep)
     while window._awake or not held.ui.editor.waiting:
         window._turn()
     frames = window.frames
@@ -202,3 +204,37 @@ def test_the_title_tells_what_is_open_and_whether_it_is_saved(pinned, changed):
         pinned.drag(start, (start[0], start[1] - 60))
     pinned.settle()
     assert pinned.window._title == f"figure{' *' if changed else ''} - akap-editor"
+
+
+def test_a_kept_picture_shows_every_change(pinned, monkeypatch):
+    """What a window shows that draws all of it in each frame."""
+
+    def hover(at):
+        imgui.get_io().add_mouse_pos_event(*at)
+
+    x, y = pinned.pin_place(3)
+    changes = [
+        lambda: hover(pinned.screen(pinned.pin_place(2))),
+        lambda: setattr(pinned.editor, "camera", pinned.editor.camera.zoomed(1.3, pinned.beside)),
+        lambda: setattr(pinned.space, "checker", False),
+        lambda: setattr(pinned.space, "show_mesh", True),
+        lambda: setattr(pinned.space.view, "ghost", True),
+        lambda: setattr(pinned.space.view, "trails", True),
+        lambda: setattr(pinned.space.view, "heat", "area"),
+        lambda: pinned.editor.place_pin(3, (x, y - 30)),
+        lambda: setattr(pinned.space.view, "heat_range", 0),
+        lambda: pinned.editor.set_depth(3, 2),
+        lambda: setattr(pinned.space, "split", True),
+        lambda: setattr(pinned.space, "split", False),
+        pinned.editor.undo,
+    ]
+    pictures = set()
+    for number, change in enumerate(changes):
+        change()
+        shots = []
+        for least in (0, 10**9):
+            monkeypatch.setattr(picture_module, "KEPT_FROM", least)
+            shots.append(canvas(pinned, pinned.screenshot()).astype(np.int16))
+        np.testing.assert_allclose(*shots, rtol=0, atol=4, err_msg=f"change {number}")  # layers round
+        pictures.add(shots[0].tobytes())
+    assert len(pictures) >= 8, "most of the changes are seen"

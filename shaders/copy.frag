@@ -1,0 +1,10 @@
+#version 330 core
+// The same picture, pixel by pixel.
+
+uniform sampler2D source;
+
+out vec4 color;
+
+void main() {
+    color = texelFetch(source, ivec2(gl_FragCoord.xy), 0);
+}
