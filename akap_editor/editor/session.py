@@ -64,7 +64,7 @@ class Session(Bent):
     Edits happen inside a gesture: `begin`, any number of edits and steps, then `commit` or `abort`. Adding or
     removing pins moves no vertex; only `step` does. All edits are written to `recording`, with times from
     ``clock`` (seconds) since it was ``started``, by default now. While a step is under way, targets and
-    angles may change, and are recorded after it; all other edits wait for it.
+    angles may change and gestures end, and are recorded after it; all other edits wait for it.
     """
 
     def __init__(
@@ -164,12 +164,13 @@ class Session(Bent):
         self.history.rename(label)
         self._record("label", label=label)
 
-    @_after_step
     def commit(self, join: bool = False) -> None:
         """End the gesture: one undo entry, or none where nothing changed. The pose may go on to settle.
 
         join: as a part of the entry before it.
         """
+        if self.stepping and (self.state is self._taken or self.history.unchanged(self.state)):
+            self.step()  # which may be all that has changed
         if self.state is self._taken:  # nothing was done but to look
             self.abort()
             return

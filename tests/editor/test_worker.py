@@ -134,15 +134,38 @@ def test_escape_wins_over_a_step_that_fails(slow, monkeypatch):
     assert slow.everything == slow.before
 
 
-def test_a_release_that_finds_a_failed_step_takes_the_gesture_back(slow, monkeypatch):
+def test_a_release_does_not_wait_for_the_step(slow):
+    count = len(kinds(slow))
+    slow.move(FARTHER)
+    slow.release(FARTHER)
+    assert slow.tool == "Idle"
+    assert slow.editor.waiting
+    assert slow.session.history.undo_label == "Bend"
+    slow.editor.worker.work()
+    slow.advance()
+    assert kinds(slow)[count:] == ["step", "targets", "commit"]
+    while slow.editor.moving:
+        slow.advance()
+        slow.editor.worker.work()
+    np.testing.assert_allclose(slow.where(3), FARTHER, atol=0.25)
+    *_, moment = replay(slow.session.recording, slow.session.drawing)
+    assert bits(moment.state) == bits(slow.state)
+    slow.undo()
+    assert slow.everything[0] == slow.before[0]
+
+
+def test_a_step_that_fails_after_the_release_leaves_the_pose(slow, monkeypatch):
+    pose = slow.state.positions
     failing(slow, monkeypatch)
+    slow.release(AWAY)
     with pytest.raises(SolverError, match="singular"):
-        slow.release(AWAY)
-    assert slow.everything == slow.before
+        slow.editor.advance(0.0)
+    assert slow.state.positions is pose
+    assert not slow.editor.moving
 
 
 EDITS = {
-    "commit": lambda session: session.commit(),
+    "commit": lambda session: (session.commit(), session.halt()),
     "add_pin": lambda session: session.add_pin((45.0, 40.0)),
     "remove_pins": lambda session: session.remove_pins({1}),
     "set_depths": lambda session: session.set_depths({1: 2}),
