@@ -12,7 +12,7 @@ from ..geometry.mesh import TriMesh
 from .angles import Turns, pin_angles
 from .document import EditState
 
-REACH = 0.035  # longest way of a pin in one step, as a share of √area: longer ones cost as much a pixel, and more each
+REACH = 0.035  # longest way of a pin in one step, as a share of √area; longer steps cost as much a pixel
 MOST_TURN = 0.2  # radians that a pin turns in one step
 
 
