@@ -164,7 +164,7 @@ class Editor:
         until, moved = time.perf_counter() + budget, False
         self.trails.follow(session)
         try:
-            while session.moving and not (moved and (session.near or time.perf_counter() > until)):
+            while session.moving and not (moved and (session.near or self._slow or time.perf_counter() > until)):
                 session.start_step(self.worker)
                 if not session.step_is_ready(until - time.perf_counter()):
                     break
@@ -178,11 +178,14 @@ class Editor:
 
     def go_on(self) -> None:
         """Let the worker begin with the next step while a frame is drawn, if steps take longer than that."""
-        session = self.session
-        if session is None or session.last_step is None or not session.moving:
-            return
-        if session.last_step.report.seconds > FRAME_BUDGET:
-            session.start_step(self.worker)
+        if self.session is not None and self.session.moving and self._slow:
+            self.session.start_step(self.worker)
+
+    @property
+    def _slow(self) -> bool:
+        """Whether steps take longer than a frame waits for them."""
+        last = self.session.last_step if self.session is not None else None
+        return last is not None and last.report.seconds > FRAME_BUDGET
 
     # -- edits, one gesture each ---------------------------------------------------------------------------
 
