@@ -161,15 +161,16 @@ class Editor:
         session = self.session
         if session is None or not session.moving:
             return False
-        until, moved = time.perf_counter() + budget, False
+        until, moved, enough = time.perf_counter() + budget, False, False
         self.trails.follow(session)
         try:
-            while session.moving and not (moved and (session.near or self._slow or time.perf_counter() > until)):
+            while session.moving and not enough:
                 session.start_step(self.worker)
                 if not session.step_is_ready(until - time.perf_counter()):
                     break
                 session.step()
                 moved = True
+                enough = session.near or self._slow or time.perf_counter() > until
                 self.trails.follow(session)
         except SolverError:
             self.cancel()
