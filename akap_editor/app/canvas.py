@@ -2,8 +2,8 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from ..editor.editor import ARROWS, FRAME_BUDGET, HELD_KEYS
-from ..editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
+from ..editor.editor import FRAME_BUDGET, HELD_KEYS
+from ..editor.events import ARROWS, Button, KeyEvent, PointerEvent, ScrollEvent
 from ..editor.tool_turning import PointingRing, TurningPin, hovered_ring
 from ..editor.tools import DraggingPin, Idle, PointingPin, RubberBand
 from .marks import draw_brush, draw_held_angle, draw_ring
