@@ -57,6 +57,7 @@ class Workspace:
     timeline: Literal["session", "keyframes"] = "session"  # which of the two the timeline shows
     grip: Literal["start", "end", "head", "keys", "none"] = "head"  # what the pointer holds of the timeline
     held_key: float = 0.0  # the time of the keyframe that it holds
+    key_menu: bool = False  # whether a key asks for the menu of a keyframe
     animating: bool = False  # whether the dialog for exports of the timeline is open
     task: Task | None = None
     renaming: str | None = None  # the pose that is given another name

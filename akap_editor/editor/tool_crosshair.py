@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from .editor import Editor
 
 STEP, BIG_STEP = 4.0, 40.0  # points of the screen that an arrow key moves it by
-MARGIN = 32.0  # points of the screen between it and the edge of the canvas
+MARGIN = 32.0  # points of the screen to the edge of the canvas
 _LEAVES = "arrows move on, Esc ends"
 
 
@@ -22,7 +22,7 @@ class Crosshair(Idle):
         left, top, right, bottom = editor.canvas
         x, y = editor.last_pointer or (left, top)
         seen = left < x < right and top < y < bottom
-        self._go((x, y) if seen else ((left + right) / 2, (top + bottom) / 2))
+        self._put((x, y) if seen else ((left + right) / 2, (top + bottom) / 2))
 
     @property
     def hint(self) -> str:  # type: ignore[override]
@@ -46,8 +46,7 @@ class Crosshair(Idle):
         if event.key in ARROWS:
             size = (BIG_STEP if event.shift else STEP) * self.editor.ui_scale
             dx, dy = ARROWS[event.key]
-            x, y = self.place
-            self._go((x + size * dx, y + size * dy))
+            self._move(size * dx, size * dy)
         elif event.key == "enter":
             self._click()
         elif event.key == "escape":
@@ -62,7 +61,9 @@ class Crosshair(Idle):
 
     def resized(self) -> None:
         """Another part of the window is the canvas."""
-        self._go(self.place)
+        left, top, right, bottom = self.editor.canvas
+        x, y = self.place
+        self._put((min(max(x, left), right), min(max(y, top), bottom)))
 
     @property
     def place(self) -> Point:
@@ -70,18 +71,28 @@ class Crosshair(Idle):
         assert self.editor.pointer is not None
         return self.editor.pointer
 
-    def _go(self, place: Point) -> None:
-        self.editor.pointer = self.editor.last_pointer = reveal(self.editor, place)
+    def _put(self, place: Point) -> None:
+        self.editor.pointer = self.editor.last_pointer = place
+
+    def _move(self, dx: float, dy: float) -> None:
+        """Move on over the drawing; near the edge of the canvas it is that which moves."""
+        editor, (x, y) = self.editor, self.place
+        left, top, right, bottom = editor.canvas
+        rim = MARGIN * editor.ui_scale
+        pans_x = x + dx < left + rim if dx < 0 else x + dx > right - rim and dx > 0
+        pans_y = y + dy < top + rim if dy < 0 else y + dy > bottom - rim and dy > 0
+        editor.camera = editor.camera.panned(-dx * pans_x, -dy * pans_y)
+        self._put((x + dx * (not pans_x), y + dy * (not pans_y)))
 
     def go_to_pin(self, pin: int) -> None:
         """Move onto a pin."""
-        self._go(self.editor.pins_on_screen()[pin])
+        self._put(reveal(self.editor, self.editor.pins_on_screen()[pin]))
 
     def _click(self) -> None:
         editor, place = self.editor, self.place
-        for kind in ("press", "release"):
-            shift, alt = "shift" in editor.held, "alt" in editor.held
-            editor.handle_event(PointerEvent(kind, place, shift=shift, alt=alt))  # type: ignore[arg-type]
+        shift, alt = "shift" in editor.held, "alt" in editor.held
+        editor.handle_event(PointerEvent("press", place, shift=shift, alt=alt))
+        editor.handle_event(PointerEvent("release", place, shift=shift, alt=alt))
         editor.enter(self)
 
 
@@ -108,15 +119,13 @@ def toggle_crosshair(editor: "Editor") -> None:
 
 
 def select_next(editor: "Editor", forward: bool = True) -> None:
-    """Select the pin after the selected ones, or before them, as they were added; after the last the first."""
+    """Select the pin after the selected ones, or before them; after the last one comes the first."""
     if editor.session is None or not editor.session.state.pins:
         return
     ids = [pin.id for pin in editor.session.state.pins]
     chosen = [number for number, pin in enumerate(ids) if pin in editor.selection]
-    if forward:
-        pin = ids[(max(chosen, default=-1) + 1) % len(ids)]
-    else:
-        pin = ids[min(chosen, default=0) - 1]
+    at = max(chosen, default=-1) + 1 if forward else min(chosen, default=0) - 1
+    pin = ids[at % len(ids)]
     editor.select({pin})
     if isinstance(editor.tool, Crosshair):
         editor.tool.go_to_pin(pin)

@@ -126,16 +126,31 @@ def test_the_canvas_moves_to_keep_it_in_sight(driver):
         driver.handle(KeyEvent("right", shift=True))
         seen.append(driver.editor.camera.to_drawing(driver.editor.pointer)[0])
         assert driver.editor.pointer[0] <= right - MARGIN
-    assert (np.diff(seen) > 0).all(), "it goes on over the drawing"
+    way = BIG_STEP / driver.editor.camera.zoom
+    assert np.diff(seen) == pytest.approx(way), "it goes on over the drawing"
     driver.editor.canvas = (left, top, right - 300, bottom)
-    assert driver.editor.pointer[0] == right - 300 - MARGIN
+    assert driver.editor.pointer[0] == right - 300
+
+
+def test_at_the_edge_it_comes_in_without_a_move_of_the_canvas(driver):
+    left, top, _, _ = driver.editor.canvas
+    driver.handle(PointerEvent("move", (left + 5, top + 5)))
+    camera = driver.editor.camera
+    toggle_crosshair(driver.editor)
+    driver.key("right")
+    driver.key("down")
+    assert driver.editor.pointer == (left + 5 + STEP, top + 5 + STEP)
+    assert driver.editor.camera == camera
+    driver.key("left")
+    assert driver.editor.pointer == (left + 5 + STEP, top + 5 + STEP)
+    assert driver.editor.camera == camera.panned(STEP, 0.0)
 
 
 def test_nothing_is_panned_where_it_is_in_sight(driver):
     camera = driver.editor.camera
     assert reveal(driver.editor, middle(driver.editor)) == middle(driver.editor)
     assert driver.editor.camera == camera
-    left, top, right, bottom = driver.editor.canvas = (0.0, 0.0, 40.0, 30.0)
+    driver.editor.canvas = (0.0, 0.0, 40.0, 30.0)
     assert reveal(driver.editor, (500.0, -20.0)) == pytest.approx((20.0, 15.0)), "no room for a margin"
 
 
