@@ -83,6 +83,7 @@ class Workspace:
     view: ViewState = field(default_factory=ViewState)
     meter: Meter = field(default_factory=Meter)
     first_steps: bool = False  # whether newcomers are shown how to begin
+    steps_taken: int = 0  # of these
     remesher: Remesher = field(init=False)
     _jobs: list[Callable[[], None]] = field(default_factory=list)
     _due: list[Callable[[], None]] = field(default_factory=list)
