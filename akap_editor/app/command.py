@@ -10,11 +10,13 @@ from .workspace import Workspace
 
 CTRL, SHIFT = imgui.Key.mod_ctrl, imgui.Key.mod_shift
 Key = imgui.Key
+MENU_KEYS = (SHIFT | Key.f10, Key.menu)
 _WALKING = frozenset(
     int(key)
     for key in (
         *(Key.left_arrow, Key.right_arrow, Key.up_arrow, Key.down_arrow),
         *(Key.page_up, Key.page_down, Key.home, Key.end, Key.enter, Key.keypad_enter),
+        *(Key.f10, Key.menu),
     )
 )
 
@@ -64,6 +66,11 @@ def _is_pressed(chord: int, repeats: bool) -> bool:
         return False
     flags = imgui.InputFlags_.repeat if repeats else imgui.InputFlags_.none
     return imgui.internal.is_key_chord_pressed(chord, int(flags))
+
+
+def menu_key() -> bool:
+    """Whether the menu is asked for by keys of what these have walked to."""
+    return any(imgui.is_key_chord_pressed(int(chord)) for chord in MENU_KEYS)
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from .command import CTRL, SHIFT, Command, Key, Submenu, always, has_drawing
 from .overlays import RANGES, Measure
 from .pointing_commands import CROSSHAIR, MENU_HERE, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
 from .requests import Palette
+from .settings_panel import defaults
 from .timeline_commands import ANIMATION
 from .workspace import Workspace
 
@@ -79,6 +80,11 @@ def _remember(space: Workspace) -> None:
     if session is not None:
         settings = session.state.settings
         space.change_settings(settings.with_parameter("memory", 0.0 if remembers(space) else 1.0))
+
+
+def _defaults(space: Workspace) -> None:
+    assert space.document is not None
+    space.change_settings(defaults(space.document.state.settings))
 
 
 def _can_undo(space: Workspace) -> bool:
@@ -210,6 +216,16 @@ BAKE = Command(
     "",
     lambda space: space.editor.session is not None and space.editor.session.posed,
 )
+DEFAULTS = Command(
+    "Default Parameters",
+    _defaults,
+    (),
+    "",
+    lambda space: (
+        space.document is not None
+        and defaults(space.document.state.settings) != space.document.state.settings
+    ),
+)
 REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _is_akap, remembers)
 
 HOLD_ANGLE = Command("Hold Angle", lambda space: toggle_hold(space.editor), (), "", _can_hold, _holds)
@@ -325,6 +341,7 @@ MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
             RESET,
             BAKE,
             REMEMBER,
+            DEFAULTS,
             SOFTEN_ALL,
         ),
     ),

@@ -152,7 +152,7 @@ def _list_entries(request: FileRequest, scale: float) -> bool:
     chosen = False
     taken = imgui.is_mouse_double_clicked(0) or widgets.enter_pressed()
     height = min(260 * scale, imgui.get_main_viewport().size.y - 220 * scale)
-    imgui.begin_child("##entries", ImVec2(520 * scale, height), imgui.ChildFlags_.borders)
+    imgui.begin_child("##entries", ImVec2(520 * scale, height), imgui.ChildFlags_.borders | widgets.WALKED)
     for name, is_folder in request.entries():
         icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
         flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from ..editor.events import ARROWS
 from ..editor.tool_crosshair import Crosshair, select_next, toggle_crosshair
 from . import keying
-from .command import CTRL, SHIFT, Command, Key, has_drawing
+from .command import CTRL, MENU_KEYS, SHIFT, Command, Key, has_drawing
 from .workspace import Workspace
 
 _ARROWS = {"left": Key.left_arrow, "right": Key.right_arrow, "up": Key.up_arrow, "down": Key.down_arrow}
@@ -69,7 +69,7 @@ PIN_VALUES = Command(
     "",
     _one_pin,
 )
-MENU_HERE = Command("Menu of Pin or Keyframe", _menu, (SHIFT | Key.f10, Key.menu), "", _can_ask)
+MENU_HERE = Command("Menu of Pin or Keyframe", _menu, MENU_KEYS, "", _can_ask)
 PANNING = tuple(
     Command(
         f"Look {name.capitalize()}",

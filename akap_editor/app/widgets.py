@@ -18,6 +18,7 @@ _BAR = (
     | imgui.WindowFlags_.no_docking
 )
 _NUMBER = 3.2  # times the font's size: least room for the number beside a slider, so that they end alike
+WALKED = imgui.ChildFlags_.nav_flattened  # of a child window: keys walk in and out as if there were none
 _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
 
 
@@ -99,7 +100,8 @@ def _cut(text: str, count: int, end: bool) -> str:
 
 def begin_list(name: str, count: int, most: int) -> None:
     """As high as its rows, or as ``most`` of them, to be scrolled; `imgui.end_child` must follow."""
-    imgui.begin_child(name, ImVec2(0, min(count, most) * imgui.get_text_line_height_with_spacing()))
+    height = min(count, most) * imgui.get_text_line_height_with_spacing()
+    imgui.begin_child(name, ImVec2(0, height), WALKED)
     # what marks a row reaches half the space between rows beyond its text, above the first one, too
     imgui.set_cursor_pos_y(0.5 * imgui.get_style().item_spacing.y)
 

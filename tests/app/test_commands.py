@@ -208,6 +208,14 @@ CASES = {
     "Reset Pose": (bent, lambda ui: not ui.session.posed and len(ui.pins) == 3),
     "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.posed and ui.editor.modified),
     "Remember the Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
+    "Default Parameters": (
+        lambda ui: ui.space.change_settings(
+            ui.session.state.settings.with_parameter("memory", 0.25).with_parameter("exact", True)
+        ),
+        lambda ui: (
+            ui.session.state.settings.get("memory") == 1.0 and not ui.session.state.settings.get("exact")
+        ),
+    ),
     "Fit in Window": (moved_camera, lambda ui: ui.editor.camera == fitted(ui)),
     "100 %": (moved_camera, lambda ui: ui.editor.camera.zoom == pytest.approx(1.0)),
     "Zoom In": (moved_camera, zoom_is(1.25)),

@@ -239,6 +239,46 @@ def test_first_steps_are_put_away_by_keys(ui):
     assert not ui.space.first_steps
 
 
+def test_lists_of_the_panel_are_walked_into(pinned):
+    """From the title of the pins down to the second of them."""
+    walk_to(pinned, "###section Pins", Key.down_arrow, Key.down_arrow, Key.space)
+    assert pinned.editor.selection == {2}
+    walk_to(pinned, "###section Pins", *[Key.down_arrow] * 3, SHIFT | Key.space)
+    assert pinned.editor.selection == {2, 3}
+
+
+def test_a_pose_is_ordered_and_forgotten_from_its_menu(ui):
+    for _ in range(3):
+        ui.editor.keep_pose()
+    ui.settle()
+    names = [pose.name for pose in ui.session.state.poses]
+    walk_to(ui, f"pose {names[2]}", SHIFT | Key.f10, *[Key.down_arrow] * 3, Key.enter)
+    assert [pose.name for pose in ui.session.state.poses] == [names[0], names[2], names[1]]
+    walk_to(ui, f"pose {names[2]}", Key.menu, *[Key.down_arrow] * 5, Key.enter)
+    assert [pose.name for pose in ui.session.state.poses] == [names[0], names[1]]
+
+
+def walk_to(ui, label, *chords):
+    """Walk through the side panel with Tab to an item, and press keys there."""
+
+    def act(hand):
+        wanted = hand.item_info(f"//Panel/{label}").id_
+        hand.key_press(Key.tab)
+        for _ in range(80):
+            hand.yield_(2)
+            if imgui.get_current_context().nav_id == wanted:
+                break
+            hand.key_press(Key.tab)
+        else:
+            raise AssertionError(f"Tab never comes to {label}")
+        for chord in chords:
+            hand.key_press(int(chord))
+            hand.yield_(3)
+        hand.key_press(Key.escape)
+
+    ui.do(act)
+
+
 def test_keys_return_to_the_canvas(pinned):
     pinned.editor.select({2})
     y = pinned.pins[1].target[1]
