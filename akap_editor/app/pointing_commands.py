@@ -20,7 +20,8 @@ def _has_pins(space: Workspace) -> bool:
 
 
 def _point(space: Workspace) -> None:
-    """Keys belong to the canvas then."""
+    """Keys belong to the canvas then, and the status bar says what they do."""
+    space.notice = ""
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
     toggle_crosshair(space.editor)

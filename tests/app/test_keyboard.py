@@ -230,6 +230,8 @@ def test_the_range_of_the_scale_is_chosen_by_keys(ui):
     assert RANGES[ui.space.view.heat_range] == 2.0
     keys(ui, *[Key.f6] * 3, Key.space)
     assert RANGES[ui.space.view.heat_range] == 4.0
+    walk_to(ui, "##range", Key.space, Key.up_arrow, Key.space)
+    assert RANGES[ui.space.view.heat_range] == 2.0
 
 
 def test_first_steps_are_put_away_by_keys(ui):
