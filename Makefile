@@ -15,7 +15,7 @@ help:
 
 run:
 	@sh tools/setup.sh run
-	@.venv/bin/akap-editor $${FILE:+"$$FILE"}
+	@if [ -n "$$FILE" ]; then .venv/bin/akap-editor edit "$$FILE"; else .venv/bin/akap-editor edit --bundled elephant; fi
 
 # Without DISPLAY the tests open their windows on an Xvfb of their own, never on the user's screen.
 test:

@@ -249,7 +249,8 @@ def test_replay_to_an_unknown_kind_of_animation(run, tmp_path):
 # -- edit without a display ---------------------------------------------------------------------------------
 
 
-def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path, monkeypatch):
+@pytest.mark.parametrize("arguments", [(), ("edit", "--bundled", "elephant")], ids=["alone", "make run"])
+def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path, monkeypatch, arguments):
     wanted = {}
 
     def smaller(*arguments, **options):
@@ -258,7 +259,7 @@ def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path
 
     replay = replaying.replay_recording
     monkeypatch.setattr(replaying, "replay_recording", smaller)
-    code, output, errors = run()
+    code, output, errors = run(*arguments)
     assert (code, errors) == (0, "")
     assert "there is no display" in output.splitlines()[0]
     with Image.open(tmp_path / "out" / "elephant.webp") as animation:
@@ -268,6 +269,11 @@ def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path
     assert (pose[..., 3] > 127).sum() > 10_000
     assert "elephant.png" in output
     assert "elephant.webp" in output
+
+
+def test_an_unknown_bundled_drawing_is_an_error_that_names_those_there_are(run, tmp_path):
+    assert_one_line(run("edit", "--bundled", "mammoth"), "mammoth", "elephant")
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_picture_without_display_is_an_error(run, picture, tmp_path):

@@ -21,6 +21,7 @@ from akap_editor.app.workspace import Palette, Workspace
 from akap_editor.editor.document import Document, make_drawing, new_document
 from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
 from akap_editor.editor.replay import replay
+from akap_editor.editor.tool_crosshair import toggle_crosshair
 from akap_editor.editor.tool_turning import RING
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.recordings import read_recording
@@ -104,6 +105,15 @@ def pins(window: Window) -> None:
     chosen = [pin.id for pin in posed_elephant().state.pins][-2:]
     space.editor.select(chosen)
     space.editor.request = PinRequest("values", chosen[-1])
+
+
+@shot("crosshair")
+def crosshair(window: Window) -> None:
+    """The pointer that is moved by keys, where a pin may be added."""
+    editor = window.space.editor
+    width, height = posed_elephant().drawing.size
+    editor.last_pointer = editor.camera.to_screen((0.42 * width, 0.5 * height))
+    toggle_crosshair(editor)
 
 
 @shot("ring")

@@ -19,8 +19,10 @@ HEAD = """# Keys and mouse
 ![The command palette with the letters "sho" typed](images/palette.png)
 
 Menus open with `F10`, or `Alt` and their first letter; arrows walk through them, `Enter` takes a line, `Esc`
-leaves. `Tab` goes from the drawing to the side panel, `Shift+Tab` to the tools. There and in dialogs, `Tab`
-and the arrows move from one thing to the next, `Enter` uses it, `Esc` gives the keys back to the drawing.
+leaves. `Tab` goes from the drawing to the side panel, `Shift+Tab` to the tools, `F6` from one panel to the
+next: side panel, tools, timeline, second method, scale of colors, first steps, and back to the drawing. There
+and in dialogs, `Tab` and the arrows move from one thing to the next, `Enter` uses it, `Shift+F10` opens its
+menu, `Esc` gives the keys back to the drawing. Pins are set [without a mouse](posing.md#without-a-mouse).
 
 This page is written by `tools/make_shortcuts.py`.
 """

@@ -27,11 +27,13 @@ def draw(space: Workspace, scale: float) -> None:
     if not widgets.begin_dialog("Export animation"):
         return
     choice = animating.remembered(space)
-    imgui.begin_child("##formats", ImVec2(_LEFT * scale, _HEIGHT * scale), imgui.ChildFlags_.borders)
+    imgui.begin_child(
+        "##formats", ImVec2(_LEFT * scale, _HEIGHT * scale), imgui.ChildFlags_.borders | widgets.WALKED
+    )
     _formats(choice)
     imgui.end_child()
     imgui.same_line(0, 18 * scale)
-    imgui.begin_child("##options", ImVec2((_WIDTH - _LEFT - 18) * scale, _HEIGHT * scale))
+    imgui.begin_child("##options", ImVec2((_WIDTH - _LEFT - 18) * scale, _HEIGHT * scale), widgets.WALKED)
     _options(choice, scale)
     _facts(space, choice, scale)
     imgui.end_child()

@@ -2,17 +2,20 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from ..editor.editor import ARROWS, HELD_KEYS
-from ..editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
+from ..editor.editor import HELD_KEYS
+from ..editor.events import ARROWS, Button, KeyEvent, PointerEvent, ScrollEvent
+from ..editor.tool import DRAG_DISTANCE, distance
+from ..editor.tool_crosshair import Crosshair
 from ..editor.tool_turning import PointingRing, TurningPin, hovered_ring
 from ..editor.tools import DraggingPin, Idle, PointingPin, RubberBand
-from .marks import draw_brush, draw_held_angle, draw_ring
+from .marks import draw_brush, draw_crosshair, draw_held_angle, draw_ring
 from .pin_popup import PinPopup
 from .theme import ACCENT, DARK, packed
 from .workspace import Workspace
 
 _BUTTONS: tuple[Button, ...] = ("left", "right", "middle")  # in ImGui's order
 _ARROW_KEYS = {name: imgui.Key[f"{name}_arrow"] for name in ARROWS}
+_CLICK_KEYS = (imgui.Key.enter, imgui.Key.keypad_enter, imgui.Key.space)  # of the crosshair
 _HOLDING = (PointingPin, DraggingPin, PointingRing, TurningPin)  # tools
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 
@@ -27,6 +30,7 @@ class Canvas:
         self._last = (0.0, 0.0)
         self._taking = False  # whether the gesture is recorded as a take
         self._popup = PinPopup()
+        self._interrupted = -1  # the last frame with a dialog or a menu
 
     def read_input(self, space: Workspace) -> None:
         """Pass this frame's pointer and keys on, unless a panel wants them."""
@@ -37,7 +41,9 @@ class Canvas:
         free = not io.want_capture_mouse
         idle = isinstance(editor.tool, Idle)
         inside = imgui.is_mouse_pos_valid()
-        if inside and position != self._last and (free or not idle):
+        # a mouse that lies there trembles
+        still = DRAG_DISTANCE * editor.ui_scale if isinstance(editor.tool, Crosshair) else 0.0
+        if inside and distance(position, self._last) > still and (free or not idle):
             self._last = position
             editor.handle_event(PointerEvent("move", position))
         if idle and not (free and inside):
@@ -60,18 +66,19 @@ class Canvas:
         if free and io.mouse_wheel:
             editor.handle_event(ScrollEvent(position, io.mouse_wheel))
 
-    @staticmethod
-    def let_go(space: Workspace) -> None:
+    def let_go(self, space: Workspace) -> None:
         """End what is held half-way: its end goes to a dialog or another window and will not be seen here."""
+        at = imgui.get_mouse_pos()
+        self._last, self._interrupted = (at.x, at.y), imgui.get_frame_count()
         space.editor.cancel()
         for name in HELD_KEYS:
             space.editor.handle_event(KeyEvent(name, pressed=False))
 
-    @staticmethod
-    def _read_keys(space: Workspace) -> None:
+    def _read_keys(self, space: Workspace) -> None:
         io, editor = imgui.get_io(), space.editor
+        pointing = isinstance(editor.tool, Crosshair)
         held = {
-            "space": imgui.is_key_down(imgui.Key.space),
+            "space": imgui.is_key_down(imgui.Key.space) and not pointing,
             "h": imgui.is_key_down(imgui.Key.h) and not io.key_ctrl,
             "alt": io.key_alt,
             "shift": io.key_shift,
@@ -82,14 +89,18 @@ class Canvas:
                 editor.handle_event(KeyEvent(name, is_meant))
         if io.want_text_input:
             return
-        if imgui.is_key_pressed(imgui.Key.escape, False):
+        if pointing and not io.nav_visible and any(imgui.is_key_pressed(key, False) for key in _CLICK_KEYS):
+            space.notice = ""
+            editor.handle_event(KeyEvent("enter"))
+        closed_menu = imgui.get_frame_count() <= self._interrupted + 1  # before this frame began
+        if imgui.is_key_pressed(imgui.Key.escape, False) and not closed_menu:
             editor.handle_event(KeyEvent("escape"))
             imgui.set_window_focus(None)  # from a panel that was walked into
         # a panel that was clicked must not take the arrows away; one that is walked through with keys does
         if imgui.is_mouse_released(0) and not io.nav_visible and not imgui.is_any_item_active():
             imgui.set_window_focus(None)
         for name, key in _ARROW_KEYS.items():
-            if imgui.is_key_pressed(key) and not io.nav_visible:
+            if imgui.is_key_pressed(key) and not io.nav_visible and not io.key_ctrl:
                 editor.handle_event(KeyEvent(name, shift=io.key_shift))
 
     def draw_popup(self, space: Workspace, scale: float) -> None:
@@ -140,6 +151,7 @@ class Canvas:
                 _draw_sign(draw, editor.pointer, 3.0 * scale, scale, "+")
             draw_ring(draw, editor, scale)
         draw_brush(draw, editor, scale)
+        draw_crosshair(draw, editor, scale)
         if isinstance(editor.tool, RubberBand):
             corners = ImVec2(*editor.tool.start), ImVec2(*editor.tool.end)
             low = ImVec2(min(c.x for c in corners), min(c.y for c in corners))
@@ -147,20 +159,6 @@ class Canvas:
             draw.add_rect_filled(low, high, packed(ACCENT, 0.12))
             draw.add_rect(low, high, packed(ACCENT, 0.9))
         draw.pop_clip_rect()
-
-
-def give_keys_to_panels(space: Workspace) -> None:
-    """With Tab to the side panel or the start page, with Shift+Tab to the tools; before these are drawn."""
-    context, io = imgui.get_current_context(), imgui.get_io()
-    taken = io.want_text_input or io.nav_visible or imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
-    if taken or io.key_ctrl or io.key_alt or not imgui.is_key_pressed(imgui.Key.tab, False):
-        return
-    name = "Start" if space.document is None else "Tools" if io.key_shift else "Panel"
-    window = imgui.internal.find_window_by_name(name)
-    if window is not None and (context.nav_window is None or context.nav_window.name != name):
-        imgui.internal.focus_window(window)
-        imgui.internal.nav_init_window(window, True)
-        imgui.set_nav_cursor_visible(True)
 
 
 def _draw_label(draw: imgui.ImDrawList, place: tuple[float, float], text: str, scale: float) -> None:

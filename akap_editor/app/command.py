@@ -10,6 +10,15 @@ from .workspace import Workspace
 
 CTRL, SHIFT = imgui.Key.mod_ctrl, imgui.Key.mod_shift
 Key = imgui.Key
+MENU_KEYS = (SHIFT | Key.f10, Key.menu)
+_WALKING = frozenset(
+    int(key)
+    for key in (
+        *(Key.left_arrow, Key.right_arrow, Key.up_arrow, Key.down_arrow),
+        *(Key.page_up, Key.page_down, Key.home, Key.end, Key.enter, Key.keypad_enter),
+        *(Key.f10, Key.menu),
+    )
+)
 
 
 def always(_: Workspace) -> bool:
@@ -17,11 +26,17 @@ def always(_: Workspace) -> bool:
     return True
 
 
+def has_drawing(space: Workspace) -> bool:
+    """Whether there is something to work on."""
+    return space.document is not None
+
+
 @dataclass(frozen=True)
 class Command:
     """label: as in menus; chords: keys, the first one is shown; checked: of a switch, whether it is on.
 
-    typed: a character in place of a key, since where it is on the keyboard differs between countries.
+    typed: a character in place of a key, since where it is on the keyboard differs between countries;
+    repeats: whether it is run again and again while its key is held.
     """
 
     label: str
@@ -31,6 +46,7 @@ class Command:
     enabled: Callable[[Workspace], bool] = always
     checked: Callable[[Workspace], bool] | None = None
     typed: str = ""
+    repeats: bool = False
 
     @property
     def key_name(self) -> str:
@@ -41,7 +57,20 @@ class Command:
         """Whether one of its keys was pressed in this frame."""
         if self.typed and ord(self.typed) in imgui.get_io().input_queue_characters:
             return True
-        return any(imgui.is_key_chord_pressed(int(chord)) for chord in self.chords)
+        return any(_is_pressed(int(chord), self.repeats) for chord in self.chords)
+
+
+def _is_pressed(chord: int, repeats: bool) -> bool:
+    """Keys that walk through a panel are left to it while one does that."""
+    if chord & ~int(Key.mod_mask_) in _WALKING and imgui.get_io().nav_visible:
+        return False
+    flags = imgui.InputFlags_.repeat if repeats else imgui.InputFlags_.none
+    return imgui.internal.is_key_chord_pressed(chord, int(flags))
+
+
+def menu_key() -> bool:
+    """Whether the menu is asked for by keys of what these have walked to."""
+    return any(imgui.is_key_chord_pressed(int(chord)) for chord in MENU_KEYS)
 
 
 @dataclass(frozen=True)
@@ -61,6 +90,12 @@ _KEY_NAMES = {
     "right_bracket": "]",
     "comma": ",",
     "period": ".",
+    "left_arrow": "Left",
+    "right_arrow": "Right",
+    "up_arrow": "Up",
+    "down_arrow": "Down",
+    "page_up": "PgUp",
+    "page_down": "PgDn",
 }
 
 

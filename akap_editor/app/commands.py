@@ -6,19 +6,16 @@ from typing import Literal
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ..editor.key_player import STEP
 from ..editor.tool_turning import toggle_hold
 from ..resources import bundled_drawings
-from . import animating, keying, masking, poses, recordings
-from .command import CTRL, SHIFT, Command, Key, Submenu, always
-from .overlays import Measure
+from . import keying, masking, poses, recordings
+from .command import CTRL, SHIFT, Command, Key, Submenu, always, has_drawing
+from .overlays import RANGES, Measure
+from .pointing_commands import CROSSHAIR, MENU_HERE, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
 from .requests import Palette
+from .settings_panel import defaults
+from .timeline_commands import ANIMATION
 from .workspace import Workspace
-
-
-def has_drawing(space: Workspace) -> bool:
-    """Whether there is something to work on."""
-    return space.document is not None
 
 
 def _toggle(name: str) -> tuple[Callable[[Workspace], None], Callable[[Workspace], bool]]:
@@ -85,6 +82,11 @@ def _remember(space: Workspace) -> None:
         space.change_settings(settings.with_parameter("memory", 0.0 if remembers(space) else 1.0))
 
 
+def _defaults(space: Workspace) -> None:
+    assert space.document is not None
+    space.change_settings(defaults(space.document.state.settings))
+
+
 def _can_undo(space: Workspace) -> bool:
     """In the middle of a gesture undo takes that one back."""
     editor = space.editor
@@ -107,6 +109,11 @@ def _view_toggle(name: str) -> tuple[Callable[[Workspace], None], Callable[[Work
         setattr(space.view, name, not getattr(space.view, name))
 
     return flip, lambda space: bool(getattr(space.view, name))
+
+
+def _next_range(space: Workspace) -> None:
+    """The next wider range of the scale; after the widest the narrowest."""
+    space.view.heat_range = (space.view.heat_range + 1) % len(RANGES)
 
 
 def _heat_toggle(measure: Measure) -> tuple[Callable[[Workspace], None], Callable[[Workspace], bool]]:
@@ -209,6 +216,16 @@ BAKE = Command(
     "",
     lambda space: space.editor.session is not None and space.editor.session.posed,
 )
+DEFAULTS = Command(
+    "Default Parameters",
+    _defaults,
+    (),
+    "",
+    lambda space: (
+        space.document is not None
+        and defaults(space.document.state.settings) != space.document.state.settings
+    ),
+)
 REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _is_akap, remembers)
 
 HOLD_ANGLE = Command("Hold Angle", lambda space: toggle_hold(space.editor), (), "", _can_hold, _holds)
@@ -229,10 +246,20 @@ SOFTEN_ALL = Command(
 FIT = Command("Fit in Window", lambda space: space.editor.fit(), (Key.f,), icons.ICON_FA_EXPAND, has_drawing)
 ACTUAL = Command("100 %", _actual_size, (Key._1,), "", has_drawing)
 ZOOM_IN = Command(
-    "Zoom In", lambda space: space.editor.zoom(1.25), (Key.equal, CTRL | Key.equal), "", has_drawing
+    "Zoom In",
+    lambda space: space.editor.zoom(1.25),
+    (Key.equal, CTRL | Key.equal),
+    "",
+    has_drawing,
+    repeats=True,
 )
 ZOOM_OUT = Command(
-    "Zoom Out", lambda space: space.editor.zoom(0.8), (Key.minus, CTRL | Key.minus), "", has_drawing
+    "Zoom Out",
+    lambda space: space.editor.zoom(0.8),
+    (Key.minus, CTRL | Key.minus),
+    "",
+    has_drawing,
+    repeats=True,
 )
 SHOW_MESH = Command("Show Mesh", _mesh, (Key.m,), icons.ICON_FA_DRAW_POLYGON, always, _mesh_on)
 SHOW_PINS = Command("Show Pins", _pins, (SHIFT | Key.p,), "", always, _pins_on)
@@ -242,6 +269,9 @@ CHECKER = Command("Checkerboard", _checker, (Key.b,), "", always, _checker_on)
 SHOW_FIELD = Command("Vector Field of the Drag", _field, (Key.v,), "", has_drawing, _field_on)
 SHOW_AREA = Command("Distortion of Areas", _area, (Key.d,), "", has_drawing, _area_on)
 SHOW_ANGLE = Command("Distortion of Angles", _angle, (SHIFT | Key.d,), "", has_drawing, _angle_on)
+NEXT_RANGE = Command(
+    "Next Range of Distortion", _next_range, (Key.r,), "", lambda space: space.view.heat is not None
+)
 SHOW_GHOST = Command("Rest Pose", _ghost, (Key.g,), "", has_drawing, _ghost_on)
 SHOW_TRAILS = Command("Pin Trails", _trails, (Key.t,), "", has_drawing, _trails_on)
 CHOOSE_REFERENCE = Command("Reference Picture...", Workspace.ask_reference, (), "", has_drawing)
@@ -254,38 +284,6 @@ SHOW_REFERENCE = Command(
     _reference_on,
 )
 OVERLAYS = (SHOW_FIELD, SHOW_AREA, SHOW_ANGLE, SHOW_GHOST, SHOW_TRAILS)
-
-KEY_HERE = Command("Keyframe Here", keying.keyframe_here, (Key.k,), icons.ICON_FA_DIAMOND, has_drawing)
-KEY_REMOVE = Command(
-    "Remove Keyframe", lambda space: space.key_player.remove(), (SHIFT | Key.k,), "", keying.shown
-)
-KEY_COPY = Command(
-    "Duplicate Keyframe",
-    lambda space: space.key_player.duplicate(),
-    (CTRL | SHIFT | Key.k,),
-    "",
-    keying.shown,
-)
-KEY_NEXT = Command(
-    "Next Keyframe", lambda space: space.key_player.step(True), (Key.period,), "", keying.shown
-)
-KEY_PREVIOUS = Command(
-    "Previous Keyframe", lambda space: space.key_player.step(False), (Key.comma,), "", keying.shown
-)
-KEY_LATER = Command("Move Keyframe Later", keying.nudging(STEP), (SHIFT | Key.period,), "", keying.shown)
-KEY_EARLIER = Command("Move Keyframe Earlier", keying.nudging(-STEP), (SHIFT | Key.comma,), "", keying.shown)
-PLAY = Command("Play", keying.play, (Key.l,), icons.ICON_FA_PLAY, keying.can_play)
-ONION = Command(
-    "Onion Skin",
-    keying.toggle_onion,
-    (Key.o,),
-    icons.ICON_FA_LAYER_GROUP,
-    keying.shown,
-    lambda space: space.key_player.onion.shown,
-)
-EXPORT_ANIMATION = Command(
-    "Export Animation...", animating.ask, (CTRL | SHIFT | Key.e,), icons.ICON_FA_FILM, keying.can_play
-)
 
 PALETTE = Command("Find Command...", _find, (CTRL | Key.k, Key.f3))
 KEYS = Command("Keys and Mouse", _keys, (Key.f1,), typed="?")
@@ -331,6 +329,10 @@ MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
             REMOVE_LAST,
             SELECT_ALL,
             DESELECT,
+            NEXT_PIN,
+            PREVIOUS_PIN,
+            PIN_VALUES,
+            MENU_HERE,
             None,
             FORWARD,
             BACK,
@@ -339,6 +341,7 @@ MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
             RESET,
             BAKE,
             REMEMBER,
+            DEFAULTS,
             SOFTEN_ALL,
         ),
     ),
@@ -346,26 +349,19 @@ MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
         "View",
         (
             *(FIT, ACTUAL, ZOOM_IN, ZOOM_OUT, None),
-            *(SHOW_MESH, SHOW_PINS, *OVERLAYS, None),
+            *(SHOW_MESH, SHOW_PINS, *OVERLAYS, NEXT_RANGE, None),
             *(CHECKER, CHOOSE_REFERENCE, SHOW_REFERENCE),
             *(None, SHOW_TIMELINE, SPLIT),
         ),
     ),
-    (
-        "Animation",
-        (
-            *(PLAY, EXPORT_ANIMATION, None),
-            *(KEY_HERE, KEY_REMOVE, KEY_COPY, None),
-            *(KEY_PREVIOUS, KEY_NEXT, KEY_EARLIER, KEY_LATER, None),
-            ONION,
-        ),
-    ),
+    ("Animation", ANIMATION),
     ("Help", (PALETTE, KEYS, ABOUT)),
 )
 COMMANDS = (
     *(command for _, group in MENUS for command in group if isinstance(command, Command)),
-    *(PIN_TOOL, HAND_TOOL, BRUSH_TOOL),
+    *(PIN_TOOL, HAND_TOOL, BRUSH_TOOL, CROSSHAIR),
     *(ERASE, SMALLER, LARGER),
+    *PANNING,
 )
 
 

@@ -81,15 +81,9 @@ def _open_native(request: FileRequest) -> Any:
     return native.open_file(request.title, str(request.folder), [patterns, patterns])
 
 
-def _text(text: str, width: float) -> None:
-    imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width)
-    imgui.text_unformatted(text)
-    imgui.pop_text_wrap_pos()
-
-
 def _message(space: Workspace, scale: float) -> None:
     if widgets.begin_dialog("That did not work"):
-        _text(space.error, 420 * scale)
+        widgets.paragraph(space.error, 420 * scale)
         imgui.spacing()
         if widgets.button("OK", primary=True) or widgets.escape() or widgets.enter():
             widgets.close(space, "error", "")
@@ -104,7 +98,7 @@ def _unsaved(space: Workspace, scale: float) -> None:
     if widgets.begin_dialog("Unsaved changes"):
         name = document.path.name if document.path is not None else document.drawing.name
         text = f"Save the changes to {name} before it is closed?"
-        _text(text, min(imgui.calc_text_size(text).x + 1, 420 * scale))
+        widgets.paragraph(text, min(imgui.calc_text_size(text).x + 1, 420 * scale))
         imgui.spacing()
         if widgets.button("Save", primary=True) or widgets.enter():
             widgets.close(space, "question", None)
@@ -158,7 +152,7 @@ def _list_entries(request: FileRequest, scale: float) -> bool:
     chosen = False
     taken = imgui.is_mouse_double_clicked(0) or widgets.enter_pressed()
     height = min(260 * scale, imgui.get_main_viewport().size.y - 220 * scale)
-    imgui.begin_child("##entries", ImVec2(520 * scale, height), imgui.ChildFlags_.borders)
+    imgui.begin_child("##entries", ImVec2(520 * scale, height), imgui.ChildFlags_.borders | widgets.WALKED)
     for name, is_folder in request.entries():
         icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
         flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups
@@ -184,18 +178,17 @@ def _about(space: Workspace, scale: float) -> None:
     if not widgets.begin_dialog("About akap-editor"):
         return
     imgui.text(f"akap-editor {__version__}")
-    _text(
+    widgets.paragraph(
         "Bends cartoons with as-Killing-as-possible vector fields and logarithmic spirals, after Solomon, "
         "Ben-Chen, Butscher and Guibas, Symposium on Geometry Processing 2011.",
         380 * scale,
     )
-    imgui.push_style_color(imgui.Col_.text, imgui.ImVec4(*QUIET))
-    _text(
+    widgets.paragraph(
         "Free software under the GNU General Public License, version 3 or later. Meshes are made by "
         "Triangle, whose own terms allow non-commercial use only.",
         380 * scale,
+        QUIET,
     )
-    imgui.pop_style_color()
     imgui.spacing()
     if widgets.button("Close", primary=True) or widgets.escape() or widgets.enter():
         widgets.close(space, "about", False)

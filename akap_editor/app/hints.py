@@ -18,11 +18,14 @@ STEPS = (
 
 
 def step(space: Workspace) -> int:
-    """The step to be taken, as an index into `STEPS`: what has been done shows in the drawing itself."""
+    """The step to be taken, as an index into `STEPS`: what has been done shows in the drawing itself.
+
+    What is undone has been done all the same.
+    """
     session = space.editor.session
-    if session is None or not session.state.pins:
-        return 0
-    return 2 if session.posed else 1
+    if session is not None and session.state.pins:
+        space.steps_taken = max(space.steps_taken, 2 if session.posed else 1)
+    return space.steps_taken
 
 
 def draw(space: Workspace, scale: float) -> None:

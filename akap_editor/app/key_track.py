@@ -140,11 +140,6 @@ def _near(player: KeyPlayer, track: Scale, scale: float) -> float | None:
     return time if time is not None and abs(track.x(time) - x) <= _REACH * scale else None
 
 
-def _snapped(time: float) -> float:
-    """The nearest of the times that a drag goes to."""
-    return round(time / STEP) * STEP
-
-
 def _handle(space: Workspace, track: Scale, top: float, scale: float) -> None:
     player = space.key_player
     if player.held and imgui.is_key_pressed(imgui.Key.escape, False):
@@ -158,10 +153,15 @@ def _handle(space: Workspace, track: Scale, top: float, scale: float) -> None:
         player.drop()
     if imgui.is_item_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.right):
         key = _near(player, track, scale)
-        player.scrub(_snapped(track.time(imgui.get_mouse_pos().x)) if key is None else key)
+        player.scrub(keying.snapped(track.time(imgui.get_mouse_pos().x)) if key is None else key)
         if key is None or key not in player.chosen:
             player.chosen = frozenset() if key is None else frozenset({key})
         space.held_key = player.at
+        imgui.open_popup("key menu")
+    if space.key_menu:  # by keys: above the track, so that the keyframe stays in sight
+        space.key_menu = False
+        at = min(player.chosen, default=player.at)
+        imgui.set_next_window_pos(ImVec2(track.x(at), top - 8 * scale), pivot=ImVec2(0, 1))
         imgui.open_popup("key menu")
     if imgui.begin_popup("key menu"):
         _menu(space)
@@ -192,7 +192,7 @@ def _press(space: Workspace, track: Scale, top: float, scale: float) -> None:
         player.chosen = frozenset()
         if imgui.is_mouse_double_clicked(0) and not in_ruler:
             space.editor.select(())
-            player.put(_snapped(track.time(imgui.get_mouse_pos().x)))
+            player.put(keying.snapped(track.time(imgui.get_mouse_pos().x)))
         return
     space.grip, space.held_key = "keys", key
     space.editor.select(())
@@ -206,14 +206,14 @@ def _press(space: Workspace, track: Scale, top: float, scale: float) -> None:
 def _drag(space: Workspace, track: Scale, scale: float) -> None:
     player, io, x = space.key_player, imgui.get_io(), imgui.get_mouse_pos().x
     if space.grip in ("start", "end"):
-        player.cut_to(**{space.grip: _snapped(track.time(x))})
+        player.cut_to(**{space.grip: keying.snapped(track.time(x))})
     elif space.grip == "head" and not imgui.is_mouse_double_clicked(0):
-        player.scrub(track.time(x) if io.key_alt else _snapped(track.time(x)))
+        player.scrub(track.time(x) if io.key_alt else keying.snapped(track.time(x)))
     elif space.grip == "keys" and player.chosen:
         way = imgui.get_mouse_drag_delta(0, 0.0).x
         if abs(way) < _DRAG * scale and not player.held:
             return
-        to = max(_snapped(space.held_key + track.seconds(way)), 0.0)
+        to = max(keying.snapped(space.held_key + track.seconds(way)), 0.0)
         if io.key_alt:
             chosen = player.chosen if len(player.chosen) > 1 else player.kept_times
             player.drag(stretched(chosen, space.held_key, to))
@@ -273,7 +273,7 @@ def _drop_target(space: Workspace, track: Scale) -> None:
     payload = imgui.accept_drag_drop_payload_py_id(POSE_PAYLOAD)
     if payload is not None and space.document is not None:
         pose = space.document.state.poses[payload.data_id]
-        time = _snapped(track.time(imgui.get_mouse_pos().x))
+        time = keying.snapped(track.time(imgui.get_mouse_pos().x))
         space.attempt(lambda: space.key_player.put(time, pose.positions))
         space.key_player.scrub(time)
     imgui.end_drag_drop_target()

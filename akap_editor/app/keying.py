@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from ..editor.key_player import STEP
 from .workspace import Workspace
 
 
@@ -35,6 +36,26 @@ def toggle_onion(space: Workspace) -> None:
 def nudging(by: float) -> Callable[[Workspace], None]:
     """Brings the chosen keyframes forward or back by seconds."""
     return lambda space: space.key_player.nudge(by)
+
+
+def choose_all(space: Workspace) -> None:
+    """Select every keyframe, to be moved together."""
+    space.key_player.chosen = frozenset(space.key_player.kept_times)
+
+
+def going(by: float) -> Callable[[Workspace], None]:
+    """Looks so many seconds later, or earlier; at keyframes, where the mouse would stop, too."""
+
+    def go(space: Workspace) -> None:
+        moment = space.transport.position + by
+        space.transport.look(snapped(moment) if space.timeline == "keyframes" else moment)
+
+    return go
+
+
+def snapped(time: float) -> float:
+    """The nearest of the times that a drag of keyframes goes to."""
+    return round(time / STEP) * STEP
 
 
 def play(space: Workspace) -> None:

@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from . import widgets
-from .command import Command
+from .command import Command, Key
 from .commands import COMMANDS, KEYS, MENUS
 from .theme import ACTIVE, QUIET, TEXT, packed
 from .workspace import Workspace
@@ -18,14 +18,21 @@ _MOUSE = (
     ("Alt-click a pin", "remove it"),
     ("Alt-drag its ring", "turn the drawing there"),
     ("Arrows", "nudge; with Shift by 10"),
+    ("C, arrows, Enter", "point without a mouse"),
     ("Middle-drag, Space-drag", "move the canvas"),
     ("Wheel", "zoom at the pointer"),
     ("H", "hide pins while held"),
     ("Esc", "back to before the drag"),
 )
-_MENUS = (("F10, Alt+letter", "open a menu"), ("Tab, arrows, Enter", "walk and use a panel"))
+_MENUS = (
+    ("F10, Alt+letter", "open a menu"),
+    ("F6, Shift+F6", "to another panel"),
+    ("Tab, arrows, Enter", "walk and use a panel"),
+)
 _COLUMN, _KEYS = 302, 158  # widths in design points
-_MOST_COLUMNS = 3
+_MOST_COLUMNS = 4
+_TOOLS_AT = 3  # among the groups: there the columns are of about one height
+_LINES = {Key.up_arrow: -1, Key.down_arrow: 1, Key.page_up: -10, Key.page_down: 10}  # that keys scroll
 
 
 def groups() -> list[tuple[str, list[tuple[str, str]]]]:
@@ -37,8 +44,8 @@ def groups() -> list[tuple[str, list[tuple[str, str]]]]:
         in_menus.update(map(id, listed))
         found.append((name, [_line(command) for command in listed]))
     tools = [command for command in COMMANDS if command.chords and id(command) not in in_menus]
-    found.append(("Tools", [_line(command) for command in tools]))
-    found[-2][1].extend(_MENUS)
+    found[-1][1].extend(_MENUS)
+    found.insert(_TOOLS_AT, ("Tools", [_line(command) for command in tools]))
     return [(title, lines) for title, lines in found if lines]
 
 
@@ -56,7 +63,10 @@ def draw(space: Workspace, scale: float) -> None:
     lines = max(sum(len(lines) + 2 for _, lines in column) for column in columns)
     height = min(lines * imgui.get_text_line_height_with_spacing(), room.y - 140 * scale)
     width = len(columns) * _COLUMN * scale + imgui.get_style().scrollbar_size
-    imgui.begin_child("##all", ImVec2(width, height))
+    imgui.begin_child("##all", ImVec2(width, height), 0, imgui.WindowFlags_.no_nav_inputs)
+    by = sum(lines for key, lines in _LINES.items() if imgui.is_key_pressed(key))
+    if by:
+        imgui.set_scroll_y(imgui.get_scroll_y() + by * imgui.get_text_line_height_with_spacing())
     if imgui.begin_table("##columns", len(columns)):
         imgui.table_next_row()
         for column in columns:

@@ -1,4 +1,4 @@
-"""What the canvas shows of angles that pins hold, of the ring that turns them, and of the brush."""
+"""What the canvas shows of angles that pins hold, of the ring that turns them, brush and crosshair."""
 
 import math
 
@@ -6,6 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ..editor.camera import Point
 from ..editor.editor import Editor
+from ..editor.tool_crosshair import Crosshair
 from ..editor.tool_turning import RING, TurningPin, ring_pin
 from .theme import ACCENT, DARK, packed
 
@@ -67,3 +68,22 @@ def draw_brush(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
         end = ImVec2(center.x + sign * dx, center.y + sign * dy)
         draw.add_line(start, end, packed(DARK, 0.7), 3.5 * scale)
         draw.add_line(start, end, packed(_WHITE), 1.6 * scale)
+
+
+def draw_crosshair(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
+    """Four arms around the place that it points at, which stays free; thin lines lead to them."""
+    if not isinstance(editor.tool, Crosshair):
+        return
+    (x, y), (left, top, right, bottom) = editor.tool.place, editor.canvas
+    inner = 13 * scale
+    if editor.chosen_tool == "brush":
+        inner = max(inner, editor.brush.radius * scale + 3 * scale)
+    outer = inner + 18 * scale
+    for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        start = ImVec2(x + inner * dx, y + inner * dy)
+        end = ImVec2(x + outer * dx, y + outer * dy)
+        edge = ImVec2((right if dx > 0 else left) if dx else x, (bottom if dy > 0 else top) if dy else y)
+        draw.add_line(end, edge, packed(DARK, 0.35), 3.0 * scale)
+        draw.add_line(end, edge, packed(_WHITE, 0.45), 1.0 * scale)
+        draw.add_line(start, end, packed(DARK, 0.8), 5.0 * scale)
+        draw.add_line(start, end, packed(ACCENT), 2.4 * scale)

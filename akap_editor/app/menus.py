@@ -35,7 +35,7 @@ def _pressed() -> str:
     """The menu whose key was pressed, or nothing."""
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup) or imgui.get_io().want_text_input:
         return ""
-    if imgui.is_key_pressed(imgui.Key.f10, False):
+    if imgui.is_key_pressed(imgui.Key.f10, False) and not imgui.get_io().key_shift:  # for another menu
         return _NAMES[0]
     for name in _NAMES:
         if imgui.is_key_chord_pressed(int(imgui.Key.mod_alt | imgui.Key[name[0].lower()])):

@@ -260,9 +260,9 @@ def draw_legend(view: ViewState, editor: Editor, scale: float) -> None:
     imgui.set_next_window_bg_alpha(0.82)
     flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.always_auto_resize
     flags |= imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
-    flags |= imgui.WindowFlags_.no_focus_on_appearing | imgui.WindowFlags_.no_nav
+    flags |= imgui.WindowFlags_.no_focus_on_appearing
     if view.heat is None:
-        flags |= imgui.WindowFlags_.no_inputs
+        flags |= imgui.WindowFlags_.no_inputs  # nor does F6 stop there
     if imgui.begin("##legend", None, flags)[0]:
         if view.vectors:
             _field_legend(editor.session, scale)
@@ -294,10 +294,11 @@ def _heat_legend(view: ViewState, measure: Measure, scale: float) -> None:
     imgui.text_colored(ImVec4(*QUIET), title)
     size = ImVec2(230 * scale, 10 * scale)
     at = imgui.get_cursor_screen_pos()
-    if imgui.invisible_button("##range", ImVec2(size.x, size.y + 3 * scale + imgui.get_text_line_height())):
+    whole = ImVec2(size.x, size.y + 3 * scale + imgui.get_text_line_height())
+    if imgui.invisible_button("##range", whole, imgui.ButtonFlags_.enable_nav):
         view.heat_range = (view.heat_range + 1) % len(RANGES)
     if imgui.is_item_hovered(imgui.HoveredFlags_.delay_normal):
-        imgui.set_tooltip("Click for another range")
+        imgui.set_tooltip("Click, or R, for another range")
     draw, colors = imgui.get_window_draw_list(), COLORS[measure]
     edges = np.linspace(at.x, at.x + size.x, len(colors) + 1).tolist()
     for low, high, color in zip(edges, edges[1:], colors.tolist(), strict=False):

@@ -10,6 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..editor.framing import frame_box
 from ..editor.poses import NamedPose
 from . import widgets
+from .command import menu_key
 from .key_track import POSE_PAYLOAD
 from .theme import ACCENT, FRAME, HOVER, QUIET, packed
 from .workspace import Workspace
@@ -66,7 +67,9 @@ def _all_poses(space: Workspace, poses: Sequence[NamedPose], scale: float) -> No
     if scrolls:
         gaps = 2 * imgui.get_style().item_spacing.y
         row = round(_SIDE * scale) + 0.86 * imgui.get_text_line_height() + gaps
-        imgui.begin_child("##poses", ImVec2(0, (_ROWS + 0.5) * row))  # half a row says that there are more
+        imgui.begin_child(
+            "##poses", ImVec2(0, (_ROWS + 0.5) * row), widgets.WALKED
+        )  # half a row says that there are more
     for number, pose in enumerate(poses):
         if number % _COLUMNS:
             imgui.same_line(0, 6 * scale)
@@ -90,6 +93,8 @@ def _pose(space: Workspace, pose: NamedPose, scale: float) -> None:
     if hovered and imgui.is_key_pressed(imgui.Key.f2, False):
         _begin_renaming(space, pose)
     _dragging(space, pose)
+    if imgui.is_item_focused() and menu_key():
+        imgui.open_popup(f"menu {pose.name}")
     if imgui.begin_popup_context_item(f"menu {pose.name}"):
         _menu(space, pose)
         imgui.end_popup()
@@ -126,6 +131,13 @@ def _menu(space: Workspace, pose: NamedPose) -> None:
         space.show_in_timeline("keyframes")
         space.show_timeline = True
         space.attempt(lambda: space.key_player.put(positions=pose.positions))
+    imgui.separator()
+    assert space.document is not None
+    last = len(space.document.state.poses) - 1
+    at = space.document.state.poses.index(pose)
+    for label, to in (("Move forward", at - 1), ("Move back", at + 1)):
+        if imgui.menu_item(label, "", False, 0 <= to <= last)[0]:
+            _order(space, at, to)
     imgui.separator()
     if imgui.menu_item_simple("Forget"):
         space.editor.forget_pose(pose.name)
@@ -167,14 +179,18 @@ def _dragging(space: Workspace, pose: NamedPose) -> None:
     if imgui.begin_drag_drop_target():
         payload = imgui.accept_drag_drop_payload_py_id(POSE_PAYLOAD)
         if payload is not None and names[payload.data_id] != pose.name:
-            there = names.index(pose.name)
-            names.insert(there, names.pop(payload.data_id))
-            space.attempt(
-                lambda: space.editor.edit(
-                    "Order poses", lambda session: session.change_poses("order", names=names)
-                )
-            )
+            _order(space, payload.data_id, names.index(pose.name))
         imgui.end_drag_drop_target()
+
+
+def _order(space: Workspace, old: int, new: int) -> None:
+    """Bring a pose to another place among the others."""
+    assert space.document is not None
+    names = [each.name for each in space.document.state.poses]
+    names.insert(new, names.pop(old))
+    space.attempt(
+        lambda: space.editor.edit("Order poses", lambda session: session.change_poses("order", names=names))
+    )
 
 
 def _mixer(space: Workspace, scale: float) -> None:

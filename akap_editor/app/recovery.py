@@ -11,7 +11,7 @@ from ..editor.framing import frame_box
 from ..errors import AkapError
 from ..io.autosave import Copy
 from . import widgets
-from .theme import DARK, packed
+from .theme import DARK, QUIET, packed
 from .workspace import Workspace
 
 _SIDE = 220  # of the thumbnail, in design points
@@ -104,19 +104,19 @@ def recover(space: Workspace, copy: Copy, document: Document) -> None:
 
 
 def _facts(copy: Copy, document: Document, count: int, width: float) -> None:
-    imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width)
     imgui.push_font(None, imgui.get_style().font_size_base * 1.25)
-    imgui.text_unformatted(document.drawing.name)
+    widgets.paragraph(document.drawing.name, width)
     imgui.pop_font()
     imgui.spacing()
-    imgui.text_unformatted("The program ended before this drawing was saved.")
+    widgets.paragraph("The program ended before this drawing was saved.", width)
     imgui.spacing()
-    widgets.quiet(f"As it was on {time.strftime('%d %B, %H:%M', time.localtime(copy.time))}")
-    widgets.quiet(_place(document.path))
+    widgets.paragraph(
+        f"As it was on {time.strftime('%d %B, %H:%M', time.localtime(copy.time))}", width, QUIET
+    )
+    widgets.paragraph(_place(document.path), width, QUIET)
     if count > 1:
-        widgets.quiet(f"{count - 1} more to come")
+        widgets.paragraph(f"{count - 1} more to come", width, QUIET)
     imgui.dummy(ImVec2(width, 0))
-    imgui.pop_text_wrap_pos()
 
 
 def _place(path: Path | None) -> str:

@@ -5,6 +5,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from ..deform.variants import VARIANTS, variant_of
 from ..editor.document import Settings
 from . import commands, settings_panel, widgets
+from .overlays import RANGES
 from .theme import QUIET
 from .workspace import Workspace
 
@@ -89,3 +90,11 @@ def view(space: Workspace, scale: float) -> None:
         on = command.checked is not None and command.checked(space)
         if command.enabled(space) and widgets.switch(command.label, on, command.key_name)[0]:
             widgets.run(space, command)
+    if space.view.heat is not None:
+        imgui.align_text_to_frame_padding()
+        imgui.text("Scale ends at")
+        imgui.same_line()
+        imgui.set_next_item_width(-1)
+        ends = [f"× {limit:g}" for limit in RANGES]
+        _, space.view.heat_range = imgui.combo("##range", space.view.heat_range, ends)
+        widgets.explain("The change of area or shape at the ends of the colors. R for the next one.")

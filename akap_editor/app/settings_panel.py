@@ -181,6 +181,13 @@ def default(method: str, name: str) -> Any:
     return default_settings(method)[name]
 
 
+def defaults(settings: Settings) -> Settings:
+    """All parameters of a method as in a new drawing."""
+    for parameter in PARAMETERS[settings.method]:
+        settings = settings.with_parameter(parameter.name, default(settings.method, parameter.name))
+    return settings
+
+
 def draw(space: Workspace) -> None:
     """The parameters of the current method, folded away at first."""
     assert space.document is not None

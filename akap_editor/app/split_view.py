@@ -23,7 +23,6 @@ _PANE = (
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_docking
     | imgui.WindowFlags_.no_bring_to_front_on_focus
-    | imgui.WindowFlags_.no_nav
 )
 
 

@@ -1,12 +1,13 @@
 """Small pieces that panels and dialogs are made of. They hold nothing themselves."""
 
+import re
 from bisect import bisect_left
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document import Settings
 from .command import Command
-from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT, packed
+from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT, Rgba, packed
 from .workspace import Workspace
 
 _BAR = (
@@ -17,6 +18,7 @@ _BAR = (
     | imgui.WindowFlags_.no_docking
 )
 _NUMBER = 3.2  # times the font's size: least room for the number beside a slider, so that they end alike
+WALKED = imgui.ChildFlags_.nav_flattened  # of a child window: keys walk in and out as if there were none
 _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
 
 
@@ -98,7 +100,8 @@ def _cut(text: str, count: int, end: bool) -> str:
 
 def begin_list(name: str, count: int, most: int) -> None:
     """As high as its rows, or as ``most`` of them, to be scrolled; `imgui.end_child` must follow."""
-    imgui.begin_child(name, ImVec2(0, min(count, most) * imgui.get_text_line_height_with_spacing()))
+    height = min(count, most) * imgui.get_text_line_height_with_spacing()
+    imgui.begin_child(name, ImVec2(0, height), WALKED)
     # what marks a row reaches half the space between rows beyond its text, above the first one, too
     imgui.set_cursor_pos_y(0.5 * imgui.get_style().item_spacing.y)
 
@@ -110,14 +113,32 @@ def quiet(text: str) -> None:
     imgui.pop_text_wrap_pos()
 
 
+def wrapped(text: str, width: float) -> str:
+    """A text in lines of at most ``width`` points, broken between words and between the parts of a path.
+
+    ImGui would also break after a point, and so within cat.akap. What is still too long is left to it.
+    """
+    lines = [""]
+    for piece in re.split(r"(?<=[/\\ \n])", text):
+        if lines[-1].endswith("\n") or imgui.calc_text_size((lines[-1] + piece).rstrip()).x > width:
+            lines.append("")
+        lines[-1] += piece
+    return "\n".join(line.strip() for line in lines if line)
+
+
+def paragraph(text: str, width: float, color: Rgba = TEXT) -> None:
+    """A text in lines of at most ``width`` points."""
+    imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width)
+    imgui.text_colored(ImVec4(*color), wrapped(text, width))
+    imgui.pop_text_wrap_pos()
+
+
 def explain(tooltip: str) -> None:
     """Show a text, if there is any, while the pointer rests on the item before, also on a disabled one."""
     flags = imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled
     if tooltip and imgui.is_item_hovered(flags):
         imgui.begin_tooltip()
-        imgui.push_text_wrap_pos(imgui.get_font_size() * 22)
-        imgui.text_unformatted(tooltip)
-        imgui.pop_text_wrap_pos()
+        paragraph(tooltip, imgui.get_font_size() * 22)
         imgui.end_tooltip()
 
 

@@ -20,9 +20,10 @@ from ..errors import AkapError, DisplayError, GraphicsError
 from ..io.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from . import commands, key_order, palette, panels, split_view, theme
-from .canvas import Canvas, give_keys_to_panels
+from .canvas import Canvas
 from .dialogs import Dialogs, has_native_dialogs
 from .overlays import draw_legend
+from .panes import give_keys_to_panels
 from .picture import Picture
 from .preferences import Preferences
 from .recovery import Recovery

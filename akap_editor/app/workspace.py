@@ -58,6 +58,7 @@ class Workspace:
     timeline: Literal["session", "keyframes"] = "session"  # which of the two the timeline shows
     grip: Literal["start", "end", "head", "keys", "none"] = "head"  # what the pointer holds of the timeline
     held_key: float = 0.0  # the time of the keyframe that it holds
+    key_menu: bool = False  # whether a key asks for the menu of a keyframe
     animating: bool = False  # whether the dialog for exports of the timeline is open
     task: Task | None = None
     renaming: str | None = None  # the pose that is given another name
@@ -83,6 +84,7 @@ class Workspace:
     view: ViewState = field(default_factory=ViewState)
     meter: Meter = field(default_factory=Meter)
     first_steps: bool = False  # whether newcomers are shown how to begin
+    steps_taken: int = 0  # of these
     remesher: Remesher = field(init=False)
     _jobs: list[Callable[[], None]] = field(default_factory=list)
     _due: list[Callable[[], None]] = field(default_factory=list)

@@ -47,10 +47,7 @@ def bundled(name: str) -> Path:
     """The picture of a bundled drawing. Raises InputError with the names that there are."""
     names = {path.stem: path for path in bundled_drawings()}
     if name not in names:
-        raise InputError(
-            f"drawing: expected a bundled one ({', '.join(names)}), got {name!r}; "
-            "name its file with --drawing"
-        )
+        raise InputError(f"expected the name of a bundled drawing ({', '.join(names)}), got {name!r}")
     return names[name]
 
 

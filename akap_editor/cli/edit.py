@@ -11,7 +11,7 @@ from ..errors import DisplayError, InputError
 from ..io.autosave import Autosave
 from ..io.documents import open_document
 from ..io.recordings import RECORDING_SUFFIX
-from ..resources import resource
+from ..resources import bundled_drawings, resource
 from . import replay
 from .common import FILE, bundled
 
@@ -19,24 +19,38 @@ FIRST_DRAWING = "elephant"
 OUTPUT_FOLDER = Path("out")
 
 
+def _complete(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
+    """The names of bundled drawings, for the shell."""
+    return [path.stem for path in bundled_drawings() if path.stem.startswith(begun)]
+
+
 @click.command(epilog="Example: akap-editor edit cat.png")
 @click.argument("file", type=FILE, required=False)
 @click.option("--mask", type=FILE, help="A picture that is bright, or opaque, where FILE is to be visible.")
-def edit(file: Path | None, mask: Path | None) -> None:
+@click.option(
+    "--bundled",
+    "name",
+    metavar="NAME",
+    shell_complete=_complete,
+    help=f"A drawing that comes with the program, in place of FILE, e.g. {FIRST_DRAWING}.",
+)
+def edit(file: Path | None, mask: Path | None, name: str | None = None) -> None:
     """Open FILE in the window: a picture, a flat OBJ or OFF mesh, a drawing saved as .akap, or a recording,
     which is then on the timeline.
 
-    Without FILE, a bundled cartoon.
+    Without FILE, the start page: bundled drawings, recent files, and room to drop a picture on.
 
-    Where there is no display, the bundled recording is replayed without a window instead.
+    Where there is no display, and no FILE, a bundled recording is replayed without a window instead.
     """
+    _check(file, mask, name)
     document, problem = None, None
-    recording = (
-        file if file is not None and file.suffix.lower() == RECORDING_SUFFIX and mask is None else None
-    )
+    source = bundled(name) if name is not None else file
+    recording = None
     try:
-        if recording is None:
-            document = open_document(file if file is not None else bundled(FIRST_DRAWING), mask)
+        if source is not None and source.suffix.lower() == RECORDING_SUFFIX and mask is None:
+            recording = source
+        elif source is not None:
+            document = open_document(source, mask)
     except InputError as error:
         problem = error
     try:
@@ -50,6 +64,14 @@ def edit(file: Path | None, mask: Path | None) -> None:
         recording = resource("assets", "recordings", f"{FIRST_DRAWING}.akaprec")
         animation = OUTPUT_FOLDER / f"{FIRST_DRAWING}.webp"
         replay.replay_recording(recording, None, animation, animation.with_suffix(".png"), fps=24.0, size=480)
+
+
+def _check(file: Path | None, mask: Path | None, name: str | None) -> None:
+    """Raise InputError where the arguments do not go together."""
+    if file is not None and name is not None:
+        raise InputError(f"expected a FILE or --bundled, got both: {file} and {name}")
+    if mask is not None and file is None:
+        raise InputError(f"--mask: expected a FILE that is to be cut out, got only the mask {mask}")
 
 
 def _edit(document: Document | None, problem: str, recording: Path | None) -> None:

@@ -10,13 +10,14 @@ from ..errors import SolverError
 from ..geometry.checks import Floats
 from .camera import Camera, Point, fit
 from .document import Document, Pin, Settings
-from .events import Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
+from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
 from .nudges import Nudges
 from .poses import free_name
 from .session import Session
 from .sight import Sight
 from .tool import Tool, distance
 from .tool_brush import Brush
+from .tool_crosshair import Crosshair
 from .tools import ZOOM_STEP, Idle
 from .trails import Trails
 from .worker import AT_ONCE
@@ -24,7 +25,6 @@ from .worker import AT_ONCE
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
 FRAME_BUDGET = 0.012  # seconds in which a frame waits for steps
 NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
-ARROWS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}
 HELD_KEYS = ("space", "alt", "shift", "h")  # what they mean lasts as long as they are held
 
 
@@ -42,6 +42,7 @@ class Editor:
         self._fitted: Camera | None = None
         self.selection: frozenset[int] = frozenset()
         self.pointer: Point | None = None
+        self.last_pointer: Point | None = None  # where it was when it left the canvas
         self.ui_scale = 1.0  # points of the window per point of the design
         self.chosen_tool: Literal["pins", "hand", "brush"] = "pins"
         self.brush = Brush()
@@ -63,6 +64,7 @@ class Editor:
     def take_over(self, session: Session) -> None:
         """Go on with a session; the one before it is gone."""
         self.cancel()
+        self.rest()
         self.session = session
         self.trails.clear()
         self.select(())
@@ -71,6 +73,7 @@ class Editor:
     def close(self) -> None:
         """Nothing is open any more."""
         self.cancel()
+        self.rest()
         self.session = None
         self.select(())
 
@@ -91,7 +94,7 @@ class Editor:
         if isinstance(event, KeyEvent):
             self._key(event)
             return
-        self.pointer = event.position
+        self.pointer = self.last_pointer = event.position
         if isinstance(event, ScrollEvent):
             self.camera = self.camera.zoomed(ZOOM_STEP**event.amount, event.position)
         else:
@@ -108,6 +111,8 @@ class Editor:
     def _key(self, event: KeyEvent) -> None:
         if event.key in HELD_KEYS:
             self.held = self.held | {event.key} if event.pressed else self.held - {event.key}
+        elif event.pressed and self.tool.key(event):
+            return
         elif event.key == "escape" and event.pressed:
             self.cancel()
         elif event.key in ARROWS and event.pressed:
@@ -116,8 +121,9 @@ class Editor:
             self.nudge_selected(size * x, size * y)
 
     def pointer_left(self) -> None:
-        """The pointer is no longer over the canvas."""
-        self.pointer = None
+        """The mouse is no longer over the canvas."""
+        if not isinstance(self.tool, Crosshair):
+            self.pointer = None
 
     def enter(self, tool: Tool) -> None:
         """Make a tool state the active one."""
@@ -394,11 +400,15 @@ class Editor:
             self._canvas = canvas
             if self.camera == self._fitted:
                 self.fit()
+            self.tool.resized()
 
     def zoom(self, factor: float) -> None:
-        """Magnify about the middle of the canvas."""
+        """Magnify about the middle of the canvas, or about the crosshair."""
         left, top, right, bottom = self.canvas
-        self.camera = self.camera.zoomed(factor, ((left + right) / 2, (top + bottom) / 2))
+        middle = (left + right) / 2, (top + bottom) / 2
+        self.camera = self.camera.zoomed(
+            factor, self.tool.place if isinstance(self.tool, Crosshair) else middle
+        )
 
     def fit(self) -> None:
         """Show the whole picture and all of the pose."""

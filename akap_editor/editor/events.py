@@ -6,6 +6,7 @@ from typing import Literal
 from .camera import Point
 
 Button = Literal["left", "middle", "right"]
+ARROWS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}  # keys, and where to
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class ScrollEvent:
 
 @dataclass(frozen=True)
 class KeyEvent:
-    """A key pressed or let go, by its lower-case name: "escape", "space", "alt", "left", ..."""
+    """A key pressed or let go, by its lower-case name: "escape", "space", "alt", "left", "enter", ..."""
 
     key: str
     pressed: bool = True

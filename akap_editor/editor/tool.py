@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .camera import Point
-from .events import PointerEvent
+from .events import KeyEvent, PointerEvent
 
 if TYPE_CHECKING:
     from .editor import Editor
@@ -34,6 +34,13 @@ class Tool:
 
     def release(self, event: PointerEvent) -> None:
         """A button goes up."""
+
+    def key(self, event: KeyEvent) -> bool:
+        """A key goes down; whether it means something in this state alone."""
+        return False
+
+    def resized(self) -> None:
+        """The canvas is another part of the window."""
 
     def cancel(self) -> None:
         """Escape, focus loss or an error: back to idle, everything as it was before the press."""

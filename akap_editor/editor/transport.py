@@ -4,13 +4,16 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 
+from .time_view import TimeView
+
 
 class Transport(ABC):
     """at: the moment that is looked at, in seconds, None where none is; loop: whether playing starts over;
-    cut: the part that is played and exported, all of it where None.
+    cut: the part that is played and exported, all of it where None; view: the part that the timeline shows.
     """
 
     loop = True
+    view: TimeView
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -36,6 +39,16 @@ class Transport(ABC):
     def range(self) -> tuple[float, float]:
         """What is played and exported, in seconds."""
         return self.cut or (0.0, self.duration)
+
+    @property
+    def position(self) -> float:
+        """Where one is, in seconds; at the end where no moment is looked at."""
+        return self.duration if self.at is None else self.at
+
+    def look(self, moment: float) -> None:
+        """Stop at a moment; before the start there is none."""
+        self._played = None
+        self.scrub(max(moment, 0.0))
 
     def play(self) -> None:
         """Play the range from where it is looked at, or from its start; stop where it plays."""

@@ -2,14 +2,17 @@
 
 from imgui_bundle import imgui  # isort: skip
 import glfw
+import numpy as np
 import pytest
 
 from akap_editor.app import commands, key_order, panels
 from akap_editor.app.command import CTRL, SHIFT, Command, Key, chord_name
 from akap_editor.app.commands import COMMANDS, MENUS
+from akap_editor.app.overlays import RANGES
 from akap_editor.deform.deformer import method_names
 from akap_editor.deform.variants import VARIANTS, variant_of
 from akap_editor.editor.camera import Camera
+from akap_editor.editor.events import PinRequest
 from akap_editor.editor.tool_brush import Brush
 from akap_editor.errors import SolverError
 
@@ -100,11 +103,80 @@ def once_keyed(ui):
     ui.space.key_player.cut_to(0.1, 0.2)
 
 
+def looked_at(ui):
+    """Three seconds, the first and the last one cut off, looked at after a half second of the rest."""
+    keyed(ui)
+    ui.space.key_player.put(3.0)
+    ui.space.key_player.cut_to(1.0, 2.5)
+    ui.space.key_player.scrub(1.5)
+
+
+def look_is(moment):
+    return lambda ui: ui.space.key_player.at == pytest.approx(moment)
+
+
+def range_is(start, end):
+    return lambda ui: ui.space.key_player.range == pytest.approx((start, end))
+
+
+def watch_requests(ui):
+    """What is asked for a pin, at the end of each frame."""
+    one_selected(ui)
+    ui.requests = []
+    ui.window.after_draw[:] = [lambda: ui.requests.append(ui.editor.request)]
+
+
+def watch_tools(ui):
+    """Test Engine takes its mouse away at the end of its tests, and a mouse that moves ends the crosshair."""
+    ui.tools = []
+    ui.window.after_draw[:] = [lambda: ui.tools.append(ui.tool)]
+
+
+def asked_for(kind):
+    return lambda ui: PinRequest(kind, 2) in ui.requests
+
+
+def looks(x, y):
+    def holds(ui):
+        dx, dy = ui.editor.camera.offset[0] - 10.0, ui.editor.camera.offset[1] - 20.0
+        return (np.sign([-dx, -dy]) == (x, y)).all()
+
+    return holds
+
+
 def times(ui):
     return ui.session.present.animation.times
 
 
 CASES = {
+    "Step Forward": (looked_at, look_is(1.55)),
+    "Step Back": (looked_at, look_is(1.45)),
+    "One Second Forward": (looked_at, look_is(2.5)),
+    "One Second Back": (looked_at, look_is(0.5)),
+    "Go to Start": (looked_at, look_is(1.0)),
+    "Go to End": (looked_at, look_is(2.5)),
+    "Start Range Here": (looked_at, range_is(1.5, 2.5)),
+    "End Range Here": (looked_at, range_is(1.0, 1.5)),
+    "Range Is Everything": (looked_at, range_is(0.0, 3.0)),
+    "Zoom into Timeline": (keyed, lambda ui: ui.space.key_player.view.zoomed),
+    "Zoom out of Timeline": (
+        lambda ui: [keyed(ui), ui.space.key_player.view.zoom(1.4, 0.0)],
+        lambda ui: not ui.space.key_player.view.zoomed,
+    ),
+    "Select All Keyframes": (keyed, lambda ui: ui.space.key_player.chosen == {0.0, 1.0}),
+    "Crosshair": (watch_tools, lambda ui: "Crosshair" in ui.tools),
+    "Next Pin": (one_selected, lambda ui: ui.editor.selection == {3}),
+    "Previous Pin": (one_selected, lambda ui: ui.editor.selection == {1}),
+    "Pin Values...": (watch_requests, asked_for("values")),
+    "Menu of Pin or Keyframe": (watch_requests, asked_for("menu")),
+    "Look Left": (moved_camera, looks(-1, 0)),
+    "Look Right": (moved_camera, looks(1, 0)),
+    "Look Up": (moved_camera, looks(0, -1)),
+    "Look Down": (moved_camera, looks(0, 1)),
+    "Next Range of Distortion": (
+        lambda ui: setattr(ui.space.view, "heat", "area"),
+        lambda ui: RANGES[ui.space.view.heat_range] == 2.0,
+    ),
     "Play": (once_keyed, lambda ui: ui.space.key_player.at == 0.2),
     "Export Animation...": (keyed, lambda ui: ui.space.animating),
     "Keyframe Here": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
@@ -136,6 +208,14 @@ CASES = {
     "Reset Pose": (bent, lambda ui: not ui.session.posed and len(ui.pins) == 3),
     "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.posed and ui.editor.modified),
     "Remember the Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
+    "Default Parameters": (
+        lambda ui: ui.space.change_settings(
+            ui.session.state.settings.with_parameter("memory", 0.25).with_parameter("exact", True)
+        ),
+        lambda ui: (
+            ui.session.state.settings.get("memory") == 1.0 and not ui.session.state.settings.get("exact")
+        ),
+    ),
     "Fit in Window": (moved_camera, lambda ui: ui.editor.camera == fitted(ui)),
     "100 %": (moved_camera, lambda ui: ui.editor.camera.zoom == pytest.approx(1.0)),
     "Zoom In": (moved_camera, zoom_is(1.25)),

@@ -16,6 +16,7 @@ from PIL import Image, ImageGrab
 from scipy.ndimage import distance_transform_edt
 
 import akap_editor
+from akap_editor.editor.tool_crosshair import BIG_STEP
 from akap_editor.editor.tools import ZOOM_STEP
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
@@ -445,3 +446,40 @@ def test_a_box_a_drag_of_all_pins_a_pan_and_a_zoom(start, picture):
     zoomed = find_camera(smaller, alpha)
     assert zoomed[0] == pytest.approx(panned[0] / ZOOM_STEP, rel=0.005)
     np.testing.assert_allclose(zoomed[1], pins[0] + (panned[1] - pins[0]) / ZOOM_STEP, atol=2.0)
+
+
+def test_pins_are_set_bent_and_saved_by_keys_alone(start, tmp_path):
+    program = start(resource("assets", "drawings", "gingerbread.png"))
+    program.key("c", "the crosshair is shown where the mouse is")
+    ways = {"Right": (LEFT + RIGHT) / 2 - CORNER[0], "Down": (TOP + BOTTOM) / 2 - CORNER[1]}
+    for name, way in ways.items():
+        for _ in range(round(way / BIG_STEP)):
+            program.press(f"shift+{name}")
+    program.key("Return", "a pin is there")
+    for _ in range(3):
+        program.key("shift+Up", "the crosshair moves")
+    program.key("space", "another pin is there")
+    before = program.key("Escape", "the crosshair is gone")
+    program.key("shift+Left", "the drawing bends")
+    bent = program.until(lambda shot: True, "the drawing is at rest")
+    assert (canvas(bent) != canvas(before)).any()
+    program.key("shift+j", "the first pin is selected")
+    program.key("Return", "its values are shown")
+    program.key("Escape", "they are closed")
+    program.key("ctrl+Right", "one looks to the right")
+    saved = tmp_path / "keys.akap"
+    last = program.grab()
+    program.key("ctrl+shift+s", "the file dialog is open")
+    program.hand("type", "--delay", 10, str(saved))
+    program.press("Return")
+    program.until(lambda shot: saved.is_file() and (canvas(shot) == canvas(last)).all(), "the file is saved")
+    program.press("ctrl+q")
+    assert program.ended() == 0
+
+    document = akap_editor.load(saved)
+    first, second = document.state.targets
+    assert second[0] == pytest.approx(first[0] - 10, abs=0.01)
+    assert np.abs(first - np.array(document.drawing.size) / 2).max() < 60, "near the middle of the picture"
+    width, height = document.drawing.size
+    zoom = 3 * BIG_STEP / (first[1] - second[1])
+    assert zoom == pytest.approx(min((RIGHT - LEFT) / width, (BOTTOM - TOP) / height), rel=0.2)

@@ -86,3 +86,28 @@ def test_texts_are_shortened_to_the_room_there_is(ui):
     assert name.endswith(end.removeprefix("…"))
     assert short == "short"
     assert least == "…"
+
+
+def test_texts_are_broken_between_words_and_folders_alone(ui):
+    text = "Save the changes to figure.akap, from /home/ada/Pictures/figure.akap?\nIt is 0.5 MB."
+    seen = {}
+
+    def look():
+        for width in range(40, 600, 20):
+            seen[width] = widgets.wrapped(text, width), imgui.calc_text_size
+
+    ui.window.after_draw.append(lambda: seen or look())
+    try:
+        ui.window.wake()
+        ui.settle()
+    finally:
+        ui.window.after_draw.clear()
+    for width, (broken, measure) in seen.items():
+        lines = broken.split("\n")
+        assert "".join(broken.split()) == "".join(text.split()), "nothing is lost"
+        parts = [part for line in lines for part in line.replace("/", "/ ").split()]
+        assert parts == text.replace("/", "/ ").split(), "no word is cut"
+        assert lines[-1].endswith("MB.")
+        assert all(measure(line).x <= width for line in lines if " " in line)
+    assert len(seen[580][0].split("\n")) == 2
+    assert len(seen[200][0].split("\n")) > 3

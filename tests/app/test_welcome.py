@@ -121,8 +121,10 @@ def test_a_bad_file_leaves_the_start_page(closed, tmp_path):
     assert closed.document.drawing.name == "bar"
 
 
-def test_a_file_that_cannot_be_opened_at_the_start_leads_to_the_start_page(monkeypatch, tmp_path):
-    shown = []
+@pytest.fixture
+def shown(monkeypatch):
+    """What `edit` shows in place of a window: documents, and what could not be opened."""
+    seen = []
 
     class Screen:
         space = SimpleNamespace(error="")
@@ -137,14 +139,44 @@ def test_a_file_that_cannot_be_opened_at_the_start_leads_to_the_start_page(monke
             pass
 
         def run(self, document):
-            shown.append((document, self.space.error))
+            seen.append((document, self.space.error))
 
     monkeypatch.setenv("DISPLAY", ":of-a-test")
     monkeypatch.setattr("akap_editor.app.window.Window", Screen)
+    return seen
+
+
+def test_a_file_that_cannot_be_opened_at_the_start_leads_to_the_start_page(shown, tmp_path):
     cli.edit.callback(tmp_path / "missing.png", None)
     ((document, error),) = shown
     assert document is None
     assert "missing.png" in error
+
+
+def test_without_a_file_the_program_begins_with_the_start_page(shown):
+    cli.edit.callback(None, None)
+    assert shown == [(None, "")]
+
+
+def test_a_bundled_drawing_is_opened_by_its_name(shown):
+    cli.edit.callback(None, None, "cat")
+    ((document, error),) = shown
+    assert (document.drawing.name, error) == ("cat", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "part"),
+    [
+        ((None, None, "mammoth"), r"elephant.*, got 'mammoth'"),
+        (("a.png", None, "cat"), "got both: a.png and cat"),
+        ((None, "mask.png", None), "expected a FILE .* mask.png"),
+        ((None, "mask.png", "cat"), "expected a FILE .* mask.png"),
+    ],
+)
+def test_arguments_that_make_no_sense_open_no_window(shown, arguments, part):
+    with pytest.raises(InputError, match=part):
+        cli.edit.callback(*arguments)
+    assert not shown
 
 
 def test_without_a_display_a_file_that_cannot_be_opened_is_an_error(monkeypatch, tmp_path):
@@ -193,6 +225,28 @@ def test_the_steps_follow_what_is_done(newcomer):
     newcomer.drag(start, (start[0], start[1] - 100))
     assert hints.step(newcomer.space) == 2
     assert hints.step(newcomer.space) == len(hints.STEPS) - 1
+
+
+def test_the_steps_never_go_back(newcomer):
+    newcomer.click(newcomer.screen((60.0, 80.0)))
+    start = newcomer.screen((200.0, 80.0))
+    newcomer.drag(start, (start[0], start[1] - 100))
+    seen = []
+    for _ in range(2):
+        newcomer.key(CTRL | Key.z)
+        seen.append(hints.step(newcomer.space))
+    assert not newcomer.pins
+    assert seen == [2, 2]
+
+
+def test_they_wait_on_the_start_page_for_a_drawing(newcomer, document):
+    newcomer.space.close()
+    newcomer.settle()
+    bottom = newcomer.editor.canvas[3]
+    newcomer.space.show(document)
+    newcomer.settle()
+    assert newcomer.editor.canvas[3] < bottom
+    assert hints.step(newcomer.space) == 0
 
 
 @pytest.mark.parametrize("steps", [0, 2])

@@ -35,6 +35,11 @@ def test_options_and_their_values(complete):
     assert complete("export", incomplete="ca") == [("file", "ca")]
 
 
+def test_names_of_bundled_drawings(complete):
+    assert ("plain", "elephant") in complete("edit", "--bundled")
+    assert complete("edit", "--bundled", incomplete="el") == [("plain", "elephant")]
+
+
 def test_a_file_without_a_command_is_no_dead_end(complete):
     assert complete("cat.png") is not None
 

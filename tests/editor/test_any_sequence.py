@@ -10,6 +10,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_sta
 from akap_editor.editor.document import new_document
 from akap_editor.editor.events import KeyEvent, PointerEvent
 from akap_editor.editor.replay import replay
+from akap_editor.editor.tool_crosshair import select_next, toggle_crosshair
 from akap_editor.editor.worker import AT_ONCE
 
 from .driver import BESIDE, Driver, bits
@@ -56,6 +57,14 @@ def machine(drawing, worker):
         @rule(key=st.sampled_from(["left", "up", "right", "down"]), shift=st.booleans())
         def nudge(self, key, shift):
             self.driver.handle(KeyEvent(key, shift=shift))
+
+        @rule(clicks=st.integers(0, 2), forward=st.booleans())
+        def point_by_keys(self, clicks, forward):
+            toggle_crosshair(self.editor)
+            for _ in range(clicks):
+                self.driver.key("enter")
+                select_next(self.editor, forward)
+                self.driver.check()
 
         @rule(at=places)
         def cut(self, at):
