@@ -25,7 +25,8 @@ def draw(space: Workspace, scale: float) -> None:
         if index > depth:
             imgui.pop_style_color()
         if index == depth and not imgui.is_window_hovered() and not _wholly_seen():
-            imgui.set_scroll_here_y(0.5)
+            above = max(index - _ROWS // 2, 0)  # so that the first row is whole
+            imgui.set_scroll_y(above * imgui.get_text_line_height_with_spacing())
     imgui.end_child()
 
 

@@ -8,15 +8,18 @@ from . import commands, settings_panel, widgets
 from .theme import QUIET
 from .workspace import Workspace
 
+_SWITCHES = (
+    *(commands.SHOW_MESH, commands.SHOW_PINS, commands.CHECKER),
+    *(*commands.OVERLAYS, commands.SHOW_REFERENCE),
+)
+
 
 def drawing(space: Workspace, scale: float) -> None:
-    """Name, size and mesh."""
+    """Name and size."""
     assert space.document is not None
     shown = space.document.drawing
     widgets.row("Name", shown.name)
     widgets.row("Picture", f"{shown.size[0]} × {shown.size[1]} px")
-    vertices = f"{len(shown.mesh.vertices):,} vertices"
-    widgets.row("Mesh", vertices, "The drawing bends at the vertices of its mesh.")
 
 
 def pin_count(space: Workspace) -> str:
@@ -46,7 +49,7 @@ def pins(space: Workspace, scale: float) -> None:
         imgui.text_colored(ImVec4(*QUIET), place)
     imgui.end_child()
     imgui.begin_disabled(not editor.selection)
-    if imgui.button("Remove selected", ImVec2(-1, 0)):
+    if imgui.button("Remove selected", ImVec2(widgets.FULL, 0)):
         widgets.run(space, commands.REMOVE)
     imgui.end_disabled()
 
@@ -56,9 +59,9 @@ def bending(space: Workspace, scale: float) -> None:
     assert space.document is not None
     settings = space.document.state.settings
     variant = variant_of(settings.method, dict(settings.parameters))
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(widgets.FULL)
     labels = [each.label for each in VARIANTS]
-    changed, index = imgui.combo("##method", VARIANTS.index(variant), labels)
+    changed, index = imgui.combo("##method", VARIANTS.index(variant), labels, len(labels))
     widgets.explain(f"{variant.note} {variant.source}.")
     if changed:
         chosen = Settings.of(VARIANTS[index].spec)
@@ -75,17 +78,15 @@ def bending(space: Workspace, scale: float) -> None:
     imgui.end_disabled()
     settings_panel.draw(space)
     imgui.begin_disabled(not commands.RESET.enabled(space))
-    if imgui.button("Reset pose", ImVec2(-1, 0)):
+    if imgui.button("Reset pose", ImVec2(widgets.FULL, 0)):
         widgets.run(space, commands.RESET)
     imgui.end_disabled()
 
 
 def view(space: Workspace, scale: float) -> None:
     """What is seen besides the drawing."""
-    _, space.show_mesh = widgets.switch("Mesh", space.show_mesh)
-    _, space.show_pins = widgets.switch("Pins##view", space.show_pins)
-    _, space.checker = widgets.switch("Checkerboard", space.checker)
-    for command in (*commands.OVERLAYS, commands.SHOW_REFERENCE):
+    for command in _SWITCHES:
         on = command.checked is not None and command.checked(space)
-        if command.enabled(space) and widgets.switch(command.label, on, command.key_name)[0]:
+        label = command.label.removeprefix("Show ").capitalize()
+        if command.enabled(space) and widgets.switch(label, on, f"Key: {command.key_name}")[0]:
             widgets.run(space, command)

@@ -16,6 +16,7 @@ _BAR = (
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_docking
 )
+FULL = -imgui.FLT_MIN  # a width: all the room there is
 _NUMBER = 3.2  # times the font's size: least room for the number beside a slider, so that they end alike
 _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
 
@@ -44,6 +45,18 @@ def switch(label: str, on: bool, tooltip: str = "") -> tuple[bool, bool]:
     return clicked, on
 
 
+def radio(label: str, on: bool) -> bool:
+    """A round button for one of several choices; whether it was clicked."""
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.18, 0.18) * imgui.get_font_size())
+    imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.0)
+    imgui.push_style_color(imgui.Col_.border, ImVec4(*(ACCENT if on else STRONG_LINE)))
+    imgui.push_style_color(imgui.Col_.check_mark, ImVec4(*ACCENT))
+    clicked = imgui.radio_button(label, on)
+    imgui.pop_style_color(2)
+    imgui.pop_style_var(2)
+    return bool(clicked)
+
+
 def row(label: str, value: str, tooltip: str = "") -> None:
     """A quiet label on the left, its value on the right."""
     right = imgui.get_content_region_avail().x + imgui.get_cursor_pos_x()
@@ -57,11 +70,17 @@ def row(label: str, value: str, tooltip: str = "") -> None:
 
 
 def slider(
-    name: str, value: float, limits: tuple[float, float], form: str, flags: int = 0, tooltip: str = ""
+    name: str,
+    value: float,
+    limits: tuple[float, float],
+    form: str,
+    flags: int = 0,
+    tooltip: str = "",
+    word: str = "",
 ) -> tuple[bool, float, bool]:
     """A slider with its number beside it; whether it was moved, its value, and whether it was let go changed.
 
-    ImGui writes the number where the knob is.
+    word: in place of the number. ImGui writes the number where the knob is.
     """
     em = imgui.get_font_size()
     room = max(imgui.calc_text_size(form % limits[1]).x, _NUMBER * em) + 0.6 * em
@@ -72,7 +91,7 @@ def slider(
     imgui.pop_style_color()
     released = imgui.is_item_deactivated_after_edit()
     explain(tooltip)
-    text, corner = form % value, imgui.get_item_rect_max()
+    text, corner = word or form % value, imgui.get_item_rect_max()
     at = ImVec2(corner.x + room - imgui.calc_text_size(text).x, imgui.get_item_rect_min().y)
     at.y += imgui.get_style().frame_padding.y
     imgui.get_window_draw_list().add_text(at, packed(TEXT), text)  # no item: the slider stays the last one
@@ -145,7 +164,10 @@ def begin_dialog(title: str) -> bool:
     viewport = imgui.get_main_viewport()
     imgui.set_next_window_pos(viewport.get_center(), imgui.Cond_.always, ImVec2(0.5, 0.5))
     room, viewport.work_size = viewport.work_size, viewport.size  # else no dialog is larger than the canvas
+    padding = imgui.get_style().window_padding.x, 1.6 * imgui.get_style().frame_padding.y
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(*padding))  # the title above the content
     shown = imgui.begin_popup_modal(name, None, _DIALOG)[0]
+    imgui.pop_style_var()
     viewport.work_size = room
     return bool(shown)
 
