@@ -162,7 +162,10 @@ def _list_entries(request: FileRequest, scale: float) -> bool:
     for name, is_folder in request.entries():
         icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
         flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups
-        if imgui.selectable(f"{icon}  {name}", name == request.name, flags)[0]:
+        shown = widgets.shortened(name, imgui.get_content_region_avail().x - 2 * imgui.get_font_size())
+        clicked = imgui.selectable(f"{icon}  {shown}###{name}", name == request.name, flags)[0]
+        widgets.explain(name if shown != name else "")
+        if clicked:
             if not is_folder:
                 request.name, chosen = name, taken
             elif taken:
