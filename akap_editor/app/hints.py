@@ -1,5 +1,6 @@
 """The first steps: a strip that tells newcomers what to do next, and goes away for good."""
 
+import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from . import commands, widgets
@@ -17,12 +18,23 @@ STEPS = (
 )
 
 
+ALONE = "With one pin, all of the drawing goes along. Click where it should hold still, for instance on its feet."
+MOVED = 1.0  # pixels: where the way of all vertices differs by less, the drawing was only moved
+
+
 def step(space: Workspace) -> int:
     """The step to be taken, as an index into `STEPS`: what has been done shows in the drawing itself."""
     session = space.editor.session
-    if session is None or not session.state.pins:
+    if session is None or not session.state.pins or _went_along(space):
         return 0
-    return 2 if session.posed else 1
+    way = session.state.positions - session.drawing.mesh.vertices
+    return 2 if np.ptp(way, axis=0).max() > MOVED else 1
+
+
+def _went_along(space: Workspace) -> bool:
+    """Whether the only pin was dragged, which bends nothing."""
+    session = space.editor.session
+    return session is not None and len(session.state.pins) == 1 and session.posed
 
 
 def draw(space: Workspace, scale: float) -> None:
@@ -31,6 +43,7 @@ def draw(space: Workspace, scale: float) -> None:
         return
     now = step(space)
     title, text = STEPS[now]
+    text = ALONE if _went_along(space) else text
     padding = ImVec2(16 * scale, 10 * scale)
     room = imgui.get_main_viewport().work_size.x - 2 * padding.x
     height = imgui.get_text_line_height_with_spacing() + imgui.calc_text_size(text, wrap_width=room).y
