@@ -18,7 +18,7 @@ STEPS = (
 )
 
 
-ALONE = "With one pin, all of the drawing goes along. Click where it should hold still, for instance on its feet."
+ALONE = "With one pin, all of the drawing goes along. Click where it should hold still, as on its feet."
 MOVED = 1.0  # pixels: where the way of all vertices differs by less, the drawing was only moved
 
 
