@@ -8,6 +8,7 @@ from . import commands, settings_panel, widgets
 from .theme import QUIET
 from .workspace import Workspace
 
+_ROWS = 6  # of pins that are seen at once
 _SWITCHES = (
     *(commands.SHOW_MESH, commands.SHOW_PINS, commands.CHECKER),
     *(*commands.OVERLAYS, commands.SHOW_REFERENCE),
@@ -35,8 +36,8 @@ def pins(space: Workspace, scale: float) -> None:
     if not state.pins:
         widgets.quiet("None yet. Click on the drawing where it should hold still.")
         return
-    widgets.begin_list("##pins", len(state.pins), 6)
-    for pin in state.pins:
+    widgets.begin_list("##pins", len(state.pins), _ROWS)
+    for index, pin in enumerate(state.pins):
         label = f"  Pin {pin.id}##pin"
         chosen = pin.id in editor.selection
         if imgui.selectable(label, chosen)[0]:
@@ -44,6 +45,8 @@ def pins(space: Workspace, scale: float) -> None:
                 editor.select(editor.selection ^ {pin.id})
             else:
                 editor.select({pin.id})
+        if editor.selection == {pin.id}:
+            widgets.keep_seen(index, _ROWS)
         place = f"{pin.target[0]:.0f}, {pin.target[1]:.0f}"
         imgui.same_line(imgui.get_content_region_avail().x - imgui.calc_text_size(place).x - 6 * scale)
         imgui.text_colored(ImVec4(*QUIET), place)

@@ -122,6 +122,16 @@ def begin_list(name: str, count: int, most: int) -> None:
     imgui.set_cursor_pos_y(0.5 * imgui.get_style().item_spacing.y)
 
 
+def keep_seen(index: int, most: int) -> None:
+    """Scroll the list to the row that was drawn last, if it is cut off and nobody is looking at others."""
+    top = imgui.get_window_pos().y
+    bottom = top + imgui.get_window_size().y
+    seen = top <= imgui.get_item_rect_min().y and imgui.get_item_rect_max().y <= bottom
+    if not seen and not imgui.is_window_hovered():
+        above = max(index - most // 2, 0)  # so that the first row is whole
+        imgui.set_scroll_y(above * imgui.get_text_line_height_with_spacing())
+
+
 def quiet(text: str) -> None:
     """A quiet sentence, wrapped at the panel's edge."""
     imgui.push_text_wrap_pos(0.0)

@@ -128,6 +128,17 @@ def test_a_long_name_of_a_pose_moves_no_other(ui):
     assert third.x - second.x == second.x - first.x
 
 
+def test_the_pin_that_is_selected_is_seen_in_the_list(ui):
+    for x in range(50, 220, 10):
+        ui.editor.add_pin((float(x), 80.0))
+    for pin in (17, 1):
+        ui.editor.select({pin})
+        ui.settle()
+        (rows,) = (window for window in imgui.get_current_context().windows if "##pins" in window.name)
+        first = round(rows.scroll.y / imgui.get_text_line_height_with_spacing())
+        assert first < pin <= first + 6
+
+
 def test_the_present_step_of_a_long_history_is_seen_below_whole_rows(pinned):
     for depth in range(1, 21):
         pinned.editor.set_depth(1, depth)
