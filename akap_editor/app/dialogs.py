@@ -125,7 +125,7 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
         return
     if imgui.button(icons.ICON_FA_ARROW_UP + "##up"):
         request.folder = request.folder.parent
-    imgui.set_item_tooltip("Parent folder")
+    widgets.explain("Parent folder")
     imgui.same_line()
     imgui.align_text_to_frame_padding()
     folder = widgets.shortened(str(request.folder), 470 * scale, end=True)

@@ -81,6 +81,7 @@ def _angle(space: Workspace, pin: Pin) -> None:
     assert session is not None
     imgui.begin_disabled(not session.turns)
     shown = math.degrees(session.pin_angle(pin.id) if pin.angle is None else pin.angle)
+    shown = 0.0 if abs(shown) < 0.05 else shown  # not -0.0°
     angle = _field(
         space, pin, "Angle", shown, lambda draft: imgui.input_double("##Angle", draft, 0, 0, "%.1f°")
     )

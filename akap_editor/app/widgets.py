@@ -150,6 +150,14 @@ def explain(tooltip: str) -> None:
         imgui.end_tooltip()
 
 
+def tooltip_due() -> float:
+    """Seconds until the pointer has rested long enough on what has a tooltip; 0 where there is none to come."""
+    context, delay = imgui.get_current_context(), imgui.get_style().hover_delay_normal
+    if context.hover_item_delay_id == 0 or context.hover_item_delay_timer >= delay:
+        return 0.0
+    return float(delay - context.hover_item_delay_timer) + 0.01
+
+
 def side_bar(name: str, side: imgui.Dir, size: float, padding: ImVec2, scrolls: bool = False) -> bool:
     """Take ``size`` points from a side of the room left for the canvas; `imgui.end` must follow."""
     fixed = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse

@@ -21,7 +21,7 @@ from ..errors import AkapError, DisplayError, GraphicsError
 from ..io.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from ..render.renderer import CANVAS, Background, Renderer
-from . import commands, key_order, palette, panels, split_view, theme
+from . import commands, key_order, palette, panels, split_view, theme, widgets
 from .canvas import Canvas, give_keys_to_panels
 from .dialogs import Dialogs, has_native_dialogs
 from .overlays import draw_legend
@@ -186,12 +186,12 @@ class Window:
         self.space.remember()
 
     def _sleep(self) -> None:
-        """Wait in the operating system until something happens."""
-        typing = imgui.get_io().want_text_input
-        limit = 0.4 if typing else IDLE_SECONDS  # a caret blinks
+        """Wait in the operating system until something happens, a caret blinks or a tooltip is due."""
+        typing, tooltip = imgui.get_io().want_text_input, widgets.tooltip_due()
+        limit = tooltip or (0.4 if typing else IDLE_SECONDS)
         started = time.perf_counter()
         glfw.wait_events_timeout(limit)
-        if time.perf_counter() - started < 0.98 * limit:
+        if tooltip or time.perf_counter() - started < 0.98 * limit:
             self.wake()
         elif typing:
             self._awake = 1

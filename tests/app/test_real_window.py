@@ -309,6 +309,14 @@ def test_bend_save_quit_and_open_again(start, picture, tmp_path):
     assert again.ended() == 0
 
 
+def test_a_mouse_that_comes_to_rest_on_a_tool_sees_what_it_is(start, picture):
+    program = start(picture)
+    before = canvas(program.grab())
+    for x in range(LEFT + 40, LEFT // 2, -2):
+        program.hand("mousemove", x, 140)
+    program.until(lambda shot: (canvas(shot)[:, :200] != before[:, :200]).any(axis=2).sum() > 2000, "a tooltip")
+
+
 def test_closing_the_window_asks_for_unsaved_changes_and_else_ends(start, picture):
     program = start(picture)
     alpha = read_image(picture)[..., 3]
