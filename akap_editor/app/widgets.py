@@ -151,7 +151,7 @@ def explain(tooltip: str) -> None:
 
 
 def tooltip_due() -> float:
-    """Seconds until the pointer has rested long enough on what has a tooltip; 0 where there is none to come."""
+    """Seconds until the pointer has rested long enough on what has a tooltip; 0 where none is to come."""
     context, delay = imgui.get_current_context(), imgui.get_style().hover_delay_normal
     if context.hover_item_delay_id == 0 or context.hover_item_delay_timer >= delay:
         return 0.0

@@ -72,7 +72,7 @@ def test_it_wakes_for_a_tooltip(loop):
     glfw.set_cursor_pos(loop.ui.window._handle, tools.pos.x + tools.size.x / 2, tools.pos.y + 20)
     waits = loop.run(2)
     assert imgui.get_current_context().hover_item_delay_id != 0
-    assert [0 < seconds <= imgui.get_style().hover_delay_normal + 0.02 for seconds, _ in waits] == [True, True]
+    assert all(0 < seconds <= imgui.get_style().hover_delay_normal + 0.02 for seconds, _ in waits)
     assert waits[1][1] == waits[0][1] + SETTLE_FRAMES
     glfw.set_cursor_pos(loop.ui.window._handle, *loop.ui.beside)
     loop.ui.settle()
