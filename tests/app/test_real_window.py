@@ -307,6 +307,8 @@ def test_bend_save_quit_and_open_again(start, picture, tmp_path):
     assert (canvas(shot) == canvas(last)).all(), f"see {again.keep(last)} and {again.keep(shot)}"
     again.press("ctrl+q")
     assert again.ended() == 0
+    remembered = json.loads((tmp_path / "preferences-1" / "preferences.json").read_text())
+    assert remembered["recent"] == [str(saved)], "a file that the program is begun with is a recent one"
 
 
 def test_a_mouse_that_comes_to_rest_on_a_tool_sees_what_it_is(start, picture):
