@@ -75,7 +75,7 @@ def _options(choice: Choice, scale: float) -> None:
     widgets.explain("Of the longest side, at most; a drawing is not enlarged.")
     choice.speed = _number("Speed", 100 * choice.speed, "speed", "%.4g %%", 0.5, scale, 100) / 100
     widgets.label("Easing", _LABEL * scale)
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(widgets.FULL)
     names = list(EASINGS)
     labels = [EASING_LABELS[name] for name in names]
     _, chosen = imgui.combo("##easing", names.index(choice.ease), labels)
@@ -95,7 +95,6 @@ def _options(choice: Choice, scale: float) -> None:
     choice.opaque = opaque if clicked else choice.opaque
     if opaque:
         imgui.same_line(0, 10 * scale)
-        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - widgets.rise())
         choice.background = widgets.color("##background", choice.background)
 
 

@@ -119,7 +119,7 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
         return
     if imgui.button(icons.ICON_FA_ARROW_UP + "##up"):
         request.folder = request.folder.parent
-    imgui.set_item_tooltip("Parent folder")
+    widgets.explain("Parent folder")
     imgui.same_line()
     imgui.align_text_to_frame_padding()
     folder = widgets.shortened(str(request.folder), 470 * scale, end=True)
@@ -156,7 +156,10 @@ def _list_entries(request: FileRequest, scale: float) -> bool:
     for name, is_folder in request.entries():
         icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
         flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups
-        if imgui.selectable(f"{icon}  {name}", name == request.name, flags)[0]:
+        shown = widgets.shortened(name, imgui.get_content_region_avail().x - 2 * imgui.get_font_size())
+        clicked = imgui.selectable(f"{icon}  {shown}###{name}", name == request.name, flags)[0]
+        widgets.explain(name if shown != name else "")
+        if clicked:
             if not is_folder:
                 request.name, chosen = name, taken
             elif taken:

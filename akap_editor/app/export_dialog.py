@@ -116,7 +116,7 @@ def _framing(choice: ExportChoice, document: Document, scale: float) -> str:
     imgui.pop_style_var()
     problem = _size(choice, document, scale)
     widgets.label("Shows", _LABEL * scale)
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(widgets.FULL)
     opened = imgui.begin_combo("##crop", _CROPS[choice.crop])
     widgets.explain(_ABOUT_CROPS)
     if opened:
@@ -128,7 +128,6 @@ def _framing(choice: ExportChoice, document: Document, scale: float) -> str:
     _, choice.opaque = widgets.switch("Color", choice.opaque, "Without it, the background is transparent.")
     if choice.opaque:
         imgui.same_line(0, 10 * scale)
-        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - widgets.rise())
         choice.background = widgets.color("##background", choice.background)
     return problem
 

@@ -1,5 +1,6 @@
 """The first steps: a strip that tells newcomers what to do next, and goes away for good."""
 
+import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from . import commands, widgets
@@ -17,15 +18,27 @@ STEPS = (
 )
 
 
+ALONE = "With one pin, all of the drawing goes along. Click where it should hold still, as on its feet."
+MOVED = 1.0  # pixels: where the way of all vertices differs by less, the drawing was only moved
+
+
 def step(space: Workspace) -> int:
     """The step to be taken, as an index into `STEPS`: what has been done shows in the drawing itself.
 
     What is undone has been done all the same.
     """
     session = space.editor.session
-    if session is not None and session.state.pins:
-        space.steps_taken = max(space.steps_taken, 2 if session.posed else 1)
-    return space.steps_taken
+    alone = _went_along(space)
+    if session is not None and session.state.pins and not (alone or space.editor.busy):
+        way = session.state.positions - session.drawing.mesh.vertices
+        space.steps_taken = max(space.steps_taken, 2 if np.ptp(way, axis=0).max() > MOVED else 1)
+    return 0 if alone and space.steps_taken < 2 else space.steps_taken
+
+
+def _went_along(space: Workspace) -> bool:
+    """Whether the only pin was dragged, which bends nothing."""
+    session = space.editor.session
+    return session is not None and len(session.state.pins) == 1 and session.posed
 
 
 def draw(space: Workspace, scale: float) -> None:
@@ -34,6 +47,7 @@ def draw(space: Workspace, scale: float) -> None:
         return
     now = step(space)
     title, text = STEPS[now]
+    text = ALONE if _went_along(space) else text
     padding = ImVec2(16 * scale, 10 * scale)
     room = imgui.get_main_viewport().work_size.x - 2 * padding.x
     height = imgui.get_text_line_height_with_spacing() + imgui.calc_text_size(text, wrap_width=room).y

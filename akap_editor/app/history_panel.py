@@ -24,16 +24,9 @@ def draw(space: Workspace, scale: float) -> None:
             space.attempt(lambda index=index: space.editor.go_to(index))  # type: ignore[misc]
         if index > depth:
             imgui.pop_style_color()
-        if index == depth and not imgui.is_window_hovered() and not _wholly_seen():
-            imgui.set_scroll_here_y(0.5)
+        if index == depth:
+            widgets.keep_seen(index, _ROWS)
     imgui.end_child()
-
-
-def _wholly_seen() -> bool:
-    """Whether no part of the last row is cut off."""
-    top = imgui.get_window_pos().y
-    bottom = top + imgui.get_window_size().y
-    return top <= imgui.get_item_rect_min().y and imgui.get_item_rect_max().y <= bottom
 
 
 def step_count(space: Workspace) -> str:

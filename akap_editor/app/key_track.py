@@ -66,12 +66,10 @@ def _onion(player: KeyPlayer, scale: float) -> None:
     onion = player.onion
     _, onion.shown = widgets.switch("Onion skin", onion.shown)
     imgui.begin_disabled(not onion.shown)
-    imgui.push_style_color(imgui.Col_.check_mark, ImVec4(*ACCENT))
-    if imgui.radio_button("Keyframes before and after", onion.of == "keyframes"):
+    if widgets.radio("Keyframes before and after", onion.of == "keyframes"):
         onion.of = "keyframes"
-    if imgui.radio_button("Moments before and after", onion.of == "frames"):
+    if widgets.radio("Moments before and after", onion.of == "frames"):
         onion.of = "frames"
-    imgui.pop_style_color()
     imgui.set_next_item_width(118 * scale)
     _, count = imgui.input_int("on each side", onion.count)
     onion.count = min(max(count, 1), MOST_SKINS)
@@ -226,7 +224,7 @@ def _menu(space: Workspace) -> None:
     """Of a keyframe, or of a moment without one."""
     player = space.key_player
     if not player.chosen:
-        if imgui.menu_item("Keyframe here", "K", False)[0]:
+        if imgui.menu_item("Keyframe Here", "K", False)[0]:
             space.attempt(lambda: keying.keyframe_here(space))
         return
     key = next(key for key in player.animation.keys if key.time in player.chosen)
@@ -242,7 +240,7 @@ def _menu(space: Workspace) -> None:
         if imgui.menu_item(label, "", key.ease == name)[0]:
             space.attempt(lambda name=name: player.ease(name))  # type: ignore[misc]
     imgui.separator()
-    if imgui.menu_item("Change to the present pose", "", False)[0]:
+    if imgui.menu_item("Change to the Present Pose", "", False)[0]:
         space.attempt(lambda: _change(player, key.time))
     if imgui.menu_item("Duplicate", "Ctrl+Shift+K", False)[0]:
         space.attempt(player.duplicate)

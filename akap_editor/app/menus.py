@@ -7,6 +7,7 @@ from .command import Command, Submenu
 from .commands import MENUS
 from .workspace import Workspace
 
+_LONGEST = 24  # times the font's size: what is shown of a file's name
 _NAMES = [name for name, _ in MENUS]
 
 
@@ -68,8 +69,9 @@ def _submenu(space: Workspace, item: Submenu) -> bool:
     files = item.files(space)
     is_open = imgui.begin_menu(item.label, bool(files))
     if is_open:
+        room = _LONGEST * imgui.get_font_size()
         for index, (name, path) in enumerate(files):
-            if imgui.menu_item_simple(f"{name}###{index}"):
+            if imgui.menu_item_simple(f"{widgets.shortened(name, room)}###{index}"):
                 space.open_path(path)
             widgets.explain(str(path))
         imgui.end_menu()

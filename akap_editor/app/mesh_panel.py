@@ -68,11 +68,11 @@ def _background(space: Workspace, wanted: Meshing) -> None:
         )
         if tolerance is not None:
             space.remesher.want(replace(wanted, background=round(tolerance) / 100), held=True)
-        if imgui.button("Keep the background", ImVec2(-1, 0)):
+        if imgui.button("Keep the background", ImVec2(widgets.FULL, 0)):
             space.remesher.want(replace(wanted, background=None))
     elif space.document.drawing.is_opaque:
         widgets.quiet("This picture has no transparency, so all of its rectangle bends.")
-        if imgui.button("Remove background", ImVec2(-1, 0)):
+        if imgui.button("Remove background", ImVec2(widgets.FULL, 0)):
             space.notice = ""
             space.remesher.want(replace(wanted, background=DEFAULT_TOLERANCE))
         widgets.explain("Makes transparent what has the color of the border and is joined to it.")
@@ -107,7 +107,7 @@ def _facts(mesh: TriMesh) -> tuple[tuple[str, str, str], ...]:
     return (
         ("Parts", f"{parts:,}", "Pieces of the mesh. One without a pin rides with the one nearest to it."),
         ("Holes", f"{holes:,}", "Openings within the outline."),
-        ("Vertices", f"{len(mesh.vertices):,}", "The drawing bends at the vertices of its mesh."),
+        ("Vertices made", f"{len(mesh.vertices):,}", "The drawing bends at the vertices of its mesh."),
         (
             "Smallest angle",
             f"{smallest_angles(mesh).min():.0f}°",

@@ -82,8 +82,10 @@ def draw(space: Workspace, scale: float) -> tuple[float, float, float, float]:
 
 
 def _tool_bar(space: Workspace, scale: float) -> None:
-    size = 36 * scale
-    if widgets.side_bar("Tools", imgui.Dir.left, size + 12 * scale, ImVec2(6 * scale, 8 * scale)):
+    gaps = 16 * scale + _TOOLS.count(None) * 12 * scale
+    room = (imgui.get_main_viewport().work_size.y - gaps) / (len(_TOOLS) - _TOOLS.count(None))
+    size = min(36 * scale, room - 4 * scale)  # in a low window, too, all of them are seen
+    if widgets.side_bar("Tools", imgui.Dir.left, 48 * scale, ImVec2(24 * scale - size / 2, 8 * scale)):
         imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(4 * scale, 4 * scale))
         for command in _TOOLS:
             if command is None:
@@ -151,7 +153,7 @@ def _heading(space: Workspace, section: Section) -> bool:
 
 def _status_bar(space: Workspace, scale: float) -> None:
     height = imgui.get_frame_height() + 2 * scale
-    if widgets.side_bar("Status", imgui.Dir.down, height, ImVec2(14 * scale, 4 * scale)):
+    if widgets.side_bar("Status", imgui.Dir.down, height, ImVec2(14 * scale, 1 * scale)):
         imgui.align_text_to_frame_padding()
         facts = f"{space.editor.camera.zoom * 100:.0f} %" if space.document is not None else ""
         right = imgui.get_window_width() - imgui.calc_text_size(facts).x - 16 * scale

@@ -1,6 +1,7 @@
 """What opens at a pin: its menu on a right click, its values on a double click."""
 
 import math
+from collections.abc import Callable
 
 from imgui_bundle import ImVec2, imgui
 
@@ -9,9 +10,11 @@ from ..editor.events import PinRequest
 from ..editor.tool_turning import set_angle
 from . import commands, widgets
 from .command import Command
+from .drafts import T
 from .workspace import Workspace
 
 _OFFSET = 14.0  # points from a pin's center to the popup's corner, so that the pin is still seen
+_LABELS = 3.6  # times the font's size: width of the labels
 _MENU: tuple[Command | None, ...] = (
     commands.FORWARD,
     commands.BACK,
@@ -66,16 +69,24 @@ def _menu(space: Workspace, pin: Pin) -> None:
                 widgets.run(space, command)
 
 
+def _field(space: Workspace, pin: Pin, name: str, value: T, draw: Callable[[T], tuple[bool, T]]) -> T | None:
+    """A value of the pin behind its name; another one once the field is left."""
+    widgets.label(name, imgui.get_style().window_padding.x + _LABELS * imgui.get_font_size())
+    return space.drafts.edit((pin.id, name), value, draw)
+
+
 def _angle(space: Workspace, pin: Pin) -> None:
     """Whether the pin holds an angle, and in degrees which one."""
     session = space.editor.session
     assert session is not None
     imgui.begin_disabled(not session.turns)
     shown = math.degrees(session.pin_angle(pin.id) if pin.angle is None else pin.angle)
-    angle = space.drafts.edit(
-        (pin.id, "angle"), shown, lambda draft: imgui.input_double("Angle", draft, 0, 0, "%.1f°")
+    shown = 0.0 if abs(shown) < 0.05 else shown  # not -0.0°
+    angle = _field(
+        space, pin, "Angle", shown, lambda draft: imgui.input_double("##Angle", draft, 0, 0, "%.1f°")
     )
     widgets.explain("By how many degrees the drawing around the pin is turned, clockwise.")
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + _LABELS * imgui.get_font_size())
     held = widgets.switch("Hold this angle", pin.angle is not None, "Off: the drawing turns as it will here.")
     imgui.end_disabled()
     if angle is not None:
@@ -87,14 +98,12 @@ def _angle(space: Workspace, pin: Pin) -> None:
 def _values(space: Workspace, pin: Pin, scale: float) -> None:
     x, y = pin.target.tolist()
     widgets.quiet(f"Pin {pin.id}")
-    imgui.push_item_width(96 * scale)
+    imgui.push_item_width(126 * scale)
     if imgui.is_window_appearing():
         imgui.set_keyboard_focus_here()
-    new_x = space.drafts.edit((pin.id, "x"), x, lambda draft: imgui.input_double("X", draft, 0, 0, "%.2f"))
-    new_y = space.drafts.edit((pin.id, "y"), y, lambda draft: imgui.input_double("Y", draft, 0, 0, "%.2f"))
-    depth = space.drafts.edit(
-        (pin.id, "depth"), pin.depth, lambda draft: imgui.input_int("Depth", draft, 0, 0)
-    )
+    new_x = _field(space, pin, "X", x, lambda draft: imgui.input_double("##X", draft, 0, 0, "%.2f"))
+    new_y = _field(space, pin, "Y", y, lambda draft: imgui.input_double("##Y", draft, 0, 0, "%.2f"))
+    depth = _field(space, pin, "Depth", pin.depth, lambda draft: imgui.input_int("##Depth", draft, 0, 0))
     widgets.explain("Where limbs cross, the higher number passes in front.")
     _angle(space, pin)
     imgui.pop_item_width()

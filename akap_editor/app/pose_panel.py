@@ -54,7 +54,7 @@ def draw(space: Workspace, scale: float) -> None:
     if not poses:
         widgets.quiet("None yet. Keep a pose here to come back to it with a click.")
     _all_poses(space, poses, scale)
-    if imgui.button(f"{icons.ICON_FA_PLUS}  Keep this pose", ImVec2(-1, 0)):
+    if imgui.button(f"{icons.ICON_FA_PLUS}  Keep this pose", ImVec2(widgets.FULL, 0)):
         space.notice = ""
         space.attempt(space.editor.keep_pose)
     if len(poses) > 1:
@@ -112,9 +112,7 @@ def _pose(space: Workspace, pose: NamedPose, scale: float) -> None:
     if space.renaming == pose.name:
         _rename(space, pose, side)
     else:
-        imgui.push_clip_rect(imgui.get_cursor_screen_pos(), ImVec2(end.x, end.y + 40 * scale), True)
-        imgui.text_colored(ImVec4(*QUIET), pose.name)
-        imgui.pop_clip_rect()
+        imgui.text_colored(ImVec4(*QUIET), widgets.shortened(pose.name, side))
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
             _begin_renaming(space, pose)
         widgets.explain(f"{pose.name}: double-click or F2 to rename")
@@ -125,9 +123,9 @@ def _pose(space: Workspace, pose: NamedPose, scale: float) -> None:
 def _menu(space: Workspace, pose: NamedPose) -> None:
     if imgui.menu_item("Rename", "F2", False)[0]:
         _begin_renaming(space, pose)
-    if imgui.menu_item_simple("Change to the present pose"):
+    if imgui.menu_item_simple("Change to the Present Pose"):
         space.attempt(lambda: space.editor.keep_pose(pose.name))
-    if imgui.menu_item_simple("Keyframe of it"):
+    if imgui.menu_item_simple("Keyframe of It"):
         space.show_in_timeline("keyframes")
         space.show_timeline = True
         space.attempt(lambda: space.key_player.put(positions=pose.positions))
@@ -135,7 +133,7 @@ def _menu(space: Workspace, pose: NamedPose) -> None:
     assert space.document is not None
     last = len(space.document.state.poses) - 1
     at = space.document.state.poses.index(pose)
-    for label, to in (("Move forward", at - 1), ("Move back", at + 1)):
+    for label, to in (("Move Forward", at - 1), ("Move Back", at + 1)):
         if imgui.menu_item(label, "", False, 0 <= to <= last)[0]:
             _order(space, at, to)
     imgui.separator()

@@ -9,15 +9,19 @@ from .overlays import RANGES
 from .theme import QUIET
 from .workspace import Workspace
 
+_ROWS = 6  # of pins that are seen at once
+_SWITCHES = (
+    *(commands.SHOW_MESH, commands.SHOW_PINS, commands.CHECKER),
+    *(*commands.OVERLAYS, commands.SHOW_REFERENCE),
+)
+
 
 def drawing(space: Workspace, scale: float) -> None:
-    """Name, size and mesh."""
+    """Name and size."""
     assert space.document is not None
     shown = space.document.drawing
     widgets.row("Name", shown.name)
     widgets.row("Picture", f"{shown.size[0]} × {shown.size[1]} px")
-    vertices = f"{len(shown.mesh.vertices):,} vertices"
-    widgets.row("Mesh", vertices, "The drawing bends at the vertices of its mesh.")
 
 
 def pin_count(space: Workspace) -> str:
@@ -33,8 +37,8 @@ def pins(space: Workspace, scale: float) -> None:
     if not state.pins:
         widgets.quiet("None yet. Click on the drawing where it should hold still.")
         return
-    widgets.begin_list("##pins", len(state.pins), 6)
-    for pin in state.pins:
+    widgets.begin_list("##pins", len(state.pins), _ROWS)
+    for index, pin in enumerate(state.pins):
         label = f"  Pin {pin.id}##pin"
         chosen = pin.id in editor.selection
         if imgui.selectable(label, chosen)[0]:
@@ -42,12 +46,14 @@ def pins(space: Workspace, scale: float) -> None:
                 editor.select(editor.selection ^ {pin.id})
             else:
                 editor.select({pin.id})
+        if editor.selection == {pin.id}:
+            widgets.keep_seen(index, _ROWS)
         place = f"{pin.target[0]:.0f}, {pin.target[1]:.0f}"
         imgui.same_line(imgui.get_content_region_avail().x - imgui.calc_text_size(place).x - 6 * scale)
         imgui.text_colored(ImVec4(*QUIET), place)
     imgui.end_child()
     imgui.begin_disabled(not editor.selection)
-    if imgui.button("Remove selected", ImVec2(-1, 0)):
+    if imgui.button("Remove selected", ImVec2(widgets.FULL, 0)):
         widgets.run(space, commands.REMOVE)
     imgui.end_disabled()
 
@@ -57,9 +63,9 @@ def bending(space: Workspace, scale: float) -> None:
     assert space.document is not None
     settings = space.document.state.settings
     variant = variant_of(settings.method, dict(settings.parameters))
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(widgets.FULL)
     labels = [each.label for each in VARIANTS]
-    changed, index = imgui.combo("##method", VARIANTS.index(variant), labels)
+    changed, index = imgui.combo("##method", VARIANTS.index(variant), labels, len(labels))
     widgets.explain(f"{variant.note} {variant.source}.")
     if changed:
         chosen = Settings.of(VARIANTS[index].spec)
@@ -76,19 +82,17 @@ def bending(space: Workspace, scale: float) -> None:
     imgui.end_disabled()
     settings_panel.draw(space)
     imgui.begin_disabled(not commands.RESET.enabled(space))
-    if imgui.button("Reset pose", ImVec2(-1, 0)):
+    if imgui.button("Reset pose", ImVec2(widgets.FULL, 0)):
         widgets.run(space, commands.RESET)
     imgui.end_disabled()
 
 
 def view(space: Workspace, scale: float) -> None:
     """What is seen besides the drawing."""
-    _, space.show_mesh = widgets.switch("Mesh", space.show_mesh)
-    _, space.show_pins = widgets.switch("Pins##view", space.show_pins)
-    _, space.checker = widgets.switch("Checkerboard", space.checker)
-    for command in (*commands.OVERLAYS, commands.SHOW_REFERENCE):
+    for command in _SWITCHES:
         on = command.checked is not None and command.checked(space)
-        if command.enabled(space) and widgets.switch(command.label, on, command.key_name)[0]:
+        label = command.label.removeprefix("Show ").capitalize()
+        if command.enabled(space) and widgets.switch(label, on, f"Key: {command.key_name}")[0]:
             widgets.run(space, command)
     if space.view.heat is not None:
         imgui.align_text_to_frame_padding()

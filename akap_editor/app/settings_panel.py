@@ -19,7 +19,11 @@ Draw = Callable[[Any], tuple[bool, Any]]
 
 
 def _switch() -> Draw:
-    return lambda value: widgets.switch("##value", bool(value))
+    def draw(value: Any) -> tuple[bool, Any]:
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.rise())
+        return widgets.switch("##value", bool(value))
+
+    return draw
 
 
 def _choice(**labels: str) -> Draw:
@@ -38,7 +42,7 @@ def _slider(low: float, high: float, form: str = "%.2f", even: bool = True) -> D
 
     def draw(value: Any) -> tuple[bool, Any]:
         if value is None:
-            return imgui.slider_float("##value", low, low, high, "by itself", flags)
+            return widgets.slider("##value", low, (low, high), form, flags, word="auto")[:2]
         return widgets.slider("##value", float(value), (low, high), form, flags)[:2]
 
     return draw
@@ -195,6 +199,7 @@ def draw(space: Workspace) -> None:
     remembered: dict[str, object] = space.preferences.get("sections", {})
     was_open = remembered.get(_TITLE) is True
     imgui.set_next_item_open(was_open)
+    imgui.push_style_var(imgui.StyleVar_.indent_spacing, 0.0)
     is_open = imgui.tree_node_ex(_TITLE, imgui.TreeNodeFlags_.span_avail_width)
     if is_open != was_open:
         space.preferences.put("sections", {**remembered, _TITLE: is_open})
@@ -202,6 +207,7 @@ def draw(space: Workspace) -> None:
         for parameter in PARAMETERS[settings.method]:
             _parameter(space, settings, parameter)
         imgui.tree_pop()
+    imgui.pop_style_var()
 
 
 def _parameter(space: Workspace, settings: Settings, parameter: Parameter) -> None:
@@ -217,7 +223,7 @@ def _parameter(space: Workspace, settings: Settings, parameter: Parameter) -> No
     widgets.explain(f"{parameter.tooltip} Double-click for the default.")
     reset = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0)
     imgui.same_line(_LABELS * imgui.get_font_size())
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(widgets.FULL)
     edited = space.drafts.edit((settings.method, parameter.name), value, parameter.draw)
     imgui.pop_id()
     if reset and value != standard:

@@ -61,7 +61,7 @@ def _pane(space: Workspace, pane: Canvas, scale: float) -> None:
     imgui.set_next_item_width(min(220 * scale, pane[2] - pane[0] - 24 * scale))
     specs = [variant.spec for variant in VARIANTS]
     labels = [variant.label for variant in VARIANTS]
-    changed, index = imgui.combo("##beside", specs.index(beside.spec), labels)
+    changed, index = imgui.combo("##beside", specs.index(beside.spec), labels, len(labels))
     if changed:
         beside.spec = specs[index]
     wheel, at = imgui.get_io().mouse_wheel, imgui.get_mouse_pos()
@@ -80,18 +80,26 @@ def _pane(space: Workspace, pane: Canvas, scale: float) -> None:
 def _caption(pane: Canvas, name: str, found: Distortion | None, session: Session, scale: float) -> None:
     """A method's name at the top and its numbers at the bottom of a half."""
     lines = imgui.get_background_draw_list()
-    left, top, _, bottom = pane
+    left, top, right, bottom = pane
     lines.add_text(ImVec2(left + 12 * scale, top + 14 * scale), packed(TEXT), name)
     if found is None:
         return
-    flipped = f"   {found.flipped} flipped" if found.flipped else ""
-    numbers = (
-        f"E_area {found.area:.3f}   E_angle {found.angle:.3f}{flipped}\nPins off {session.pin_error():.2f} px"
-    )
+    first = [f"E_area {found.area:.3f}", f"E_angle {found.angle:.3f}"]
+    if found.flipped:
+        first.append(f"{found.flipped} flipped")
+    second = [f"Pins off {session.pin_error():.2f} px"]
     if session.last_step is not None:
-        numbers += f"   {1e3 * session.last_step.report.seconds:.1f} ms a step"
+        second.append(f"{1e3 * session.last_step.report.seconds:.1f} ms a step")
+    room = right - left - 24 * scale
+    numbers = "\n".join(_joined(facts, room) for facts in (first, second))
     height = imgui.calc_text_size(numbers).y
     lines.add_text(ImVec2(left + 12 * scale, bottom - height - 12 * scale), packed(QUIET), numbers)
+
+
+def _joined(facts: list[str], room: float) -> str:
+    """In one line, or where there is no room for it, each in its own."""
+    line = "   ".join(facts)
+    return line if imgui.calc_text_size(line).x <= room else "\n".join(facts)
 
 
 def _pins(pane: Canvas, session: Session, camera: Camera, scale: float) -> None:

@@ -75,6 +75,7 @@ def load_fonts() -> None:
     icons = imgui.ImFontConfig()
     icons.merge_mode = True
     icons.glyph_offset = ImVec2(0, 1)
+    icons.glyph_min_advance_x = FONT_SIZE  # names beside icons begin alike
     fonts.add_font_from_file_ttf(str(folder / "Font_Awesome_6_Free-Solid-900.otf"), FONT_SIZE - 1, icons)
 
 

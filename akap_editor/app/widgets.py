@@ -17,6 +17,7 @@ _BAR = (
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_docking
 )
+FULL = -imgui.FLT_MIN  # a width: all the room there is
 _NUMBER = 3.2  # times the font's size: least room for the number beside a slider, so that they end alike
 WALKED = imgui.ChildFlags_.nav_flattened  # of a child window: keys walk in and out as if there were none
 _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
@@ -46,6 +47,18 @@ def switch(label: str, on: bool, tooltip: str = "") -> tuple[bool, bool]:
     return clicked, on
 
 
+def radio(label: str, on: bool) -> bool:
+    """A round button for one of several choices; whether it was clicked."""
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.18, 0.18) * imgui.get_font_size())
+    imgui.push_style_var(imgui.StyleVar_.frame_border_size, 1.0)
+    imgui.push_style_color(imgui.Col_.border, ImVec4(*(ACCENT if on else STRONG_LINE)))
+    imgui.push_style_color(imgui.Col_.check_mark, ImVec4(*ACCENT))
+    clicked = imgui.radio_button(label, on)
+    imgui.pop_style_color(2)
+    imgui.pop_style_var(2)
+    return bool(clicked)
+
+
 def row(label: str, value: str, tooltip: str = "") -> None:
     """A quiet label on the left, its value on the right."""
     right = imgui.get_content_region_avail().x + imgui.get_cursor_pos_x()
@@ -59,11 +72,17 @@ def row(label: str, value: str, tooltip: str = "") -> None:
 
 
 def slider(
-    name: str, value: float, limits: tuple[float, float], form: str, flags: int = 0, tooltip: str = ""
+    name: str,
+    value: float,
+    limits: tuple[float, float],
+    form: str,
+    flags: int = 0,
+    tooltip: str = "",
+    word: str = "",
 ) -> tuple[bool, float, bool]:
     """A slider with its number beside it; whether it was moved, its value, and whether it was let go changed.
 
-    ImGui writes the number where the knob is.
+    word: in place of the number. ImGui writes the number where the knob is.
     """
     em = imgui.get_font_size()
     room = max(imgui.calc_text_size(form % limits[1]).x, _NUMBER * em) + 0.6 * em
@@ -74,7 +93,7 @@ def slider(
     imgui.pop_style_color()
     released = imgui.is_item_deactivated_after_edit()
     explain(tooltip)
-    text, corner = form % value, imgui.get_item_rect_max()
+    text, corner = word or form % value, imgui.get_item_rect_max()
     at = ImVec2(corner.x + room - imgui.calc_text_size(text).x, imgui.get_item_rect_min().y)
     at.y += imgui.get_style().frame_padding.y
     imgui.get_window_draw_list().add_text(at, packed(TEXT), text)  # no item: the slider stays the last one
@@ -104,6 +123,16 @@ def begin_list(name: str, count: int, most: int) -> None:
     imgui.begin_child(name, ImVec2(0, height), WALKED)
     # what marks a row reaches half the space between rows beyond its text, above the first one, too
     imgui.set_cursor_pos_y(0.5 * imgui.get_style().item_spacing.y)
+
+
+def keep_seen(index: int, most: int) -> None:
+    """Scroll the list to the row that was drawn last, if it is cut off and nobody is looking at others."""
+    top = imgui.get_window_pos().y
+    bottom = top + imgui.get_window_size().y
+    seen = top <= imgui.get_item_rect_min().y and imgui.get_item_rect_max().y <= bottom
+    if not seen and not imgui.is_window_hovered():
+        above = max(index - most // 2, 0)  # so that the first row is whole
+        imgui.set_scroll_y(above * imgui.get_text_line_height_with_spacing())
 
 
 def quiet(text: str) -> None:
@@ -142,6 +171,14 @@ def explain(tooltip: str) -> None:
         imgui.end_tooltip()
 
 
+def tooltip_due() -> float:
+    """Seconds until the pointer has rested long enough on what has a tooltip; 0 where none is to come."""
+    context, delay = imgui.get_current_context(), imgui.get_style().hover_delay_normal
+    if context.hover_item_delay_id == 0 or context.hover_item_delay_timer >= delay:
+        return 0.0
+    return float(delay - context.hover_item_delay_timer) + 0.01
+
+
 def side_bar(name: str, side: imgui.Dir, size: float, padding: ImVec2, scrolls: bool = False) -> bool:
     """Take ``size`` points from a side of the room left for the canvas; `imgui.end` must follow."""
     fixed = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
@@ -166,7 +203,10 @@ def begin_dialog(title: str) -> bool:
     viewport = imgui.get_main_viewport()
     imgui.set_next_window_pos(viewport.get_center(), imgui.Cond_.always, ImVec2(0.5, 0.5))
     room, viewport.work_size = viewport.work_size, viewport.size  # else no dialog is larger than the canvas
+    padding = imgui.get_style().window_padding.x, 1.6 * imgui.get_style().frame_padding.y
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(*padding))  # the title above the content
     shown = imgui.begin_popup_modal(name, None, _DIALOG)[0]
+    imgui.pop_style_var()
     viewport.work_size = room
     return bool(shown)
 

@@ -19,7 +19,7 @@ from ..editor.document import Document
 from ..errors import AkapError, DisplayError, GraphicsError
 from ..io.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
-from . import commands, key_order, palette, panels, split_view, theme
+from . import commands, key_order, palette, panels, split_view, theme, widgets
 from .canvas import Canvas
 from .dialogs import Dialogs, has_native_dialogs
 from .overlays import draw_legend
@@ -193,9 +193,12 @@ class Window:
         self.space.remember()
 
     def _rest(self) -> None:
-        """Sleep until something happens; only a caret blinks."""
-        typing = imgui.get_io().want_text_input
-        if not self._sleep(BLINK_SECONDS if typing else IDLE_SECONDS) and typing:
+        """Sleep until something happens, a tooltip is due or a caret blinks."""
+        typing, tooltip = imgui.get_io().want_text_input, widgets.tooltip_due()
+        happened = self._sleep(tooltip or (BLINK_SECONDS if typing else IDLE_SECONDS))
+        if tooltip:
+            self.wake()
+        elif typing and not happened:
             self._awake = 1
 
     def _sleep(self, limit: float) -> bool:

@@ -239,7 +239,7 @@ class Workspace:
             self.show(document)
             if is_animation(path):
                 self.notice = f"{path.name} is an animation; its first frame was opened"
-            self._used(path)
+            self.used(path)
             self.notice = notice or self.notice
 
         self.unless_unsaved(lambda: self.later(read, f"Opening {path.name} ..."))
@@ -249,10 +249,10 @@ class Workspace:
         session.mark_saved(None)
         self.editor.take_over(session)
         self.player, self.timeline, self.show_timeline = player, "session", True
-        self._used(path)
+        self.used(path)
         self.notice = f"Opened {path.name}: {player.duration:.0f} seconds are on the timeline"
 
-    def _used(self, path: Path) -> None:
+    def used(self, path: Path) -> None:
         """A file was opened or saved: the next dialog begins there, and it can be found again."""
         self.folder = path.resolve().parent
         if path.resolve() not in map(Path.resolve, bundled_drawings()):
@@ -311,7 +311,7 @@ class Workspace:
             assert self.editor.session is not None
             project_file.save(self.editor.session.kept, path)
             self.editor.mark_saved(path)
-            self._used(path)
+            self.used(path)
             self.notice = f"Saved {path.name}"
 
         if self.attempt(write) and go_on is not None:

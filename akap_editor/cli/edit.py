@@ -54,7 +54,7 @@ def edit(file: Path | None, mask: Path | None, name: str | None = None) -> None:
     except InputError as error:
         problem = error
     try:
-        _edit(document, "" if problem is None else str(problem), recording)
+        _edit(document, "" if problem is None else str(problem), recording, file if document else None)
     except DisplayError as error:
         if problem is not None:
             raise problem from None
@@ -74,10 +74,10 @@ def _check(file: Path | None, mask: Path | None, name: str | None) -> None:
         raise InputError(f"--mask: expected a FILE that is to be cut out, got only the mask {mask}")
 
 
-def _edit(document: Document | None, problem: str, recording: Path | None) -> None:
+def _edit(document: Document | None, problem: str, recording: Path | None, file: Path | None) -> None:
     """Open the window; where a file could not be opened, it shows its start page and says why.
 
-    recording: is done again there, where one sees how far it is.
+    recording: is done again there, where one sees how far it is; file: of the document, if any.
     """
     x11 = sys.platform.startswith("linux")
     if x11 and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
@@ -91,4 +91,6 @@ def _edit(document: Document | None, problem: str, recording: Path | None) -> No
         window.space.error = problem
         if recording is not None:
             window.space.open_path(recording)
+        if file is not None:
+            window.space.used(file)
         window.run(document)

@@ -174,9 +174,9 @@ class Editor:
                 session.start_step(self.worker)
                 if not session.step_is_ready(until - time.perf_counter()):
                     break
-                session.step()
+                seconds = session.step().report.seconds
                 moved = True
-                enough = session.near or self._slow or time.perf_counter() > until
+                enough = session.near or seconds > budget or time.perf_counter() > until
                 self.trails.follow(session)
         except SolverError:
             self.cancel()
@@ -185,14 +185,11 @@ class Editor:
 
     def go_on(self) -> None:
         """Let the worker begin with the next step while a frame is drawn, if steps take longer than that."""
-        if self.session is not None and self.session.moving and self._slow:
-            self.session.start_step(self.worker)
-
-    @property
-    def _slow(self) -> bool:
-        """Whether steps take longer than a frame waits for them."""
-        last = self.session.last_step if self.session is not None else None
-        return last is not None and last.report.seconds > FRAME_BUDGET
+        session = self.session
+        if session is None or session.last_step is None or not session.moving:
+            return
+        if session.last_step.report.seconds > FRAME_BUDGET:
+            session.start_step(self.worker)
 
     # -- edits, one gesture each ---------------------------------------------------------------------------
 

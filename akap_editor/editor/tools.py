@@ -41,6 +41,8 @@ class Idle(Tool):
             return "Click to add a pin, or press and drag to bend from here"
         if not editor.session.state.pins:
             return "Click on the drawing to put a pin where it should hold still"
+        if len(editor.session.state.pins) == 1:
+            return "One pin takes all of the drawing along: click on the drawing where it should hold still"
         return "Drag a pin to bend the drawing, click on the drawing for another one"
 
     def press(self, event: PointerEvent) -> None:
@@ -156,8 +158,6 @@ class AskingForMenu(Pointing):
 class DraggingPin(Tool):
     """The selected pins follow the pointer; the drawing follows them."""
 
-    hint = "Release to keep this pose, Escape to go back"
-
     def __init__(
         self, editor: "Editor", start: Point, selection_before: frozenset[int], is_new: bool
     ) -> None:
@@ -175,6 +175,14 @@ class DraggingPin(Tool):
         editor.trails.clear()
         where = zip(session.state.pins, session.pin_positions(), strict=True)
         self._from = {pin.id: (x, y) for pin, (x, y) in where if pin.id in editor.selection}
+
+    @property
+    def hint(self) -> str:  # type: ignore[override]
+        """What a release would do, and why nothing bends where no pin holds still."""
+        session = self.editor.session
+        if session is not None and len(self._from) == len(session.state.pins):
+            return "No other pin holds the drawing, so all of it goes along; Escape to go back"
+        return "Release to keep this pose, Escape to go back"
 
     def move(self, event: PointerEvent) -> None:
         assert self.editor.session is not None

@@ -13,7 +13,7 @@ from akap_editor.editor.editor import PICK_RADIUS
 from akap_editor.errors import SolverError
 
 Key = imgui.Key
-PANEL, STATUS = (1150.0, 500.0), (600.0, 790.0)
+PANEL, STATUS = (1020.0, 500.0), (600.0, 790.0)  # where nothing is to be moved
 
 
 def move(hand, at):

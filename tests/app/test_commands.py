@@ -384,7 +384,7 @@ def test_keys_do_nothing_while_a_name_is_typed(pinned):
 
 
 @pytest.mark.parametrize(
-    ("label", "name"), [("Mesh", "show_mesh"), ("Pins##view", "show_pins"), ("Checkerboard", "checker")]
+    ("label", "name"), [("Mesh", "show_mesh"), ("Pins", "show_pins"), ("Checkerboard", "checker")]
 )
 def test_view_switches(pinned, label, name):
     before = getattr(pinned.space, name)

@@ -5,7 +5,6 @@ import zipfile
 
 import numpy as np
 import pytest
-from imgui_bundle import icons_fontawesome_6 as icons
 from PIL import Image
 
 from akap_editor.app.command import CTRL, SHIFT, Key
@@ -90,9 +89,9 @@ def test_enter_goes_into_the_folder_that_the_keyboard_is_at(bent, tmp_path):
     inner.mkdir()
     save(bent.document, inner / "there.akap")
     bent.key(CTRL | Key.o)
-    enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/{icons.ICON_FA_FOLDER}  inner")
+    enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/###inner")
     assert bent.space.request.folder == inner
-    enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/{icons.ICON_FA_FILE}  there.akap")
+    enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/###there.akap")
     assert bent.space.request is None
     finish(bent)
 
@@ -142,14 +141,14 @@ def test_the_file_dialog_goes_through_folders(bent, tmp_path):
     def open_(name):
         bent.do(lambda hand: hand.item_double_click(f"//{OPEN}###dialog {OPEN}/**/{name}"))
 
-    open_("\uf07b  inner")
+    open_("###inner")
     assert request.folder == tmp_path / "inner"
     bent.dialog(OPEN, "\uf062##up")
     assert request.folder == tmp_path
     bent.type_name(OPEN, "inner/deeper")
     assert request.folder == inner
     assert request.name == ""
-    open_("\uf15b  there.akap")
+    open_("###there.akap")
     bent.dialog(UNSAVED, "Discard")
     finish(bent)
     assert bent.document.path == inner / "there.akap"

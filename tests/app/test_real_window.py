@@ -308,6 +308,16 @@ def test_bend_save_quit_and_open_again(start, picture, tmp_path):
     assert (canvas(shot) == canvas(last)).all(), f"see {again.keep(last)} and {again.keep(shot)}"
     again.press("ctrl+q")
     assert again.ended() == 0
+    remembered = json.loads((tmp_path / "preferences-1" / "preferences.json").read_text())
+    assert remembered["recent"] == [str(saved)], "a file that the program is begun with is a recent one"
+
+
+def test_a_mouse_that_comes_to_rest_on_a_tool_sees_what_it_is(start, picture):
+    program = start(picture)
+    before = canvas(program.grab())[:, :200]
+    for x in range(LEFT + 40, LEFT // 2, -2):
+        program.hand("mousemove", x, 140)
+    program.until(lambda shot: (canvas(shot)[:, :200] != before).any(axis=2).sum() > 2000, "a tooltip")
 
 
 def test_closing_the_window_asks_for_unsaved_changes_and_else_ends(start, picture):

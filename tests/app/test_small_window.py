@@ -3,9 +3,10 @@
 from imgui_bundle import imgui  # isort: skip
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from akap_editor.app import widgets
+from akap_editor.app import commands, widgets
 from akap_editor.app.requests import Question
 from akap_editor.app.window import SMALLEST
 from akap_editor.editor.document import new_document
@@ -111,3 +112,67 @@ def test_texts_are_broken_between_words_and_folders_alone(ui):
         assert all(measure(line).x <= width for line in lines if " " in line)
     assert len(seen[580][0].split("\n")) == 2
     assert len(seen[200][0].split("\n")) > 3
+
+
+def test_all_tools_are_seen_above_the_timeline(ui):
+    ui.space.show_timeline, ui.space.timeline = True, "keyframes"
+    ui.settle()
+    tools, timeline = map(imgui.internal.find_window_by_name, ("Tools", "Timeline"))
+    assert tools.scroll_max.y == 0
+    found = []
+    last = commands.SHOW_MESH
+    ui.do(lambda hand: found.append(hand.item_info(f"//Tools/{last.icon}##{last.label}").rect_full))
+    assert tools.pos.y < found[0].min.y < found[0].max.y <= timeline.pos.y
+
+
+def test_the_captions_of_two_methods_stay_in_their_halves(pinned):
+    """Between the captions and the line in the middle nothing is written."""
+    pinned.space.split, pinned.space.show_pins = True, False
+    picture = pinned.screenshot().astype(int)
+    left, _, middle, bottom = map(int, pinned.editor.canvas)
+    below = picture[bottom - 70 : bottom - 4, left:middle]
+    written = np.ptp(below, axis=2).max(axis=0) + np.ptp(below, axis=0).max(axis=1)
+    assert written[20:60].max() > 100, "there are captions"
+    assert written[-8:-2].max() < 20
+
+
+def test_a_long_name_of_a_pose_moves_no_other(ui):
+    names = ("Rest", LONG[:80], "Wave")
+    for name in names:
+        ui.editor.keep_pose(name)
+    ui.space.preferences.put("sections", {"Drawing": False, "Pins": False, "Bending": False, "Mesh": False})
+    ui.settle()
+    found = {}
+
+    def look(hand):
+        found.update({name: hand.item_info(f"//Panel/pose {name}").rect_full.min for name in names})
+
+    ui.do(look)
+    first, second, third = (found[name] for name in names)
+    assert third.y == second.y == first.y
+    assert third.x - second.x == second.x - first.x
+
+
+def test_the_pin_that_is_selected_is_seen_in_the_list(ui):
+    for x in range(50, 220, 10):
+        ui.editor.add_pin((float(x), 80.0))
+    for pin in (17, 1):
+        ui.editor.select({pin})
+        ui.settle()
+        (rows,) = (window for window in imgui.get_current_context().windows if "##pins" in window.name)
+        first = round(rows.scroll.y / imgui.get_text_line_height_with_spacing())
+        assert first < pin <= first + 6
+
+
+def test_the_present_step_of_a_long_history_is_seen_below_whole_rows(pinned):
+    for depth in range(1, 21):
+        pinned.editor.set_depth(1, depth)
+    folded = dict.fromkeys(("Drawing", "Pins", "Bending", "Mesh", "Poses", "Numbers"), False)
+    pinned.space.preferences.put("sections", folded)
+    pinned.editor.go_to(11)
+    pinned.settle()
+    (rows,) = (window for window in imgui.get_current_context().windows if "##history" in window.name)
+    height = imgui.get_text_line_height_with_spacing()
+    assert rows.scroll.y > 0
+    assert rows.scroll.y % height == 0
+    assert rows.scroll.y / height < 11 < rows.scroll.y / height + 6

@@ -67,7 +67,7 @@ def test_the_menu_of_a_pin_holds_its_angle_and_lets_it_go(pinned):
 
 def test_the_values_of_a_pin_have_its_angle_in_degrees(pinned):
     def type_angle(hand):
-        hand.item_input("//$FOCUSED/Angle")
+        hand.item_input("//$FOCUSED/##Angle")
         hand.key_chars_replace_enter("30")
         hand.yield_(2)
 

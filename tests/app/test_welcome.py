@@ -249,6 +249,19 @@ def test_they_wait_on_the_start_page_for_a_drawing(newcomer, document):
     assert hints.step(newcomer.space) == 0
 
 
+def test_whoever_drags_the_only_pin_is_told_why_nothing_bends(newcomer):
+    start = newcomer.screen((200.0, 80.0))
+    newcomer.drag(start, (start[0], start[1] - 100))
+    assert newcomer.session.posed
+    assert hints.step(newcomer.space) == 0
+    newcomer.click(newcomer.screen((60.0, 20.0)))  # the head, where it is now
+    assert len(newcomer.pins) == 2
+    assert hints.step(newcomer.space) == 1
+    end = newcomer.screen(newcomer.pin_place(1))
+    newcomer.drag(end, (end[0], end[1] + 100))
+    assert hints.step(newcomer.space) == 2
+
+
 @pytest.mark.parametrize("steps", [0, 2])
 def test_put_away_they_are_gone_for_good(newcomer, tmp_path, steps):
     if steps:

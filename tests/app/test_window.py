@@ -7,6 +7,7 @@ import glfw
 import numpy as np
 import pytest
 
+from akap_editor.app import widgets
 from akap_editor.app import window as window_module
 from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES, Window
 from akap_editor.errors import DisplayError, GraphicsError
@@ -63,6 +64,19 @@ def test_a_caret_blinks(loop):
     waits = loop.run(4)
     assert {seconds for seconds, _ in waits} == {0.4}
     assert np.diff([frames for _, frames in waits]).tolist() == [1, 1, 1]
+
+
+def test_it_wakes_for_a_tooltip(loop):
+    """A mouse that rests sends nothing, so no event comes when the tooltip is due."""
+    tools = imgui.internal.find_window_by_name("Tools")
+    glfw.set_cursor_pos(loop.ui.window._handle, tools.pos.x + tools.size.x / 2, tools.pos.y + 20)
+    waits = loop.run(2)
+    assert imgui.get_current_context().hover_item_delay_id != 0
+    assert all(0 < seconds <= imgui.get_style().hover_delay_normal + 0.02 for seconds, _ in waits)
+    assert waits[1][1] == waits[0][1] + SETTLE_FRAMES
+    glfw.set_cursor_pos(loop.ui.window._handle, *loop.ui.beside)
+    loop.ui.settle()
+    assert widgets.tooltip_due() == 0.0
 
 
 def test_input_that_comes_with_the_last_frame_is_taken_in_whole(loop):

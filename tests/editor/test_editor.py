@@ -120,6 +120,23 @@ def test_a_fitted_drawing_stays_fitted_when_the_canvas_changes(driver, looked_el
         assert driver.editor.camera.to_screen((60.0, 40.0)) == pytest.approx((300.0, 250.0))
 
 
+def test_the_hint_of_a_drag_says_why_nothing_bends(driver):
+    driver.press(NECK)
+    driver.move((70.0, 30.0))
+    assert driver.tool == "DraggingPin"
+    assert "all of it goes along" in driver.editor.hint
+    driver.release((70.0, 30.0))
+    driver.move(BESIDE)
+    assert "where it should hold still" in driver.editor.hint
+
+
+def test_the_hint_of_a_drag_that_bends_is_how_to_end_it(pinned):
+    pinned.press((45.0, 25.0))
+    pinned.move((45.0, 35.0))
+    assert pinned.tool == "DraggingPin"
+    assert pinned.editor.hint == "Release to keep this pose, Escape to go back"
+
+
 def test_the_hint_of_idle_says_what_a_press_would_do(driver):
     hints = []
     for at in (BESIDE, NECK):
