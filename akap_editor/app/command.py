@@ -82,6 +82,7 @@ class Submenu:
 
 
 _KEY_NAMES = {
+    "_0": "0",
     "_1": "1",
     "delete": "Del",
     "equal": "+",

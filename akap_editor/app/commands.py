@@ -243,8 +243,14 @@ SOFTEN_ALL = Command(
     "",
     lambda space: space.editor.session is not None and space.editor.session.state.stiffness is not None,
 )
-FIT = Command("Fit in Window", lambda space: space.editor.fit(), (Key.f,), icons.ICON_FA_EXPAND, has_drawing)
-ACTUAL = Command("100 %", _actual_size, (Key._1,), "", has_drawing)
+FIT = Command(
+    "Fit in Window",
+    lambda space: space.editor.fit(),
+    (Key.f, CTRL | Key._0),
+    icons.ICON_FA_EXPAND,
+    has_drawing,
+)
+ACTUAL = Command("100 %", _actual_size, (Key._1, CTRL | Key._1), "", has_drawing)
 ZOOM_IN = Command(
     "Zoom In",
     lambda space: space.editor.zoom(1.25),

@@ -203,7 +203,10 @@ class Workspace:
             self.timeline, self.show_timeline = "keyframes", True
         opaque = document.path is None and not has_transparency(document.drawing.image)
         self.notice = (
-            "This picture has no transparent background, so the whole rectangle bends" if opaque else ""
+            "This picture has no transparent background, so the whole rectangle bends; "
+            "Mesh, at the right, can remove it"
+            if opaque
+            else ""
         )
 
     def change_settings(self, settings: Settings) -> None:
