@@ -1,25 +1,22 @@
 """The one door through which a window, a script or a test changes anything."""
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import Literal
 
 from ..errors import SolverError
-from ..geometry.checks import Floats
 from .camera import Camera, Point, fit
-from .document import Document, Pin, Settings
+from .document import Document
+from .edits import Edits
 from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
-from .nudges import Nudges
-from .poses import free_name
 from .session import Session
 from .sight import Sight
 from .tool import Tool, distance
 from .tool_brush import Brush
 from .tool_crosshair import Crosshair
 from .tools import ZOOM_STEP, Idle
-from .trails import Trails
 from .worker import AT_ONCE
 
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
@@ -28,19 +25,18 @@ NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
 HELD_KEYS = ("space", "alt", "shift", "h")  # what they mean lasts as long as they are held
 
 
-class Editor:
-    """A session with a pointer, a selection and a camera.
+class Editor(Edits):
+    """A session with a selection, a pointer and a camera.
 
     worker: computes the steps of `advance`, one at a time; by default they are done at once.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic, worker: Executor = AT_ONCE) -> None:
+        super().__init__(clock)
         self.worker = worker
-        self.session: Session | None = None
         self.camera = Camera()
         self._canvas = (0.0, 0.0, 1280.0, 800.0)
         self._fitted: Camera | None = None
-        self.selection: frozenset[int] = frozenset()
         self.pointer: Point | None = None
         self.last_pointer: Point | None = None  # where it was when it left the canvas
         self.ui_scale = 1.0  # points of the window per point of the design
@@ -48,9 +44,7 @@ class Editor:
         self.brush = Brush()
         self.held: frozenset[str] = frozenset()  # of HELD_KEYS
         self.request: PinRequest | None = None
-        self.trails = Trails()
         self.newest_pin: int | None = None  # added by the last click: a second one on it is no double click
-        self._nudges = Nudges(clock)
         self.tool: Tool = Idle(self)
         self._sight = Sight()
         self._clock = clock
@@ -191,157 +185,17 @@ class Editor:
         if session.last_step.report.seconds > FRAME_BUDGET:
             session.start_step(self.worker)
 
-    # -- edits, one gesture each ---------------------------------------------------------------------------
-
-    def add_pin(self, at: Point) -> int | None:
-        """A pin at a place in the drawing (pixels); its id, or None beside the drawing."""
-        if self.session is None or self.busy:
-            return None
-        self.session.begin("Add pin")
-        try:
-            added = self.session.add_pin(at)
-        except Exception:
-            self.session.abort()
-            raise
-        self.session.commit()
-        if added is not None:
-            self.select({added})
-        return added
-
-    def remove_pins(self, ids: Iterable[int]) -> None:
-        """Take pins off the drawing; it keeps its pose."""
-        if self.session is None:
-            return
-        gone = frozenset(ids) & {pin.id for pin in self.session.state.pins}
-        if gone:
-            label = "Remove pin" if len(gone) == 1 else f"Remove {len(gone)} pins"
-            self.edit(label, lambda session: session.remove_pins(gone))
-
-    def remove_selected(self) -> None:
-        """Take the selected pins off the drawing."""
-        self.remove_pins(self.selection)
-
-    def remove_last(self) -> None:
-        """Take off the pin that was added last."""
-        if self.session is not None and self.session.state.pins:
-            self.remove_pins({self.session.state.pins[-1].id})
-
-    def place_pin(self, pin_id: int, at: Point) -> None:
-        """Send a pin to a place (pixels); the drawing follows. Raises InputError on an unknown id or NaN."""
-        self.edit("Place pin", lambda session: session.set_targets({pin_id: at}))
-
-    def set_depth(self, pin_id: int, depth: int) -> None:
-        """Bring a pin to the front or back. Raises InputError on a depth out of range."""
-        self.edit("Set depth", lambda session: session.set_depths({pin_id: depth}))
-
-    def shift_depth(self, by: int) -> None:
-        """Bring the selected pins so much to the front, or to the back."""
-        if self.session is not None and self.selection:
-            depths = {pin.id: pin.depth + by for pin in self.session.state.pins if pin.id in self.selection}
-            label = "Bring forward" if by > 0 else "Send back"
-            self.edit(label, lambda session: session.set_depths(depths))
-
-    def nudge_selected(self, dx: float, dy: float) -> None:
-        """Send the selected pins so many pixels on; nudges in a row are one gesture."""
-        if self.session is not None and not self.busy and self.selection:
-            self._nudges.move(self.session, self.selection, dx, dy)
-
-    def reset_pose(self) -> None:
-        """The rest pose, with the pins where they then are."""
-        self.edit("Reset pose", lambda session: session.reset_pose())
-
-    def bake_pose(self) -> None:
-        """Make the pose the rest pose; nothing moves. Raises InputError where faces are flipped."""
-        self.edit("Make pose the rest pose", lambda session: session.bake_pose())
-
-    def keep_pose(self, name: str | None = None) -> None:
-        """Remember the current pose by a name, by default "Pose" and a number. Raises InputError."""
-        if self.session is not None:
-            wanted = name if name is not None else free_name(self.session.state.poses)
-            self.edit("Keep pose", lambda session: session.change_poses("keep", name=wanted))
-
-    def forget_pose(self, name: str) -> None:
-        """Forget a pose; undo brings it back."""
-        self.edit("Forget pose", lambda session: session.change_poses("forget", name=name))
-
-    def set_pose(self, positions: Floats, label: str = "Apply pose") -> None:
-        """Take over a pose (n, 2) of this mesh; pins go with it. Raises InputError."""
-        self.edit(label, lambda session: session.set_pose(positions))
-
-    def apply_pose(self, pins: tuple[Pin, ...], positions: Floats) -> None:
-        """Take over pins and pose (n, 2) from another session on the same mesh. Raises InputError."""
-
-        def take(session: Session) -> None:
-            session.set_pins(pins)
-            session.set_pose(positions)
-
-        self.edit("Apply pose", take)
-
-    def set_settings(self, settings: Settings) -> None:
-        """Bend differently from now on. Raises InputError on unknown methods or parameters."""
-        if self.session is not None and settings != self.session.state.settings:
-            self.edit("Change settings", lambda session: session.set_settings(settings))
-
-    def undo(self) -> None:
-        """Take back the last gesture; in the middle of one, that one."""
-        self.trails.clear()
-        if self.busy:
-            self.cancel()
-        elif self.session is not None:
-            self.session.undo()
-            self._prune_selection()
-
-    def redo(self) -> None:
-        """Do again what was undone."""
-        self.trails.clear()
-        if self.session is not None and not self.busy:
-            self.session.redo()
-            self._prune_selection()
-
-    def go_to(self, depth: int) -> None:
-        """Undo or redo until so many gestures can be undone, or there are no more."""
-        if self.session is None or self.busy:
-            return
-        history = self.session.history
-        while history.depth > max(depth, 0):
-            self.undo()
-        while history.depth < depth and history.redo_label is not None:
-            self.redo()
-
-    def edit(self, label: str, change: Callable[[Session], None]) -> None:
-        """Change the session in one gesture; what goes wrong is taken back and raised."""
-        if self.session is None or self.busy:
-            return
-        self.session.begin(label)
-        try:
-            change(self.session)
-        except Exception:
-            self.session.abort()
-            raise
-        self.session.commit()
-        self._prune_selection()
-
     @property
     def busy(self) -> bool:
         """Whether a gesture is under way."""
         is_open = self.session is not None and self.session.history.is_open
         return is_open or not isinstance(self.tool, Idle)
 
-    # -- selection and view --------------------------------------------------------------------------------
-
-    def select(self, ids: Iterable[int]) -> None:
-        """Select exactly these pins."""
-        self.selection = frozenset(ids)
-        self._prune_selection()
-
-    def select_all(self) -> None:
-        """Select every pin."""
-        if self.session is not None:
-            self.select(pin.id for pin in self.session.state.pins)
+    # -- view ----------------------------------------------------------------------------------------------
 
     def _prune_selection(self) -> None:
-        there = {pin.id for pin in self.session.state.pins} if self.session is not None else set()
-        self.selection &= there
+        super()._prune_selection()
+        there = () if self.session is None else [pin.id for pin in self.session.state.pins]
         if self.request is not None and self.request.pin not in there:
             self.request = None
 
