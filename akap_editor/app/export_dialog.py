@@ -1,5 +1,6 @@
 """The dialog for exports: format on the left, what can be chosen about it on the right."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -7,7 +8,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document import Document
 from ..errors import InputError
-from ..io.export import FORMATS, export, format_of
+from ..io.export import FORMATS, Painter, export, format_of
 from . import widgets
 from .exporting import LARGEST, SCALES, SMALLEST, ExportChoice
 from .requests import FileRequest
@@ -61,17 +62,20 @@ def ask_file(space: Workspace) -> None:
 
 
 def write(space: Workspace, path: Path) -> None:
-    """Write what was chosen."""
+    """Write what was chosen, of the pose as it is now; one may go on meanwhile."""
+    document, choice = space.document, replace(space.export)
+    assert document is not None
 
-    def work() -> None:
-        assert space.document is not None
-        *beside, _ = export(space.document, path, space.export.options, space.exporter)
-        space.notice = f"Exported {', '.join([path.name, *(each.name for each in beside)])}"
+    def work(painter: Painter) -> str:
+        *beside, _ = export(document, path, choice.options, painter)
+        said = f"Exported {', '.join([path.name, *(each.name for each in beside)])}"
         if format_of(path).framed:
-            width, height = space.export.size(space.document)
-            space.notice += f", {width} × {height} pixels"
+            width, height = choice.size(document)
+            said += f", {width} × {height} pixels"
+        return said
 
-    space.later(work, f"Exporting {path.name} ...")
+    space.notice = f"Exporting {path.name} ..."
+    space.writer.begin(work)
 
 
 def _close(choice: ExportChoice) -> None:

@@ -35,7 +35,7 @@ SMALLEST = (640, 400)
 GRASP = 64  # screen coordinates of a window's corner that must be on a screen for a hand to move it
 SETTLE_FRAMES = 3  # ImGui needs so many frames after an event until everything stands where it belongs
 IDLE_SECONDS, BLINK_SECONDS = 1.0, 0.4
-STEP_SECONDS = 0.004  # between two looks whether the engine is done with a step
+STEP_SECONDS = 0.004  # between two looks whether a thread is done
 
 
 def _warm_up() -> None:
@@ -118,6 +118,7 @@ class Window:
     def close(self) -> None:
         """Free everything; what is remembered is written."""
         self._remember()
+        self.space.writer.close()
         self.space.exporter.__exit__()
         self._welcome.release()
         self._recovery.release()
@@ -144,6 +145,7 @@ class Window:
             raise
         if self.space.autosave is not None:
             self.space.autosave.close()
+        self.space.writer.finish(self.space.exporter)
 
     def _turn(self) -> None:
         """Once around the loop: sleep or draw a frame."""

@@ -37,6 +37,7 @@ from .preferences import Preferences
 from .reenacting import reenacting
 from .requests import FileRequest, Palette, Question
 from .tasks import Task
+from .writer import Writer
 
 SWITCHES = ("show_mesh", "checker", "show_timeline")  # fields that are remembered between runs
 
@@ -77,6 +78,7 @@ class Workspace:
     palette: Palette | None = None
     folder: Path = field(default_factory=Path.cwd)
     exporter: OffscreenRenderer = field(default_factory=OffscreenRenderer)
+    writer: Writer = field(default_factory=Writer)
     preferences: Preferences = field(default_factory=Preferences)
     autosave: Autosave | None = None
     lost: list[Copy] = field(default_factory=list)  # unsaved work of programs that crashed
@@ -158,6 +160,8 @@ class Workspace:
         jobs, self._due, self._jobs = self._due, self._jobs, []
         for job in jobs:
             self.attempt(job)
+        if self.writer.moving and not self.writer.waiting:
+            self.attempt(self._go_on_writing)
         if self.task is not None:
             self.attempt(self._go_on)
             return True
@@ -166,6 +170,9 @@ class Workspace:
         except InputError as error:  # no dialog in the middle of a drag
             self.notice = str(error)
             return True
+
+    def _go_on_writing(self) -> None:
+        self.notice = self.writer.advance(self.exporter) or self.notice
 
     def _go_on(self) -> None:
         """A slice of the task."""
@@ -365,8 +372,8 @@ class Workspace:
 
     @property
     def _motions(self) -> tuple[tuple[bool, bool], ...]:
-        """Of all that may move: whether it does, and whether it only waits for the engine."""
-        parts = (self.editor, self.beside, self.view)
+        """Of all that may move: whether it does, and whether it only waits for its thread."""
+        parts = (self.editor, self.beside, self.view, self.writer)
         return *((part.moving, part.waiting) for part in parts), (self.transport.playing, False)
 
     @property
@@ -376,7 +383,7 @@ class Workspace:
 
     @property
     def stalled(self) -> bool:
-        """Whether nothing new can be seen before the engine is done with a step."""
+        """Whether nothing new can be seen before a thread is done with what it computes or writes."""
         return self.moving and all(waits for moves, waits in self._motions if moves)
 
     def overlays(self, scale: float) -> Overlays:
