@@ -214,7 +214,7 @@ def canvas(shot):
 def find_camera(shot, alpha):
     """(zoom, offset (2,)): from the bounding boxes of what is seen and of the picture's alpha."""
     part = canvas(shot).astype(int)
-    seen = np.argwhere(abs(part - part[0, 0]).sum(axis=2) > 60)[:, ::-1] + (LEFT, TOP)
+    seen = np.argwhere(abs(part - part[0, 0]).sum(axis=2) > 30)[:, ::-1] + (LEFT, TOP)
     drawn = np.argwhere(alpha > 127)[:, ::-1]
     low, high = seen.min(axis=0), seen.max(axis=0) + 1
     spans = (high - low) / (drawn.max(axis=0) + 1 - drawn.min(axis=0))
