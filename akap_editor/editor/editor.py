@@ -20,7 +20,7 @@ from .tools import ZOOM_STEP, Idle
 from .worker import AT_ONCE
 
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
-FRAME_BUDGET = 0.012  # seconds in which a frame waits for steps
+FRAME_BUDGET = 0.02  # seconds in which a frame waits for steps
 NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
 HELD_KEYS = ("space", "alt", "shift", "h")  # what they mean lasts as long as they are held
 
