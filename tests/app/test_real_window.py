@@ -1,13 +1,11 @@
 """The program on a real X server, with a real mouse and keyboard, judged by what is on the screen."""
 
-import ctypes
 import json
 import os
 import shutil
 import subprocess
 import sys
 import time
-from ctypes.util import find_library
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +18,8 @@ from akap_editor.editor.tool_crosshair import BIG_STEP
 from akap_editor.editor.tools import ZOOM_STEP
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
+
+from .x11 import Teller
 
 pytestmark = pytest.mark.window
 
@@ -71,22 +71,6 @@ def picture():
     """The gecko of the real cartoons; a bundled drawing where they are absent."""
     gecko = Path(akap_editor.__file__).parents[2] / "shared" / "data" / "noto" / "gecko.png"
     return gecko if gecko.is_file() else resource("assets", "drawings", "gingerbread.png")
-
-
-class ClientMessage(ctypes.Structure):
-    """XClientMessageEvent, in the room of a whole XEvent."""
-
-    _fields_ = (
-        ("type", ctypes.c_int),
-        ("serial", ctypes.c_ulong),
-        ("send_event", ctypes.c_int),
-        ("display", ctypes.c_void_p),
-        ("window", ctypes.c_ulong),
-        ("message_type", ctypes.c_ulong),
-        ("format", ctypes.c_int),
-        ("data", ctypes.c_long * 5),
-        ("padding", ctypes.c_long * 24),
-    )
 
 
 class Program:
@@ -161,30 +145,17 @@ class Program:
         self.hand("mouseup", 1, "mousemove", *CORNER)
         return self.until(lambda shot: True, "the drawing is at rest")
 
-    def close_window(self):
-        """Ask as a window manager does for whom the cross was clicked."""
-        x11 = ctypes.CDLL(find_library("X11"))
-        for name in ("XOpenDisplay", "XInternAtom"):
-            getattr(x11, name).restype = ctypes.c_void_p
-        x11.XInternAtom.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
-        x11.XSendEvent.argtypes = [
-            ctypes.c_void_p,
-            ctypes.c_ulong,
-            ctypes.c_int,
-            ctypes.c_long,
-            ctypes.POINTER(ClientMessage),
-        ]
-        x11.XCloseDisplay.argtypes = [ctypes.c_void_p]
+    def teller(self):
+        """Tells the window what other programs do."""
         search = ["xdotool", "search", "--name", "akap-editor"]
         found = subprocess.run(search, env=self._environment, check=True, capture_output=True, text=True)
         (window,) = map(int, found.stdout.split())
-        connection = x11.XOpenDisplay(self._display.encode())
-        protocols, delete = (
-            x11.XInternAtom(connection, name, False) for name in (b"WM_PROTOCOLS", b"WM_DELETE_WINDOW")
-        )
-        event = ClientMessage(33, 0, True, connection, window, protocols, 32, (ctypes.c_long * 5)(delete))
-        assert x11.XSendEvent(connection, window, False, 0, ctypes.byref(event))
-        x11.XCloseDisplay(connection)
+        return Teller(self._display, window)
+
+    def close_window(self):
+        """Ask as a window manager does for whom the cross was clicked."""
+        with self.teller() as teller:
+            teller.close()
 
     def without_pins(self):
         """The screen with pins hidden; they are shown again."""
@@ -493,3 +464,21 @@ def test_pins_are_set_bent_and_saved_by_keys_alone(start, tmp_path):
     width, height = document.drawing.size
     zoom = 3 * BIG_STEP / (first[1] - second[1])
     assert zoom == pytest.approx(min((RIGHT - LEFT) / width, (BOTTOM - TOP) / height), rel=0.2)
+
+
+def test_a_file_dropped_on_the_window_is_opened(start, picture, tmp_path):
+    other = tmp_path / "käse & co.png"
+    shutil.copy(resource("assets", "drawings", "raptor.png"), other)
+    program = start(picture)
+    before = canvas(program.grab())
+    with program.teller() as teller:
+        teller.drop(other, ((LEFT + RIGHT) // 2, (TOP + BOTTOM) // 2))
+    shown = program.until(lambda shot: (canvas(shot) != before).any(axis=2).mean() > 0.05, "it is open")
+    alpha = read_image(other)[..., 3]
+    program.press("b")
+    plain = program.until(lambda shot: (canvas(shot) != canvas(shown)).any(), "the checkerboard is gone")
+    zoom, offset = find_camera(plain, alpha)
+    assert zoom > 0.1
+    for place in far_apart(alpha, 4):
+        x, y = np.rint(place * zoom + offset).astype(int)
+        assert (plain[y, x] != plain[TOP, LEFT]).any(), "the raptor is where its picture says"
