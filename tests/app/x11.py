@@ -1,4 +1,4 @@
-"""What other programs say to a window on an X server: window managers, and those that files are dragged from."""
+"""What other programs say to a window on an X server: a window manager, and one that gives a file."""
 
 import time
 from pathlib import Path
