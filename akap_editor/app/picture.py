@@ -10,7 +10,7 @@ from . import split_view
 from .workspace import Workspace
 
 PLAIN = Background(color=CANVAS.color)
-# Faces of a mesh from which on a picture is kept. Without a graphics card such a mesh takes a dozen times as
+# Faces of a mesh from which on a picture is kept. Without a graphics card such a mesh takes several times as
 # long to draw as the copy of its picture, and the pointer that hovers over it should not feel that.
 KEPT_FROM = 10_000
 
