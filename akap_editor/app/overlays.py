@@ -99,6 +99,8 @@ class ViewState:
             and (editor.moving or isinstance(editor.tool, DraggingPin))
         ):
             strokes += self._fields.strokes(editor, editor.session, scale)
+        else:
+            self._fields.drop()
         return Overlays(
             mesh_lines=mesh_lines,
             ghost=GHOST if self.ghost else 0.0,
@@ -229,6 +231,11 @@ class _Fields:
             for each in (smooth, optimal)
         )
         return [*outlined(below, BLUE, 3.2 * scale), Strokes(above, GREEN, 1.4 * scale)]
+
+    def drop(self) -> None:
+        """Nobody waits for what the worker computes."""
+        if self.coming is not None:
+            self.coming = self._way = None
 
     def _update(self, editor: Editor, session: Session) -> None:
         """Take over what the worker has computed, and let it compute what is new."""

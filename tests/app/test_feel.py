@@ -150,6 +150,27 @@ def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, monkey
     np.testing.assert_allclose(held.ui.pin_place(3), held.goal, atol=0.25)
 
 
+@pytest.mark.parametrize("ends", ["at rest", "switched off", "closed"])
+def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkeypatch, ends):
+    pinned.space.view.vectors = True
+    gate, deformer = Event(), pinned.session._bending.deformer
+    fields = deformer.vector_fields
+    monkeypatch.setattr(deformer, "vector_fields", lambda *way: gate.wait(60) and fields(*way))
+    pinned.editor.place_pin(3, tuple(pinned.pin_place(3) - (0, 20)))
+    while not pinned.space.view.waiting:
+        pinned.frame()
+    if ends == "switched off":
+        pinned.space.view.vectors = False
+    elif ends == "closed":
+        pinned.editor.close()
+    else:
+        gate.set()
+        pinned.session.halt()
+    gate.set()
+    pinned.settle()
+    assert not pinned.window._busy
+
+
 def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatch):
     pinned.space.view.vectors = True
     gate, deformer = Event(), pinned.session._bending.deformer
