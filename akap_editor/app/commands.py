@@ -8,7 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..editor.tool_turning import toggle_hold
 from ..resources import bundled_drawings
-from . import keying, masking, poses, recordings
+from . import keying, masking, poses, recordings, reference
 from .command import CTRL, SHIFT, Command, Key, Submenu, always, has_drawing
 from .overlays import RANGES, Measure
 from .pointing_commands import CROSSHAIR, MENU_HERE, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
@@ -280,7 +280,7 @@ NEXT_RANGE = Command(
 )
 SHOW_GHOST = Command("Rest Pose", _ghost, (Key.g,), "", has_drawing, _ghost_on)
 SHOW_TRAILS = Command("Pin Trails", _trails, (Key.t,), "", has_drawing, _trails_on)
-CHOOSE_REFERENCE = Command("Reference Picture...", Workspace.ask_reference, (), "", has_drawing)
+CHOOSE_REFERENCE = Command("Reference Picture...", reference.ask, (), "", has_drawing)
 SHOW_REFERENCE = Command(
     "Show Reference Picture",
     _reference,

@@ -2,6 +2,7 @@
 
 import time
 from concurrent.futures import Future, wait
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -16,8 +17,10 @@ from ..editor.session import Session
 from ..editor.stiffness import STIFFEST
 from ..editor.tool_brush import shown_stiffness
 from ..editor.tools import DraggingPin
+from ..errors import InputError
 from ..geometry.checks import Floats, Ints
 from ..geometry.distortion import Distortion
+from ..io.images import read_image
 from ..render.colormaps import diverging, sequential
 from ..render.overlays import Heat, Overlays, Reference, Skin, Strokes
 from .theme import DARK, QUIET, TEXT, packed
@@ -62,6 +65,15 @@ class ViewState:
         """Show another reference picture, (h, w, 4) uint8, at half its strength."""
         self.reference, self.show_reference = Reference(image, REFERENCE), True
         self.reference_path = path
+
+    def read_reference_again(self) -> None:
+        """The picture of the last run, on or off as it was; nobody misses it where it is gone."""
+        path, shown = self.reference_path, self.show_reference
+        self.reference_path = None
+        with suppress(InputError):
+            if path is not None:
+                self.set_reference(read_image(path), path)
+        self.show_reference = shown
 
     def kept(self) -> dict[str, object]:
         """What is remembered between runs, for `recall`."""

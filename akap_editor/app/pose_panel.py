@@ -67,9 +67,8 @@ def _all_poses(space: Workspace, poses: Sequence[NamedPose], scale: float) -> No
     if scrolls:
         gaps = 2 * imgui.get_style().item_spacing.y
         row = round(_SIDE * scale) + 0.86 * imgui.get_text_line_height() + gaps
-        imgui.begin_child(
-            "##poses", ImVec2(0, (_ROWS + 0.5) * row), widgets.WALKED
-        )  # half a row says that there are more
+        height = (_ROWS + 0.5) * row  # half a row says that there are more
+        imgui.begin_child("##poses", ImVec2(0, height), widgets.WALKED)
     for number, pose in enumerate(poses):
         if number % _COLUMNS:
             imgui.same_line(0, 6 * scale)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -24,7 +23,7 @@ from ..geometry.distortion import Distortion, distortion
 from ..io import project_file
 from ..io.autosave import Autosave, Copy
 from ..io.documents import MESH_SUFFIXES, PICTURE_SUFFIXES, PROJECT_SUFFIX, open_document
-from ..io.images import has_transparency, is_animation, read_image
+from ..io.images import has_transparency, is_animation
 from ..io.recordings import RECORDING_SUFFIX
 from ..render.offscreen import OffscreenRenderer
 from ..render.overlays import Overlays
@@ -125,7 +124,7 @@ class Workspace:
             setattr(space, name, preferences.get(name, getattr(space, name)))
         space.view.recall(preferences.get("overlays", {}))
         if space.view.reference_path is not None:
-            space.later(space._read_reference_again)
+            space.later(space.view.read_reference_again)
         brush: list[object] = preferences.get("brush", [])
         match brush:
             case [int() | float() as factor, int() | float() as radius]:
@@ -331,23 +330,6 @@ class Workspace:
         """Ask for a picture or a posed drawing to open."""
         suffixes = (PROJECT_SUFFIX, RECORDING_SUFFIX, *PICTURE_SUFFIXES, *MESH_SUFFIXES)
         self.request = FileRequest("Open picture or drawing", suffixes, self.folder, self.open_path)
-
-    def ask_reference(self) -> None:
-        """Ask for a picture to be seen behind the drawing."""
-
-        def use(path: Path) -> None:
-            self.attempt(lambda: self.view.set_reference(read_image(path), path))
-
-        self.request = FileRequest("Choose reference picture", PICTURE_SUFFIXES, self.folder, use)
-
-    def _read_reference_again(self) -> None:
-        """The reference picture of the last run, on or off as it was; nobody misses it where it is gone."""
-        path, shown = self.view.reference_path, self.view.show_reference
-        self.view.reference_path = None
-        with suppress(InputError):
-            if path is not None:
-                self.view.set_reference(read_image(path), path)
-        self.view.show_reference = shown
 
     def ask_export(self) -> None:
         """Ask what is to be exported."""

@@ -157,6 +157,13 @@ class Program:
         with self.teller() as teller:
             teller.close()
 
+    def save_as(self, path, last):
+        """Save through the dialog; in the end the canvas is again what the screen ``last`` showed."""
+        self.key("ctrl+shift+s", "the file dialog is open")
+        self.hand("type", "--delay", 10, str(path))
+        self.press("Return")
+        self.until(lambda shot: path.is_file() and (canvas(shot) == canvas(last)).all(), "the file is saved")
+
     def without_pins(self):
         """The screen with pins hidden; they are shown again."""
         self.key("shift+p", "pins are hidden")
@@ -259,10 +266,7 @@ def test_bend_save_quit_and_open_again(start, picture, tmp_path):
     program.key("f", "the pose is fitted into the window")
     last = program.key("ctrl+d", "no pin is selected")
     saved = tmp_path / "posed.akap"
-    program.key("ctrl+shift+s", "the file dialog is open")
-    program.hand("type", "--delay", 10, str(saved))
-    program.press("Return")
-    program.until(lambda shot: saved.is_file() and (canvas(shot) == canvas(last)).all(), "the file is saved")
+    program.save_as(saved, last)
     program.press("ctrl+q")
     assert program.ended() == 0
 
@@ -450,10 +454,7 @@ def test_pins_are_set_bent_and_saved_by_keys_alone(start, tmp_path):
     program.key("ctrl+Right", "one looks to the right")
     saved = tmp_path / "keys.akap"
     last = program.grab()
-    program.key("ctrl+shift+s", "the file dialog is open")
-    program.hand("type", "--delay", 10, str(saved))
-    program.press("Return")
-    program.until(lambda shot: saved.is_file() and (canvas(shot) == canvas(last)).all(), "the file is saved")
+    program.save_as(saved, last)
     program.press("ctrl+q")
     assert program.ended() == 0
 

@@ -1,0 +1,17 @@
+"""The picture that is seen behind the drawing, to be chosen."""
+
+from pathlib import Path
+
+from ..io.documents import PICTURE_SUFFIXES
+from ..io.images import read_image
+from .requests import FileRequest
+from .workspace import Workspace
+
+
+def ask(space: Workspace) -> None:
+    """Ask for its file."""
+
+    def use(path: Path) -> None:
+        space.attempt(lambda: space.view.set_reference(read_image(path), path))
+
+    space.request = FileRequest("Choose reference picture", PICTURE_SUFFIXES, space.folder, use)
