@@ -13,17 +13,20 @@ The engine as a library, without a window::
 """
 
 from .deform.deformer import Deformer, StepReport, StepResult, make_deformer, method_names
-from .editor.bake import bake
-from .editor.document import Document, Drawing, EditState, Pin, Settings, make_drawing, new_document
+from .editor.document.document import Document, EditState, new_document
+from .editor.document.drawing import Drawing, make_drawing
+from .editor.document.pin import Pin
+from .editor.document.rest_pose import bake
+from .editor.document.settings import Settings
 from .errors import AkapError, DisplayError, GraphicsError, InputError, SolverError
 from .geometry.distortion import Distortion, distortion
 from .geometry.mesh import MeshPoints, TriMesh
-from .geometry.outline import Outline, outlines
-from .geometry.triangulate import triangulate
-from .io.documents import open_document
+from .io.akap.project import load, save
 from .io.export import ExportOptions, export
 from .io.images import read_image, write_png
-from .io.project_file import load, save
+from .io.open_document import open_document
+from .meshing.outline import Outline, outlines
+from .meshing.triangulate import triangulate
 
 __version__ = "0.1.0"
 

@@ -10,8 +10,8 @@ from collections.abc import Callable
 import numpy as np
 
 import akap_editor as akap
-from akap_editor.deform.variants import parse_method
-from akap_editor.geometry.checks import Floats
+from akap_editor.deform.methods import parse_method
+from akap_editor.geometry.validation import Floats
 from akap_editor.resources import resource
 
 MIDDLE, REACH, HALF_HEIGHT = np.array([560.0, 150.0]), 485.0, 70.0

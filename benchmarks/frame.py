@@ -23,9 +23,10 @@ from timing import Clock
 
 from akap_editor.app import window as window_module
 from akap_editor.app.window import Window
-from akap_editor.editor.document import make_drawing, new_document
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.events import PointerEvent
-from akap_editor.editor.session import Session
+from akap_editor.editor.session.session import Session
 from akap_editor.io.images import read_image
 from akap_editor.render.renderer import Renderer
 from akap_editor.resources import resource

@@ -33,15 +33,17 @@ from typing import Any
 
 import numpy as np
 
-from akap_editor.editor.document import Document, Drawing, EditState, Pin
+from akap_editor.editor.document.document import Document, EditState
+from akap_editor.editor.document.drawing import Drawing
+from akap_editor.editor.document.named_poses import NamedPose
+from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.editor import Editor
-from akap_editor.editor.poses import NamedPose
-from akap_editor.editor.replay import replay
+from akap_editor.editor.session.replay import replay
 from akap_editor.errors import AkapError, InputError
 from akap_editor.geometry.mesh import TriMesh
-from akap_editor.io.pose_file import decode_pose, encode_pose
-from akap_editor.io.project_file import decode, encode
-from akap_editor.io.recordings import decode_recording
+from akap_editor.io.akap.pose import decode_pose, encode_pose
+from akap_editor.io.akap.project import decode, encode
+from akap_editor.io.akap.recording import decode_recording
 
 MOST_SECONDS = 20.0  # of work on one case: the largest pictures that are allowed take several
 MOST_BYTES = 2**30

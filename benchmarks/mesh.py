@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
-from akap_editor.geometry.meshing import mesh_picture
-from akap_editor.geometry.quality import mesh_quality, smallest_angles
 from akap_editor.io.images import read_image
+from akap_editor.meshing.picture_mesh import mesh_picture
+from akap_editor.meshing.quality import mesh_quality, smallest_angles
 
 SIZE, SAMPLES = 512, 2
 SLIVER = 5.0  # degrees

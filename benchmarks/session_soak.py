@@ -24,18 +24,19 @@ from pathlib import Path
 
 import numpy as np
 
-from akap_editor.editor.document import Document, make_drawing, new_document
+from akap_editor.editor.document.document import Document, new_document
+from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.editor.document.remesh import remeshed
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
-from akap_editor.editor.remesh import remeshed
-from akap_editor.editor.session import Session
+from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError, SolverError
-from akap_editor.io.autosave import Autosave
+from akap_editor.io.akap.autosave import Autosave
+from akap_editor.io.akap.pose import load_pose, save_pose
+from akap_editor.io.akap.project import encode, load, save
+from akap_editor.io.akap.recording import write_recording
 from akap_editor.io.export import ExportOptions, export
 from akap_editor.io.images import read_image
-from akap_editor.io.pose_file import load_pose, save_pose
-from akap_editor.io.project_file import encode, load, save
-from akap_editor.io.recordings import write_recording
 from akap_editor.render.offscreen import OffscreenRenderer
 from akap_editor.resources import resource
 

@@ -20,17 +20,17 @@ from dataclasses import dataclass
 import numpy as np
 from timing import Clock
 
-from akap_editor.deform.akap import AkapDeformer
-from akap_editor.deform.akvf import KillingSystem
+from akap_editor.deform.akap.deformer import AkapDeformer
+from akap_editor.deform.akap.killing_field import KillingSystem
+from akap_editor.deform.akap.preconditioned_cholesky import ReusedCholesky
 from akap_editor.deform.cholesky import SparseCholesky
-from akap_editor.deform.reuse import ReusedCholesky
-from akap_editor.editor.document import make_drawing
+from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.killing_matrix import KillingMatrix
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
-from akap_editor.geometry.outline import Outline
-from akap_editor.geometry.triangulate import triangulate
 from akap_editor.io.images import read_image
+from akap_editor.meshing.outline import Outline
+from akap_editor.meshing.triangulate import triangulate
 from akap_editor.resources import resource
 
 FRAMES = 60

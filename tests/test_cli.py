@@ -15,10 +15,10 @@ import akap_editor
 from akap_editor import cli
 from akap_editor.cli import replay as replaying
 from akap_editor.errors import InputError
-from akap_editor.io.documents import open_document
+from akap_editor.io.akap.project import save
+from akap_editor.io.akap.recording import read_recording
 from akap_editor.io.images import read_image, write_png
-from akap_editor.io.project_file import save
-from akap_editor.io.recordings import read_recording
+from akap_editor.io.open_document import open_document
 from akap_editor.render.offscreen import OffscreenRenderer
 from akap_editor.resources import resource
 

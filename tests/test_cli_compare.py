@@ -12,13 +12,14 @@ import pytest
 from akap_editor import cli
 from akap_editor.cli import compare
 from akap_editor.compare.report import PAPER
-from akap_editor.compare.runs import bend, run
+from akap_editor.compare.run import bend, run
 from akap_editor.deform.deformer import make_deformer
-from akap_editor.editor.document import make_drawing, new_document
-from akap_editor.editor.session import Session
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.editor.session.session import Session
 from akap_editor.geometry.distortion import distortion
+from akap_editor.io.akap.recording import read_recording, recorded_drawing, write_recording
 from akap_editor.io.images import read_image
-from akap_editor.io.recordings import read_recording, recorded_drawing, write_recording
 from akap_editor.resources import resource
 
 SPECS = ["akap", "akap:memory=1", "arap", "igarashi", "cauchy-green", "mls"]

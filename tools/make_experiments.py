@@ -11,15 +11,17 @@ from pathlib import Path
 import numpy as np
 
 from akap_editor.cli.replay import settings_change
-from akap_editor.editor.document import Drawing, EditState, Settings, make_drawing, new_document
-from akap_editor.editor.framing import frame_box
-from akap_editor.editor.recording import Recording
-from akap_editor.editor.replay import replay
-from akap_editor.editor.session import Session
+from akap_editor.editor.document.document import EditState, new_document
+from akap_editor.editor.document.drawing import Drawing, make_drawing
+from akap_editor.editor.document.framing import frame_box
+from akap_editor.editor.document.settings import Settings
+from akap_editor.editor.session.recording import Recording
+from akap_editor.editor.session.replay import replay
+from akap_editor.editor.session.session import Session
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import signed_areas
+from akap_editor.io.akap.recording import read_recording, recorded_drawing, write_recording
 from akap_editor.io.images import read_image, write_png
-from akap_editor.io.recordings import read_recording, recorded_drawing, write_recording
 from akap_editor.render.offscreen import OffscreenRenderer
 from akap_editor.resources import resource
 

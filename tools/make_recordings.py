@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from akap_editor.editor.document import make_drawing, new_document
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
+from akap_editor.io.akap.recording import write_recording
 from akap_editor.io.images import read_image
-from akap_editor.io.recordings import write_recording
 from akap_editor.resources import resource
 
 MOVES_PER_SECOND = 30

@@ -15,16 +15,17 @@ from pathlib import Path
 
 import numpy as np
 
+from akap_editor.app.app_state import Palette, Workspace
 from akap_editor.app.preferences import Preferences
 from akap_editor.app.window import SIZE, Window
-from akap_editor.app.workspace import Palette, Workspace
-from akap_editor.editor.document import Document, make_drawing, new_document
+from akap_editor.editor.document.document import Document, new_document
+from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
-from akap_editor.editor.replay import replay
-from akap_editor.editor.tool_crosshair import toggle_crosshair
-from akap_editor.editor.tool_turning import RING
+from akap_editor.editor.session.replay import replay
+from akap_editor.editor.tools.keyboard_pointer import toggle_crosshair
+from akap_editor.editor.tools.rotate import RING
+from akap_editor.io.akap.recording import read_recording
 from akap_editor.io.images import read_image, write_png
-from akap_editor.io.recordings import read_recording
 from akap_editor.resources import resource
 
 FOLDER = Path("docs/images")

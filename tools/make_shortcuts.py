@@ -5,7 +5,7 @@ Run from the project's root: python tools/make_shortcuts.py
 
 from pathlib import Path
 
-from akap_editor.app.keys_overlay import groups
+from akap_editor.app.commands.shortcuts_page import groups
 
 PAGE = Path("docs/shortcuts.md")
 HEAD = """# Keys and mouse

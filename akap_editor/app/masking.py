@@ -3,12 +3,13 @@
 from dataclasses import replace
 from pathlib import Path
 
-from ..editor.document import Document, drawing_from, masked, new_document
+from ..editor.document.document import Document, new_document
+from ..editor.document.drawing import drawing_from, masked
 from ..errors import InputError
-from ..io.documents import PICTURE_SUFFIXES
 from ..io.images import read_mask
-from .requests import FileRequest
-from .workspace import Workspace
+from ..io.open_document import PICTURE_SUFFIXES
+from .app_state import Workspace
+from .dialogs.file_dialog import FileRequest
 
 
 def can_mask(space: Workspace) -> bool:

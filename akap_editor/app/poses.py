@@ -3,9 +3,9 @@
 from functools import partial
 from pathlib import Path
 
-from ..io.pose_file import POSE_SUFFIX, load_pose, save_pose
-from .requests import FileRequest
-from .workspace import Workspace
+from ..io.akap.pose import POSE_SUFFIX, load_pose, save_pose
+from .app_state import Workspace
+from .dialogs.file_dialog import FileRequest
 
 
 def ask_save(space: Workspace) -> None:

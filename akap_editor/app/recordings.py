@@ -3,9 +3,9 @@
 from functools import partial
 from pathlib import Path
 
-from ..io.recordings import RECORDING_SUFFIX, write_recording
-from .requests import FileRequest
-from .workspace import Workspace
+from ..io.akap.recording import RECORDING_SUFFIX, write_recording
+from .app_state import Workspace
+from .dialogs.file_dialog import FileRequest
 
 
 def ask_save(space: Workspace) -> None:

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from ..io.documents import PICTURE_SUFFIXES
 from ..io.images import read_image
-from .requests import FileRequest
-from .workspace import Workspace
+from ..io.open_document import PICTURE_SUFFIXES
+from .app_state import Workspace
+from .dialogs.file_dialog import FileRequest
 
 
 def ask(space: Workspace) -> None:

@@ -5,10 +5,10 @@ from bisect import bisect_left
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ..editor.document import Settings
-from .command import Command
+from ..editor.document.settings import Settings
+from .app_state import Workspace
+from .commands.command import Command
 from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT, Rgba, packed
-from .workspace import Workspace
 
 _BAR = (
     imgui.WindowFlags_.no_title_bar

@@ -15,20 +15,25 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from ..editor.document import Document
+from ..editor.document.document import Document
 from ..errors import AkapError, DisplayError, GraphicsError
-from ..io.autosave import Autosave
+from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
-from . import commands, key_order, palette, panels, split_view, theme, widgets
-from .canvas import Canvas
-from .dialogs import Dialogs, has_native_dialogs
-from .overlays import draw_legend
-from .panes import give_keys_to_panels
-from .picture import Picture
+from . import glfw_key_order as key_order
+from . import theme, widgets
+from .app_state import Workspace
+from .canvas import split_view
+from .canvas.pointer_input import Canvas
+from .canvas.scene import Picture
+from .canvas.view_options import draw_legend
+from .commands import palette
+from .commands import registry as commands
+from .commands.focus_navigation import give_keys_to_panels
+from .dialogs.dialogs import Dialogs, has_native_dialogs
+from .dialogs.recovery import Recovery
+from .panels import side_panel as panels
 from .preferences import Preferences
-from .recovery import Recovery
-from .welcome import Welcome
-from .workspace import Workspace
+from .start_page import Welcome
 
 SIZE = (1280, 800)
 SMALLEST = (640, 400)
@@ -40,7 +45,7 @@ STEP_SECONDS = 0.004  # between two looks whether a thread is done
 
 def _warm_up() -> None:
     """Load the engine, in a thread of its own: the window is there before."""
-    from ..deform.warm_up import warm_up
+    from ..deform.precompile import warm_up
 
     warm_up()
 

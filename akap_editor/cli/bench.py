@@ -10,13 +10,13 @@ import click
 import numpy as np
 
 from ..deform.deformer import make_deformer
-from ..deform.variants import parse_method
-from ..editor.document import Drawing, make_drawing
+from ..deform.methods import parse_method
+from ..editor.document.drawing import Drawing, make_drawing
 from ..errors import InputError
-from ..geometry.checks import Floats
 from ..geometry.distortion import distortion
+from ..geometry.validation import Floats
 from ..io.images import read_image
-from .common import bundled
+from .options import bundled
 
 DRAWING = "elephant"
 HOLDING = [(135.0, 800.0), (285.0, 795.0), (445.0, 795.0), (625.0, 800.0), (260.0, 420.0)]

@@ -7,14 +7,14 @@ from typing import Any
 import click
 import numpy as np
 
-from ..deform.variants import parse_method
-from ..editor.document import Drawing, make_drawing
-from ..editor.recording import Recording
+from ..deform.methods import parse_method
+from ..editor.document.drawing import Drawing, make_drawing
+from ..editor.session.recording import Recording
 from ..errors import InputError
 from ..geometry.distortion import distortion
+from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.atomic import write_atomic
-from ..io.recordings import read_recording, recorded_drawing
-from .common import FILE, make_folder_of
+from .options import FILE, make_folder_of
 
 METHODS = (
     "akap",
@@ -109,7 +109,7 @@ def _bent(
 ) -> Any:
     """One model: all methods over one recording, and on meshes of other sizes. ``done`` counts runs."""
     from ..compare.report import Model
-    from ..compare.runs import bend, run
+    from ..compare.run import bend, run
 
     runs, finer = [], []
     others = [make_drawing(drawing.image, vertices=size, name=drawing.name) for size in sizes]

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import click
 
-from ..editor.document import Document
+from ..editor.document.document import Document
 from ..errors import DisplayError, InputError
-from ..io.autosave import Autosave
-from ..io.documents import open_document
-from ..io.recordings import RECORDING_SUFFIX
+from ..io.akap.autosave import Autosave
+from ..io.akap.recording import RECORDING_SUFFIX
+from ..io.open_document import open_document
 from ..resources import bundled_drawings, resource
 from . import replay
-from .common import FILE, bundled
+from .options import FILE, bundled
 
 FIRST_DRAWING = "elephant"
 OUTPUT_FOLDER = Path("out")

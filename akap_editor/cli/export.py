@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
-from ..editor.framing import crop_box, picture_size
+from ..editor.document.framing import crop_box, picture_size
 from ..errors import InputError
-from ..io.documents import open_document
 from ..io.export import FORMATS, ExportOptions, export, format_of
-from .common import FILE, export_options, framing_options, make_folder_of
+from ..io.open_document import open_document
+from .options import FILE, export_options, framing_options, make_folder_of
 
 _KINDS = "\n".join(f"{each.suffix:<12} {each.label}" for each in FORMATS)
 

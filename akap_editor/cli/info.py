@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from ..io.inspection import inspect
-from .common import FILE
+from .options import FILE
 
 
 @click.command(epilog="Example: akap-editor info posed.akap --json")

@@ -11,16 +11,16 @@ from typing import Any
 import click
 import numpy as np
 
-from ..editor.document import Meshing, masked
+from ..editor.document.drawing import Meshing, masked
 from ..errors import InputError
-from ..geometry.checks import as_number
-from ..geometry.meshing import mesh_picture
-from ..geometry.quality import mesh_quality
-from ..geometry.triangulate import FEWEST, MOST, warm_up
-from ..io.documents import PICTURE_SUFFIXES
+from ..geometry.validation import as_number
 from ..io.images import has_transparency, read_image, read_mask
-from ..io.mesh_files import write_obj
-from .common import FILE, make_folder_of
+from ..io.mesh_files.reader import write_obj
+from ..io.open_document import PICTURE_SUFFIXES
+from ..meshing.picture_mesh import mesh_picture
+from ..meshing.quality import mesh_quality
+from ..meshing.triangulate import FEWEST, MOST, warm_up
+from .options import FILE, make_folder_of
 
 MOST_EXPANSION = 1000.0  # pixels
 

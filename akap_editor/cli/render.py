@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
-from .common import FILE, check_png, export_options, framing_options
 from .export import export_file
+from .options import FILE, check_png, export_options, framing_options
 
 
 @click.command(epilog="Example: akap-editor render posed.akap -o pose.png --scale 2 --crop pose")

@@ -5,19 +5,19 @@ from pathlib import Path
 
 import click
 
-from ..editor.document import Settings
-from ..editor.easing import EASINGS
-from ..editor.framing import frame_box, joined
-from ..editor.inbetween import Ways
-from ..editor.key_player import keyed_frame
-from ..editor.replay import replay
-from ..editor.timeline import Frame, Motion, closed, frame_times, shorten_pauses
+from ..deform.pose_interpolation import Ways
+from ..editor.animation.keyframe_playback import keyed_frame
+from ..editor.animation.motion import Frame, Motion, closed, frame_times, shorten_pauses
+from ..editor.document.easing import EASINGS
+from ..editor.document.framing import frame_box, joined
+from ..editor.document.settings import Settings
+from ..editor.session.replay import replay
 from ..errors import InputError
-from ..io.documents import PROJECT_SUFFIX, open_document
-from ..io.frames import export_frames, export_kind
-from ..io.recordings import read_recording, recorded_drawing
-from ..io.records import inside
-from .common import FILE, check_png, color, make_folder_of, write_picture
+from ..io.akap.json_records import inside
+from ..io.akap.recording import read_recording, recorded_drawing
+from ..io.animation.frames import export_frames, export_kind
+from ..io.open_document import PROJECT_SUFFIX, open_document
+from .options import FILE, check_png, color, make_folder_of, write_picture
 
 # What a word of --variant sets.
 VARIANTS: dict[str, tuple[str, object]] = {

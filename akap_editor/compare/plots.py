@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from ..editor.framing import Box
-from ..geometry.checks import Floats
-from .runs import Run
+from ..editor.document.framing import Box
+from ..geometry.validation import Floats
+from .run import Run
 
 # Colors that people with any color vision tell apart (Okabe and Ito 2008), then others by their lines.
 _COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")

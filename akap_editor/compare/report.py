@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from .. import __version__
-from ..deform.variants import default_settings, parse_method, variant_of
-from ..editor.framing import Box
-from ..geometry.checks import Floats
+from ..deform.methods import default_settings, parse_method, variant_of
+from ..editor.document.framing import Box
+from ..geometry.validation import Floats
 from ..render.offscreen import OffscreenRenderer
 from ..resources import resource
 from . import plots
-from .runs import Run
+from .run import Run
 
 # Table 1 of the paper, E_area and E_angle by model and method, and its figure for moving least squares.
 PAPER: dict[str, dict[str, tuple[float, float]]] = {

@@ -8,7 +8,7 @@ import numpy as np
 from cvxopt import cholmod, matrix, spmatrix
 
 from ..errors import SolverError
-from ..geometry.checks import Floats, Ints
+from ..geometry.validation import Floats, Ints
 
 _SIMPLICIAL, _SUPERNODAL = 0, 2  # values of CHOLMOD's option
 _options = Lock()  # which are those of the whole process

@@ -8,8 +8,8 @@ from typing import Any, Protocol
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..geometry.checks import Floats, as_number
 from ..geometry.mesh import MeshPoints, TriMesh
+from ..geometry.validation import Floats, as_number
 
 
 @dataclass(frozen=True)
@@ -75,11 +75,11 @@ class Deformer(Protocol):
 
 
 def _methods() -> dict[str, Any]:
-    from .akap import AkapDeformer
-    from .arap import ArapDeformer
-    from .cauchy_green import CauchyGreenDeformer
-    from .igarashi import IgarashiDeformer
-    from .moving_least_squares import MovingLeastSquaresDeformer
+    from .akap.deformer import AkapDeformer
+    from .rivals.arap import ArapDeformer
+    from .rivals.cauchy_green import CauchyGreenDeformer
+    from .rivals.igarashi import IgarashiDeformer
+    from .rivals.moving_least_squares import MovingLeastSquaresDeformer
 
     return {
         "akap": AkapDeformer,
@@ -124,7 +124,7 @@ def make_deformer(method: str, mesh: TriMesh, /, **settings: Any) -> Deformer:
 
     Of a mesh whose parts are tied, those without a pin ride with the others.
     """
-    from .riding import RidingDeformer
+    from .islands import RidingDeformer
 
     chosen = method_class(method)
     known = list(inspect.signature(chosen).parameters)[1:]

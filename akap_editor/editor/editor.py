@@ -8,16 +8,16 @@ from typing import Literal
 
 from ..errors import SolverError
 from .camera import Camera, Point, fit
-from .document import Document
-from .edits import Edits
+from .document.document import Document
 from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
-from .session import Session
+from .gestures import Edits
+from .session.session import Session
+from .session.worker import AT_ONCE
 from .sight import Sight
-from .tool import Tool, distance
-from .tool_brush import Brush
-from .tool_crosshair import Crosshair
-from .tools import ZOOM_STEP, Idle
-from .worker import AT_ONCE
+from .tools.base import Tool, distance
+from .tools.keyboard_pointer import Crosshair
+from .tools.pins import ZOOM_STEP, Idle
+from .tools.stiffness_brush import Brush
 
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
 FRAME_BUDGET = 0.02  # seconds in which a frame waits for steps

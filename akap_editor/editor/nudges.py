@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from .history import Entry
-from .session import Session
+from .session.history import Entry
+from .session.session import Session
 
 SERIES_PAUSE = 1.0  # seconds: nudges in a row without a longer pause are one gesture
 

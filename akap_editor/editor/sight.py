@@ -1,9 +1,9 @@
 """Whether the drawing is seen at a place: asked several times a frame, and looked up once."""
 
-from ..geometry.checks import Floats
 from ..geometry.mesh import TriMesh
+from ..geometry.validation import Floats
 from .camera import Point
-from .session import Session
+from .session.session import Session
 
 
 class Sight:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .checks import Floats, as_points
 from .mesh import TriMesh, signed_areas
+from .validation import Floats, as_points
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import Complexes, Floats, Ints
 from .jit import compiled
 from .mesh import TriMesh
+from .validation import Complexes, Floats, Ints
 
 
 class Slots(NamedTuple):

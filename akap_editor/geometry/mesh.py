@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
 
 from ..errors import InputError
-from .checks import Floats, Ints, as_indices, as_points, frozen
+from .validation import Floats, Ints, as_indices, as_points, frozen
 
 _ROUNDING = 1e-12  # share by which a point may lie beyond a face and still be on it
 

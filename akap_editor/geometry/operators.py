@@ -6,8 +6,8 @@ In formulas a point or vector (x, y) is the complex number x + iy, as in the pap
 import numpy as np
 from scipy.sparse import csr_array
 
-from .checks import Complexes, Floats, Ints
 from .mesh import TriMesh, signed_areas
+from .validation import Complexes, Floats, Ints
 
 _NEXT, _AFTER = [1, 2, 0], [2, 0, 1]  # the other two corners of a face, seen from each
 

@@ -5,17 +5,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..editor.recording import parse_recording
+from ..editor.session.recording import parse_recording
 from ..errors import InputError
 from ..geometry.distortion import distortion
-from ..geometry.meshing import mesh_picture
-from . import project_file
+from ..meshing.picture_mesh import mesh_picture
+from .akap import project as project_file
+from .akap.json_records import get, pairs, parse_record
+from .akap.pose import FORMAT as POSE_FORMAT
+from .akap.state_records import read_pins
 from .atomic import read_file
 from .images import decode_image, has_transparency
-from .mesh_data import count_parts, decode_mesh, mesh_problems
-from .pose_file import FORMAT as POSE_FORMAT
-from .records import get, pairs, parse_record
-from .states import read_pins
+from .mesh_files.inspect import count_parts, decode_mesh, mesh_problems
 
 Facts = dict[str, Any]
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..geometry.checks import Floats
+from ..geometry.validation import Floats
 
 _STEPS = 64
 

@@ -8,12 +8,12 @@ import moderngl
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..editor.document import Drawing
-from ..editor.framing import Box, frame_box, picture_size
+from ..editor.document.drawing import Drawing
+from ..editor.document.framing import Box, frame_box, picture_size
 from ..errors import GraphicsError
-from ..geometry.checks import Ints, as_points
-from .programs import load_program
+from ..geometry.validation import Ints, as_points
 from .renderer import Background, Color, Renderer
+from .shaders import load_program
 
 TILE = 2048  # pixels a side that are drawn at once: bounds the memory of the graphics card
 SAMPLES = 4  # per pixel, of the mesh's edges: textures are sampled once, so what they hold stays exact

@@ -8,8 +8,8 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.checks import Floats, Ints
-from .programs import View, load_program
+from ..geometry.validation import Floats, Ints
+from .shaders import View, load_program
 
 _ROW = 1024  # faces in one row of the texture of levels
 

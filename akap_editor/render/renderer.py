@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from ..editor.document import Drawing
+from ..editor.document.drawing import Drawing
 from ..errors import InputError
-from ..geometry.checks import Floats, Ints
+from ..geometry.validation import Floats, Ints
 from .overlays import NO_OVERLAYS, HeatPainter, Overlays, Reference, StrokePainter
-from .programs import View, load_program
+from .shaders import View, load_program
 
 Color = tuple[float, float, float]
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from akap_editor.editor.document import Document, Drawing, make_drawing, new_document
+from akap_editor.editor.document.document import Document, new_document
+from akap_editor.editor.document.drawing import Drawing, make_drawing
 from akap_editor.editor.editor import Editor
-
-from .driver import Window, WindowDriver, render_unlocked
+from tests.support.window_driver import Window, WindowDriver, render_unlocked
 
 
 @pytest.fixture(scope="session")

@@ -8,10 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from akap_editor.app import picture as picture_module
 from akap_editor.app import window as window_module
+from akap_editor.app.canvas import scene as picture_module
 from akap_editor.editor.editor import FRAME_BUDGET
-from akap_editor.editor.worker import AT_ONCE
+from akap_editor.editor.session.worker import AT_ONCE
 
 
 def one_frame(ui):

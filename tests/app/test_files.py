@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from akap_editor.app.command import CTRL, SHIFT, Key
-from akap_editor.app.requests import FileRequest
-from akap_editor.editor.document import make_drawing, new_document
-from akap_editor.io.documents import open_document
+from akap_editor.app.commands.command import CTRL, SHIFT, Key
+from akap_editor.app.dialogs.file_dialog import FileRequest
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.io.akap.project import load, save
 from akap_editor.io.images import read_image, write_png
-from akap_editor.io.project_file import load, save
+from akap_editor.io.open_document import open_document
 from akap_editor.resources import bundled_drawings
 
 OPEN, SAVE = "Open picture or drawing", "Save drawing"

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from akap_editor.app import preferences as module
-from akap_editor.app.overlays import RANGES, ViewState
+from akap_editor.app.app_state import SWITCHES, Workspace
+from akap_editor.app.canvas.view_options import RANGES, ViewState
 from akap_editor.app.preferences import MOST_RECENT, Preferences, preferences_path
 from akap_editor.app.window import SIZE, SMALLEST, _remembered_place, _remembered_size
-from akap_editor.app.workspace import SWITCHES, Workspace
-from akap_editor.editor.stiffness import SOFTEST, STIFFEST
-from akap_editor.editor.tool_brush import LARGEST, Brush
-from akap_editor.editor.tool_brush import SMALLEST as SMALLEST_BRUSH
+from akap_editor.editor.document.stiffness import SOFTEST, STIFFEST
+from akap_editor.editor.tools.stiffness_brush import LARGEST, Brush
+from akap_editor.editor.tools.stiffness_brush import SMALLEST as SMALLEST_BRUSH
 from akap_editor.errors import InputError
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource

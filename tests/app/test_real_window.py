@@ -14,12 +14,11 @@ from PIL import Image, ImageGrab
 from scipy.ndimage import distance_transform_edt
 
 import akap_editor
-from akap_editor.editor.tool_crosshair import BIG_STEP
-from akap_editor.editor.tools import ZOOM_STEP
+from akap_editor.editor.tools.keyboard_pointer import BIG_STEP
+from akap_editor.editor.tools.pins import ZOOM_STEP
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
-
-from .x11 import Teller
+from tests.support.x11 import Teller
 
 pytestmark = pytest.mark.window
 

@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from akap_editor.app import commands, widgets
-from akap_editor.app.requests import Question
+from akap_editor.app import widgets
+from akap_editor.app.commands import registry as commands
+from akap_editor.app.dialogs.file_dialog import Question
 from akap_editor.app.window import SMALLEST
-from akap_editor.editor.document import new_document
+from akap_editor.editor.document.document import new_document
 
 LONG = "a drawing whose name somebody has typed without thinking of panels at all, final version 27"
 

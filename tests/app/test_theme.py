@@ -7,8 +7,11 @@ import pytest
 
 imgui = pytest.importorskip("imgui_bundle").imgui
 
-from akap_editor.app import key_track, numbers_panel, overlays, theme  # noqa: E402
-from akap_editor.render import colormaps  # noqa: E402
+from akap_editor.app import theme
+from akap_editor.app.canvas import view_options as overlays
+from akap_editor.app.panels import numbers_panel
+from akap_editor.app.timeline import keyframe_track as key_track
+from akap_editor.render import colormaps
 
 GROUNDS = ("PANEL", "DARK", "POPUP", "FRAME", "HOVER")
 TEXT_AA, PARTS_AA = 4.5, 3.0  # success criteria 1.4.3 and 1.4.11

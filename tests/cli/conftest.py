@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from akap_editor import cli
-from akap_editor.editor.document import EditState
-from akap_editor.io.documents import open_document
+from akap_editor.editor.document.document import EditState
+from akap_editor.io.akap.project import save
 from akap_editor.io.images import write_png
-from akap_editor.io.project_file import save
+from akap_editor.io.open_document import open_document
 
 Result = tuple[int, str, str]
 

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from akap_editor.io.akap.pose import save_pose
+from akap_editor.io.akap.project import load
 from akap_editor.io.export import FORMATS
 from akap_editor.io.images import write_png
-from akap_editor.io.pose_file import save_pose
-from akap_editor.io.project_file import load
 from akap_editor.resources import bundled_drawings, resource
-
-from .conftest import assert_one_line
+from tests.cli.conftest import assert_one_line
 
 RECORDING = resource("assets", "recordings", "elephant.akaprec")
 MESHES = [each.suffix for each in FORMATS if not each.framed]

@@ -10,15 +10,16 @@ import pytest
 from PIL import Image
 
 from akap_editor import cli
-from akap_editor.editor.document import make_drawing, new_document
-from akap_editor.editor.keyframes import Animation, Keyframe
-from akap_editor.editor.replay import replay
-from akap_editor.editor.session import Session
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.editor.document.keyframes import Animation, Keyframe
+from akap_editor.editor.session.replay import replay
+from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
-from akap_editor.io.documents import open_document
+from akap_editor.io.akap.project import save
+from akap_editor.io.akap.recording import write_recording
 from akap_editor.io.images import read_image
-from akap_editor.io.project_file import save
-from akap_editor.io.recordings import write_recording
+from akap_editor.io.open_document import open_document
 from akap_editor.render.offscreen import OffscreenRenderer
 
 

@@ -1,32 +1,28 @@
 """The shapes of this folder's tests, and the paper's equations in loops and dense matrices."""
 
-from pathlib import Path
-from runpy import run_path
-from types import SimpleNamespace
+from types import ModuleType
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from akap_editor.geometry.mesh import TriMesh
-from akap_editor.geometry.outline import outlines
-from akap_editor.geometry.triangulate import triangulate
+from akap_editor.meshing.outline import outlines
+from akap_editor.meshing.triangulate import triangulate
 from akap_editor.resources import resource
-
-FOLDER = Path(__file__).parent
-SHAPES = SimpleNamespace(**run_path(str(FOLDER.parent / "geometry" / "shapes.py")))
-DENSE = SimpleNamespace(**run_path(str(FOLDER / "dense.py")))
-ARAP = SimpleNamespace(**run_path(str(FOLDER / "arap_reference.py")))
+from tests.support import arap_reference as ARAP
+from tests.support import dense as DENSE
+from tests.support import shapes as SHAPES
 
 
 @pytest.fixture(scope="session")
-def shapes() -> SimpleNamespace:
+def shapes() -> ModuleType:
     """What geometry/shapes.py defines."""
     return SHAPES
 
 
 @pytest.fixture(scope="session")
-def dense() -> SimpleNamespace:
+def dense() -> ModuleType:
     """What dense.py defines."""
     return DENSE
 
@@ -44,7 +40,7 @@ def mesh(shape_name: str) -> TriMesh:
 
 
 @pytest.fixture(scope="session")
-def arap() -> SimpleNamespace:
+def arap() -> ModuleType:
     """What arap_reference.py defines."""
     return ARAP
 

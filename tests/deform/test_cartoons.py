@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from akap_editor.deform import akap
-from akap_editor.deform.akap import AkapDeformer
-from akap_editor.deform.reuse import ReusedCholesky
+from akap_editor.deform.akap import deformer as akap
+from akap_editor.deform.akap.deformer import AkapDeformer
+from akap_editor.deform.akap.preconditioned_cholesky import ReusedCholesky
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
 from akap_editor.resources import bundled_drawings

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from akap_editor.editor.document import Drawing, make_drawing, new_document
-
-from .driver import Driver
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import Drawing, make_drawing
+from tests.support.editor_driver import Driver
 
 
 @pytest.fixture(scope="session")

@@ -7,13 +7,12 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
-from akap_editor.editor.document import new_document
+from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import KeyEvent, PointerEvent
-from akap_editor.editor.replay import replay
-from akap_editor.editor.tool_crosshair import select_next, toggle_crosshair
-from akap_editor.editor.worker import AT_ONCE
-
-from .driver import BESIDE, Driver, bits
+from akap_editor.editor.session.replay import replay
+from akap_editor.editor.session.worker import AT_ONCE
+from akap_editor.editor.tools.keyboard_pointer import select_next, toggle_crosshair
+from tests.support.editor_driver import BESIDE, Driver, bits
 
 HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
 

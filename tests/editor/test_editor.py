@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
-from akap_editor.deform.akap import AkapDeformer
+from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor.camera import Camera
-from akap_editor.editor.document import Settings, new_document
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
 from akap_editor.errors import InputError, SolverError
 from akap_editor.geometry.mesh import TriMesh
-
-from .driver import BESIDE, bits
+from tests.support.editor_driver import BESIDE, bits
 
 NECK, END = (62.0, 40.0), (105.0, 40.0)
 

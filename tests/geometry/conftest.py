@@ -1,27 +1,23 @@
 """The shapes of this folder's tests."""
 
 from collections.abc import Callable
-from pathlib import Path
-from runpy import run_path
-from types import SimpleNamespace
+from types import ModuleType
 
 import pytest
 
 from akap_editor.geometry.mesh import TriMesh
-
-SHAPES = SimpleNamespace(**run_path(str(Path(__file__).with_name("shapes.py"))))
-
-DENSE = SimpleNamespace(**run_path(str(Path(__file__).parents[1] / "deform" / "dense.py")))
+from tests.support import dense as DENSE
+from tests.support import shapes as SHAPES
 
 
 @pytest.fixture(scope="session")
-def dense() -> SimpleNamespace:
-    """What deform/dense.py defines: the paper's equations in loops and dense matrices."""
+def dense() -> ModuleType:
+    """What tests/support/dense.py defines: the paper's equations in loops and dense matrices."""
     return DENSE
 
 
 @pytest.fixture(scope="session")
-def shapes() -> SimpleNamespace:
+def shapes() -> ModuleType:
     """What shapes.py defines."""
     return SHAPES
 

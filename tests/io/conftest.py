@@ -6,7 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from akap_editor.editor.document import Document, Drawing, EditState, Pin, Settings
+from akap_editor.editor.document.document import Document, EditState
+from akap_editor.editor.document.drawing import Drawing
+from akap_editor.editor.document.pin import Pin
+from akap_editor.editor.document.settings import Settings
 from akap_editor.geometry.mesh import TriMesh
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"

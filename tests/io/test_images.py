@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from akap_editor.editor.document import make_drawing
+from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.errors import InputError
 from akap_editor.io import images
 from akap_editor.io.images import (

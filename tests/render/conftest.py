@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from akap_editor.editor.document import Drawing
+from akap_editor.editor.document.drawing import Drawing
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.render.offscreen import OffscreenRenderer, standalone_context
 from akap_editor.render.renderer import Renderer

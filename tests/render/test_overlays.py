@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.camera import Camera
-from akap_editor.editor.document import Drawing
+from akap_editor.editor.document.drawing import Drawing
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.render.colormaps import diverging, sequential
 from akap_editor.render.overlays import Heat, Overlays, Reference, Strokes

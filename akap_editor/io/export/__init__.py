@@ -5,10 +5,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
-from ...editor.document import Document, Drawing
-from ...editor.framing import Box, crop_box
+from ...editor.document.document import Document
+from ...editor.document.drawing import Drawing
+from ...editor.document.framing import Box, crop_box
 from ...errors import InputError
-from ...geometry.checks import Floats, Ints
+from ...geometry.validation import Floats, Ints
 from ..atomic import write_atomic
 from ..images import Picture, either, encode_png
 from .gltf import encode_glb

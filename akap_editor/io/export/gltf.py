@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...editor.document import Drawing
-from ...geometry.checks import Floats
+from ...editor.document.drawing import Drawing
+from ...geometry.validation import Floats
 from .texture import encode_texture, y_up
 
 PIXELS_PER_UNIT = 100.0  # of the scene; the mesh itself is in pixels

@@ -2,7 +2,7 @@
 
 import json
 
-from ...editor.document import Document
+from ...editor.document.document import Document
 
 FORMAT = "akap-mesh"
 VERSION = 1

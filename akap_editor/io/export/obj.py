@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ...editor.document import Drawing
-from ...geometry.checks import Floats
+from ...editor.document.drawing import Drawing
+from ...geometry.validation import Floats
 from .texture import companion, encode_texture, y_up
 
 

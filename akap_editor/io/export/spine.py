@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from ...editor.document import Drawing
+from ...editor.document.drawing import Drawing
 from ...errors import InputError
-from ...geometry.checks import Floats, Ints
 from ...geometry.mesh import TriMesh
+from ...geometry.validation import Floats, Ints
 from .texture import companion, encode_texture, y_up
 
 SPINE_VERSION = "4.2.00"

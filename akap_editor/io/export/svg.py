@@ -5,10 +5,10 @@ from xml.sax.saxutils import escape
 import numpy as np
 import shapely
 
-from ...editor.document import Drawing
-from ...editor.framing import Box, picture_size
-from ...geometry.checks import Floats
+from ...editor.document.drawing import Drawing
+from ...editor.document.framing import Box, picture_size
 from ...geometry.mesh import signed_areas
+from ...geometry.validation import Floats
 
 GRID = 0.001
 

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.ndimage import maximum_filter
 from scipy.spatial import cKDTree
 
-from ...editor.document import Drawing
-from ...geometry.checks import Floats
+from ...editor.document.drawing import Drawing
+from ...geometry.validation import Floats
 from ..images import Picture, encode_png
 
 REACH = 16  # pixels beyond what is visible that get a color: enough for four mip levels

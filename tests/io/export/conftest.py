@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from akap_editor.editor.document import Document, Pin, make_drawing, new_document
+from akap_editor.editor.document.document import Document, new_document
+from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.editor.document.pin import Pin
 from akap_editor.io.export import ExportOptions, export
 
 

@@ -9,7 +9,8 @@ import pytest
 import shapely
 import trimesh
 
-from akap_editor.editor.document import make_drawing, new_document
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.io.export.svg import silhouette
 from akap_editor.io.images import read_image
 

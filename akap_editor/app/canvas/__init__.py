@@ -1,0 +1,1 @@
+"""The canvas: pointer input, pins, overlays and the drawn scene."""

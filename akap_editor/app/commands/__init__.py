@@ -1,0 +1,1 @@
+"""Commands, and every way to run one: keys, menus and the palette."""

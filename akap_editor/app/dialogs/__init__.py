@@ -1,0 +1,1 @@
+"""Dialogs; each owns its state."""

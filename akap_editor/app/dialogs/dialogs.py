@@ -1,0 +1,202 @@
+"""What must be answered before work goes on: messages, unsaved changes, files; and two pages of help."""
+
+import os
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import portable_file_dialogs as native
+
+from ... import __version__
+from .. import widgets
+from ..app_state import Workspace
+from ..commands import shortcuts_page as keys_overlay
+from ..theme import ACCENT, QUIET
+from . import export_animation as animation_dialog
+from . import export_pose as export_dialog
+from . import progress as task_dialog
+from .file_dialog import FileRequest
+from .recovery import Recovery
+
+
+def has_native_dialogs() -> bool:
+    """Whether the system can ask for a file; without these programs it would silently answer «cancelled»."""
+    return sys.platform in ("win32", "darwin") or any(map(shutil.which, ("zenity", "kdialog", "qarma")))
+
+
+class Dialogs:
+    """Draws the dialog that the workspace asks for, if any."""
+
+    def __init__(self, use_native: bool, recovery: Recovery) -> None:
+        self._recovery = recovery
+        self._use_native = use_native
+        self._native: Any = None
+        self._asked: FileRequest | None = None
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a dialog of the system is open, whose answer must be polled."""
+        return self._native is not None
+
+    def draw(self, space: Workspace, scale: float) -> None:
+        """One frame of what is to be answered now; a message goes before everything else."""
+        if space.error:
+            _message(space, scale)
+        elif space.task is not None:
+            task_dialog.draw(space, space.task, scale)
+        elif space.question is not None:
+            _unsaved(space, scale)
+        elif space.lost:
+            self._recovery.draw(space, scale)
+        elif space.request is not None:
+            self._file(space, space.request, scale)
+        elif space.export.shown:
+            export_dialog.draw(space, scale)
+        elif space.animating:
+            animation_dialog.draw(space, scale)
+        elif space.keys:
+            keys_overlay.draw(space, scale)
+        elif space.about:
+            _about(space, scale)
+
+    def _file(self, space: Workspace, request: FileRequest, scale: float) -> None:
+        if not self._use_native:
+            _choose_file(space, request, request is not self._asked, scale)
+            self._asked = request
+            return
+        if self._native is None:
+            self._native = _open_native(request)
+        elif self._native.ready(0):
+            result = self._native.result()
+            self._native, space.request = None, None
+            path = result if isinstance(result, str) else next(iter(result), "")
+            if path:
+                request.name = path
+                request.use(request.path)
+
+
+def _open_native(request: FileRequest) -> Any:
+    patterns = " ".join(f"*{suffix}" for suffix in request.suffixes)
+    if request.saving:
+        return native.save_file(request.title, str(request.path), [patterns, patterns])
+    return native.open_file(request.title, str(request.folder), [patterns, patterns])
+
+
+def _message(space: Workspace, scale: float) -> None:
+    if widgets.begin_dialog("That did not work"):
+        widgets.paragraph(space.error, 420 * scale)
+        imgui.spacing()
+        if widgets.button("OK", primary=True) or widgets.escape() or widgets.enter():
+            widgets.close(space, "error", "")
+        imgui.end_popup()
+
+
+def _unsaved(space: Workspace, scale: float) -> None:
+    question, document = space.question, space.document
+    if question is None or document is None:
+        space.question = None
+        return
+    if widgets.begin_dialog("Unsaved changes"):
+        name = document.path.name if document.path is not None else document.drawing.name
+        text = f"Save the changes to {name} before it is closed?"
+        widgets.paragraph(text, min(imgui.calc_text_size(text).x + 1, 420 * scale))
+        imgui.spacing()
+        if widgets.button("Save", primary=True) or widgets.enter():
+            widgets.close(space, "question", None)
+            space.save(question.go_on)
+        imgui.same_line()
+        if widgets.button("Discard"):
+            widgets.close(space, "question", None)
+            question.go_on()
+        imgui.same_line()
+        if widgets.button("Cancel") or widgets.escape():
+            widgets.close(space, "question", None)
+        imgui.end_popup()
+
+
+def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: float) -> None:
+    """An own file dialog, for systems that have none to offer."""
+    if not widgets.begin_dialog(request.title):
+        return
+    if imgui.button(icons.ICON_FA_ARROW_UP + "##up"):
+        request.folder = request.folder.parent
+    widgets.explain("Parent folder")
+    imgui.same_line()
+    imgui.align_text_to_frame_padding()
+    folder = widgets.shortened(str(request.folder), 470 * scale, end=True)
+    imgui.text_colored(imgui.ImVec4(*QUIET), folder)
+    chosen = _list_entries(request, scale)
+    imgui.set_next_item_width(520 * scale)
+    if is_new:
+        imgui.set_keyboard_focus_here()
+    _, request.name = imgui.input_text("##name", request.name)
+    replaces = request.saving and bool(request.name.strip()) and os.path.isfile(request.path)
+    if replaces:
+        warning = " is there already and would be replaced"
+        room = 520 * scale - imgui.calc_text_size(warning).x
+        imgui.text_colored(imgui.ImVec4(*ACCENT), widgets.shortened(request.path.name, room) + warning)
+    accept = ("Replace" if replaces else "Save") if request.saving else "Open"
+    imgui.spacing()
+    imgui.begin_disabled(not request.name.strip())
+    accepted = widgets.button(accept, primary=True)
+    imgui.end_disabled()
+    imgui.same_line()
+    if widgets.button("Cancel") or widgets.escape():
+        widgets.close(space, "request", None)
+    elif (accepted or chosen or widgets.enter()) and request.name.strip():
+        _accept(space, request)
+    imgui.end_popup()
+
+
+def _list_entries(request: FileRequest, scale: float) -> bool:
+    """The folder's content; whether a file was taken, by a double click or Enter. A folder is opened then."""
+    chosen = False
+    taken = imgui.is_mouse_double_clicked(0) or widgets.enter_pressed()
+    height = min(260 * scale, imgui.get_main_viewport().size.y - 220 * scale)
+    imgui.begin_child("##entries", ImVec2(520 * scale, height), imgui.ChildFlags_.borders | widgets.WALKED)
+    for name, is_folder in request.entries():
+        icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
+        flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups
+        shown = widgets.shortened(name, imgui.get_content_region_avail().x - 2 * imgui.get_font_size())
+        clicked = imgui.selectable(f"{icon}  {shown}###{name}", name == request.name, flags)[0]
+        widgets.explain(name if shown != name else "")
+        if clicked:
+            if not is_folder:
+                request.name, chosen = name, taken
+            elif taken:
+                request.folder /= name
+    imgui.end_child()
+    return chosen
+
+
+def _accept(space: Workspace, request: FileRequest) -> None:
+    path = request.path
+    if os.path.isdir(path):
+        request.folder, request.name = path, ""
+        return
+    widgets.close(space, "request", None)
+    request.use(Path(path))
+
+
+def _about(space: Workspace, scale: float) -> None:
+    if not widgets.begin_dialog("About akap-editor"):
+        return
+    imgui.text(f"akap-editor {__version__}")
+    widgets.paragraph(
+        "Bends cartoons with as-Killing-as-possible vector fields and logarithmic spirals, after Solomon, "
+        "Ben-Chen, Butscher and Guibas, Symposium on Geometry Processing 2011.",
+        380 * scale,
+    )
+    widgets.paragraph(
+        "Free software under the GNU General Public License, version 3 or later. Meshes are made by "
+        "Triangle, whose own terms allow non-commercial use only.",
+        380 * scale,
+        QUIET,
+    )
+    imgui.spacing()
+    if widgets.button("Close", primary=True) or widgets.escape() or widgets.enter():
+        widgets.close(space, "about", False)
+    imgui.end_popup()

@@ -1,0 +1,33 @@
+"""The dialog of a task: how far it is, and a way out."""
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from .. import widgets
+from ..app_state import Workspace
+from ..jobs.task import Task
+from ..theme import ACCENT, QUIET
+
+_WIDTH = 420  # points of the design
+
+
+def draw(space: Workspace, task: Task, scale: float) -> None:
+    """One frame of the dialog."""
+    if not widgets.begin_dialog(task.title):
+        return
+    imgui.push_style_color(imgui.Col_.plot_histogram, ImVec4(*ACCENT))
+    done = f"{100 * task.progress.share:.0f} %"
+    imgui.progress_bar(task.progress.share, ImVec2(_WIDTH * scale, 8 * scale), "")
+    imgui.pop_style_color()
+    imgui.text_colored(ImVec4(*QUIET), task.progress.text)
+    imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - imgui.calc_text_size(done).x)
+    imgui.text(done)
+    imgui.spacing()
+    if task.enough is not None and widgets.button("Stop here", primary=True):
+        task.enough()
+    if task.enough is not None:
+        imgui.same_line()
+    if widgets.button("Cancel") or widgets.escape():
+        task.cancel()
+        widgets.close(space, "task", None)
+        space.notice = f"{task.title}: cancelled"
+    imgui.end_popup()

@@ -1,0 +1,128 @@
+"""After a crash: offers the drawings that were not saved, with a picture of each."""
+
+import time
+from pathlib import Path
+
+import moderngl
+from imgui_bundle import ImVec2, imgui
+
+from ...editor.document.document import Document
+from ...editor.document.framing import frame_box
+from ...errors import AkapError
+from ...io.akap.autosave import Copy
+from .. import widgets
+from ..app_state import Workspace
+from ..theme import DARK, QUIET, packed
+
+_SIDE = 220  # of the thumbnail, in design points
+
+
+class Recovery:
+    """Draws the dialog for the first of the lost copies; owns its thumbnail, in the context ``ctx``."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._copy: Copy | None = None
+        self._document: Document | None = None
+        self._texture: moderngl.Texture | None = None
+
+    def release(self) -> None:
+        """Free the thumbnail."""
+        if self._texture is not None:
+            self._texture.release()
+            self._texture = None
+
+    def draw(self, space: Workspace, scale: float) -> None:
+        """One frame of the dialog; there must be something lost."""
+        copy = space.lost[0]
+        if copy is not self._copy and not self._read(space, copy, _SIDE * scale):
+            return
+        document = self._document
+        assert document is not None
+        if not widgets.begin_dialog("Recover unsaved work"):
+            return
+        self._thumbnail(_SIDE * scale)
+        imgui.same_line(0, 20 * scale)
+        imgui.begin_group()
+        _facts(copy, document, len(space.lost), 300 * scale)
+        imgui.end_group()
+        imgui.spacing()
+        if widgets.button("Recover", primary=True) or widgets.enter():
+            imgui.close_current_popup()
+            space.attempt(lambda: recover(space, copy, document))
+        imgui.same_line()
+        if widgets.button("Discard"):
+            _drop(space)
+            copy.discard()
+        imgui.same_line()
+        if widgets.button("Later") or widgets.escape():
+            _drop(space)
+            copy.leave()
+        imgui.end_popup()
+
+    def _read(self, space: Workspace, copy: Copy, pixels: float) -> bool:
+        """Read a copy and draw its pose; one that cannot be read stays where it is."""
+        try:
+            document = copy.read()
+            low_x, low_y, high_x, high_y = frame_box(document.drawing, [document.state.positions])
+            scale = pixels / max(high_x - low_x, high_y - low_y)
+            picture = space.exporter.render(
+                document.drawing, document.state.positions, scale=scale, order=document.order
+            )
+        except AkapError as error:
+            space.lost.pop(0).leave()
+            space.error = f"Unsaved work could not be recovered: {error}"
+            return False
+        self.release()
+        self._copy, self._document = copy, document
+        self._texture = self._ctx.texture(picture.shape[1::-1], 4, picture.tobytes(), alignment=1)
+        return True
+
+    def _thumbnail(self, side: float) -> None:
+        assert self._texture is not None
+        corner = imgui.get_cursor_screen_pos()
+        width, height = self._texture.size
+        low = ImVec2(round(corner.x + (side - width) / 2), round(corner.y + (side - height) / 2))
+        draw = imgui.get_window_draw_list()
+        draw.add_rect_filled(corner, ImVec2(corner.x + side, corner.y + side), packed(DARK), 0.03 * side)
+        draw.add_image(imgui.ImTextureRef(self._texture.glo), low, ImVec2(low.x + width, low.y + height))
+        imgui.dummy(ImVec2(side, side))
+
+
+def recover(space: Workspace, copy: Copy, document: Document) -> None:
+    """Go on with what a program that crashed has left; what else is lost is asked for another time."""
+    assert space.autosave is not None
+    space.show(document)
+    assert space.editor.session is not None
+    space.editor.session.mark_unsaved()
+    space.autosave.adopt(copy, document)
+    for other in space.lost:
+        if other is not copy:
+            other.leave()
+    space.lost = []
+    space.notice = f"Recovered {document.drawing.name}, which is not saved yet"
+
+
+def _facts(copy: Copy, document: Document, count: int, width: float) -> None:
+    imgui.push_font(None, imgui.get_style().font_size_base * 1.25)
+    widgets.paragraph(document.drawing.name, width)
+    imgui.pop_font()
+    imgui.spacing()
+    widgets.paragraph("The program ended before this drawing was saved.", width)
+    imgui.spacing()
+    widgets.paragraph(
+        f"As it was on {time.strftime('%d %B, %H:%M', time.localtime(copy.time))}", width, QUIET
+    )
+    widgets.paragraph(_place(document.path), width, QUIET)
+    if count > 1:
+        widgets.paragraph(f"{count - 1} more to come", width, QUIET)
+    imgui.dummy(ImVec2(width, 0))
+
+
+def _place(path: Path | None) -> str:
+    return f"Belongs to {path}" if path is not None else "Was never saved to a file"
+
+
+def _drop(space: Workspace) -> None:
+    imgui.close_current_popup()
+    space.lost.pop(0)

@@ -1,0 +1,46 @@
+"""Recordings that are opened: done again, so that they end in a session to go on with."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from ...editor.animation.session_playback import Player
+from ...editor.session.replay import Replay
+from ...editor.session.session import Session
+from ...errors import InputError
+from ...io.akap.json_records import inside
+from ...io.akap.recording import read_recording, recorded_drawing
+from .task import Progress, Steps, Task
+
+Show = Callable[[Session, Player], None]
+
+
+def reenacting(path: Path, show: Show) -> Task:
+    """Does the recording in a file again, then shows its session, and the player that has watched it.
+
+    Raises InputError where the file is no recording.
+    """
+    recording = read_recording(path)
+    with inside(path):
+        replay = Replay(recording, recorded_drawing(recording))
+    player = Player(replay.clock)
+    if not recording.events:
+        raise InputError(f"{path}: expected a recording of something that was done, got none")
+    wanted = True
+
+    def stop() -> None:
+        nonlocal wanted
+        wanted = False
+
+    def steps() -> Steps:
+        times = [float(event["t"]) for event in recording.events]
+        for number, moment in enumerate(replay.moments(), start=1):
+            if number == len(times) or times[number] > moment.time:  # the last of what was done then
+                player.watch(replay.session)
+            yield Progress(number / len(times), f"At {moment.time:.0f} of {recording.duration:.0f} s")
+            if not wanted:
+                break
+        session = replay.end()
+        player.watch(session)
+        show(session, player)
+
+    return Task(f"Opening {path.name}", steps(), stop)

@@ -1,0 +1,34 @@
+"""The list of steps, to click through."""
+
+from imgui_bundle import ImVec4, imgui
+
+from .. import widgets
+from ..app_state import Workspace
+from ..theme import QUIET
+
+_ROWS = 6  # that are seen at once
+_START = "As opened"
+
+
+def draw(space: Workspace, scale: float) -> None:
+    """The steps, the oldest first; a click goes there. What is undone is quiet."""
+    session = space.editor.session
+    assert session is not None
+    depth, names = session.history.depth, [_START, *session.history.labels]
+    widgets.begin_list("##history", len(names), _ROWS)
+    for index, name in enumerate(names):
+        if index > depth:
+            imgui.push_style_color(imgui.Col_.text, ImVec4(*QUIET))
+        if imgui.selectable(f"  {name}##step {index}", index == depth)[0]:
+            space.notice = ""
+            space.attempt(lambda index=index: space.editor.go_to(index))  # type: ignore[misc]
+        if index > depth:
+            imgui.pop_style_color()
+        if index == depth:
+            widgets.keep_seen(index, _ROWS)
+    imgui.end_child()
+
+
+def step_count(space: Workspace) -> str:
+    """How many steps there are to go back, in digits; nothing where there are none."""
+    return str((space.editor.session.history.depth if space.editor.session is not None else 0) or "")

@@ -1,0 +1,218 @@
+"""The side panel's poses: kept by name, applied with a click, and mixed."""
+
+from collections.abc import Sequence
+from weakref import WeakKeyDictionary
+
+import moderngl
+from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from ...editor.document.framing import frame_box
+from ...editor.document.named_poses import NamedPose
+from .. import widgets
+from ..app_state import Workspace
+from ..commands.command import menu_key
+from ..theme import ACCENT, FRAME, HOVER, QUIET, packed
+from ..timeline.keyframe_track import POSE_PAYLOAD
+
+_SIDE = 66  # of a thumbnail, in design points
+_COLUMNS, _ROWS = 3, 4  # of thumbnails that are seen at once
+
+
+class Thumbnails:
+    """Textures of poses, made when they are first seen."""
+
+    def __init__(self) -> None:
+        self._textures: WeakKeyDictionary[NamedPose, moderngl.Texture] = WeakKeyDictionary()
+
+    def of(self, space: Workspace, pose: NamedPose, pixels: int) -> moderngl.Texture:
+        """The pose in at most ``pixels`` a side."""
+        if pose not in self._textures:
+            assert space.document is not None
+            drawing = space.document.drawing
+            box = frame_box(drawing, [pose.positions])
+            scale = pixels / max(box[2] - box[0], box[3] - box[1])
+            picture = space.exporter.render(drawing, pose.positions, box, scale)
+            size = picture.shape[1], picture.shape[0]
+            self._textures[pose] = moderngl.get_context().texture(size, 4, picture.tobytes(), alignment=1)
+        return self._textures[pose]
+
+
+_thumbnails = Thumbnails()
+
+
+def pose_count(space: Workspace) -> str:
+    """How many poses there are, in digits; nothing where there are none."""
+    count = len(space.document.state.poses) if space.document is not None else 0
+    return str(count or "")
+
+
+def draw(space: Workspace, scale: float) -> None:
+    """The poses of the drawing, and the pose between two of them."""
+    assert space.document is not None
+    poses = space.document.state.poses
+    if not poses:
+        widgets.quiet("None yet. Keep a pose here to come back to it with a click.")
+    _all_poses(space, poses, scale)
+    if imgui.button(f"{icons.ICON_FA_PLUS}  Keep this pose", ImVec2(widgets.FULL, 0)):
+        space.notice = ""
+        space.attempt(space.editor.keep_pose)
+    if len(poses) > 1:
+        _mixer(space, scale)
+
+
+def _all_poses(space: Workspace, poses: Sequence[NamedPose], scale: float) -> None:
+    """The thumbnails in rows; where there are many, the rest are to be scrolled to."""
+    scrolls = len(poses) > _COLUMNS * _ROWS
+    if scrolls:
+        gaps = 2 * imgui.get_style().item_spacing.y
+        row = round(_SIDE * scale) + 0.86 * imgui.get_text_line_height() + gaps
+        height = (_ROWS + 0.5) * row  # half a row says that there are more
+        imgui.begin_child("##poses", ImVec2(0, height), widgets.WALKED)
+    for number, pose in enumerate(poses):
+        if number % _COLUMNS:
+            imgui.same_line(0, 6 * scale)
+        _pose(space, pose, scale)
+    if scrolls:
+        imgui.end_child()
+
+
+def _pose(space: Workspace, pose: NamedPose, scale: float) -> None:
+    """A thumbnail: a click applies it, a right click asks what else."""
+    corner, side = imgui.get_cursor_screen_pos(), round(_SIDE * scale)
+    drawer = imgui.get_window_draw_list()
+    imgui.begin_group()
+    if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side), imgui.ButtonFlags_.enable_nav):
+        space.notice = ""
+        space.attempt(lambda: space.editor.set_pose(pose.positions, f"Apply {pose.name}"))
+    hovered = imgui.is_item_hovered() or imgui.is_item_focused()
+    widgets.explain(
+        f"{pose.name}: click to apply, drag to the timeline or another place, right-click for more"
+    )
+    if hovered and imgui.is_key_pressed(imgui.Key.f2, False):
+        _begin_renaming(space, pose)
+    _dragging(space, pose)
+    if imgui.is_item_focused() and menu_key():
+        imgui.open_popup(f"menu {pose.name}")
+    if imgui.begin_popup_context_item(f"menu {pose.name}"):
+        _menu(space, pose)
+        imgui.end_popup()
+    end = ImVec2(corner.x + side, corner.y + side)
+    drawer.add_rect_filled(corner, end, packed(HOVER if hovered else FRAME), 6 * scale)
+    texture = _thumbnails.of(space, pose, side - round(8 * scale))
+    low = ImVec2(round(corner.x + (side - texture.width) / 2), round(corner.y + (side - texture.height) / 2))
+    drawer.add_image(
+        imgui.ImTextureRef(texture.glo), low, ImVec2(low.x + texture.width, low.y + texture.height)
+    )
+    assert space.document is not None
+    if pose.positions is space.document.state.positions:
+        drawer.add_rect(corner, end, packed(ACCENT), 6 * scale)
+    imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
+    if space.renaming == pose.name:
+        _rename(space, pose, side)
+    else:
+        imgui.text_colored(ImVec4(*QUIET), widgets.shortened(pose.name, side))
+        if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
+            _begin_renaming(space, pose)
+        widgets.explain(f"{pose.name}: double-click or F2 to rename")
+    imgui.pop_font()
+    imgui.end_group()
+
+
+def _menu(space: Workspace, pose: NamedPose) -> None:
+    if imgui.menu_item("Rename", "F2", False)[0]:
+        _begin_renaming(space, pose)
+    if imgui.menu_item_simple("Change to the Present Pose"):
+        space.attempt(lambda: space.editor.keep_pose(pose.name))
+    if imgui.menu_item_simple("Keyframe of It"):
+        space.show_in_timeline("keyframes")
+        space.show_timeline = True
+        space.attempt(lambda: space.key_player.put(positions=pose.positions))
+    imgui.separator()
+    assert space.document is not None
+    last = len(space.document.state.poses) - 1
+    at = space.document.state.poses.index(pose)
+    for label, to in (("Move Forward", at - 1), ("Move Back", at + 1)):
+        if imgui.menu_item(label, "", False, 0 <= to <= last)[0]:
+            _order(space, at, to)
+    imgui.separator()
+    if imgui.menu_item_simple("Forget"):
+        space.editor.forget_pose(pose.name)
+
+
+def _begin_renaming(space: Workspace, pose: NamedPose) -> None:
+    space.renaming, space.new_name = pose.name, ""
+
+
+def _rename(space: Workspace, pose: NamedPose, width: float) -> None:
+    """A field in place of the name: Enter or a click elsewhere takes what is in it, Escape nothing."""
+    if not space.new_name:  # again and again: a mouse that is still pressed takes the focus away
+        imgui.set_keyboard_focus_here()
+    imgui.set_next_item_width(width)
+    flags = imgui.InputTextFlags_.auto_select_all
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
+    _, text = imgui.input_text("##name of pose", space.new_name or pose.name, flags)
+    imgui.pop_style_var()
+    if imgui.is_item_active():
+        space.new_name = text or " "  # which is no name, and not the sign that the field is new
+    if imgui.is_item_deactivated():
+        name, space.renaming = space.new_name.strip(), None
+        if name and name != pose.name and not imgui.is_key_pressed(imgui.Key.escape, False):
+            label = f"Rename {pose.name}"
+            space.attempt(
+                lambda: space.editor.edit(
+                    label, lambda session: session.change_poses("rename", name=pose.name, to=name)
+                )
+            )
+
+
+def _dragging(space: Workspace, pose: NamedPose) -> None:
+    """A thumbnail goes to the timeline, or where another one is, which makes room."""
+    assert space.document is not None
+    names = [each.name for each in space.document.state.poses]
+    if imgui.begin_drag_drop_source(imgui.DragDropFlags_.source_no_preview_tooltip):
+        imgui.set_drag_drop_payload_py_id(POSE_PAYLOAD, names.index(pose.name))
+        imgui.end_drag_drop_source()
+    if imgui.begin_drag_drop_target():
+        payload = imgui.accept_drag_drop_payload_py_id(POSE_PAYLOAD)
+        if payload is not None and names[payload.data_id] != pose.name:
+            _order(space, payload.data_id, names.index(pose.name))
+        imgui.end_drag_drop_target()
+
+
+def _order(space: Workspace, old: int, new: int) -> None:
+    """Bring a pose to another place among the others."""
+    assert space.document is not None
+    names = [each.name for each in space.document.state.poses]
+    names.insert(new, names.pop(old))
+    space.attempt(
+        lambda: space.editor.edit("Order poses", lambda session: session.change_poses("order", names=names))
+    )
+
+
+def _mixer(space: Workspace, scale: float) -> None:
+    """From one pose to another: the slider shows what is between, and takes it when it is let go."""
+    session, mixer = space.editor.session, space.mixer
+    assert session is not None
+    chosen = mixer.chosen(session)
+    assert chosen is not None
+    names = [pose.name for pose in session.state.poses]
+    width = (imgui.get_content_region_avail().x - 8 * scale) / 2
+    start, end = (names.index(pose.name) for pose in chosen)
+    imgui.set_next_item_width(width)
+    changed, start = imgui.combo("##mix from", start, names)
+    imgui.same_line(0, 8 * scale)
+    imgui.set_next_item_width(width)
+    other, end = imgui.combo("##mix to", end, names)
+    if changed or other:
+        mixer.start, mixer.end, mixer.share = names[start], names[end], 0.0
+    tooltip = "The pose between the two: every edge turns and grows at a constant rate"
+    moved, share, released = widgets.slider("##mix", 100 * mixer.share, (0, 100), "%.0f %%", tooltip=tooltip)
+    if moved:
+        mixer.share = min(max(share / 100, 0.0), 1.0)
+        mixer.show(session)
+    if released:
+        session.leave()
+        pose = mixer.pose(session)
+        if pose is not None:
+            space.attempt(lambda: space.editor.set_pose(pose, "In-between"))

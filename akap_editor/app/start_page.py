@@ -1,0 +1,189 @@
+"""The start page, shown where the canvas is while nothing is open."""
+
+from pathlib import Path
+
+import moderngl
+from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+from PIL import Image
+
+from ..io.images import read_image
+from ..resources import bundled_drawings
+from . import widgets
+from .app_state import Workspace
+from .commands import registry as commands
+from .theme import ACCENT, DARK, FRAME, HOVER, PANEL, QUIET, STRONG_LINE, TEXT, packed
+
+_WINDOW = (
+    imgui.WindowFlags_.no_decoration
+    | imgui.WindowFlags_.no_move
+    | imgui.WindowFlags_.no_saved_settings
+    | imgui.WindowFlags_.no_bring_to_front_on_focus
+) & ~imgui.WindowFlags_.no_scrollbar
+_BY_KEYS = imgui.ButtonFlags_.enable_nav
+_WIDTH = 720  # of the column in the middle, in design points, as all sizes here
+_DROP_HEIGHT = 132
+_GAP = 12
+_DASH = 7
+
+
+class Welcome:
+    """Draws the page; owns the textures of its thumbnails, in the context ``ctx``."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._textures: dict[tuple[Path, int], moderngl.Texture] = {}
+
+    def release(self) -> None:
+        """Free the textures."""
+        for texture in self._textures.values():
+            texture.release()
+        self._textures.clear()
+
+    def draw(self, space: Workspace, scale: float, density: float) -> None:
+        """The page over the whole canvas. scale: points per design point; density: pixels per point."""
+        left, top, right, bottom = space.editor.canvas
+        imgui.set_next_window_pos(ImVec2(left, top))
+        imgui.set_next_window_size(ImVec2(right - left, bottom - top))
+        column = min(_WIDTH * scale, right - left - 48 * scale)
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+        imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+        imgui.push_style_var(
+            imgui.StyleVar_.window_padding, ImVec2((right - left - column) / 2, 0.06 * (bottom - top))
+        )
+        imgui.push_style_color(imgui.Col_.window_bg, ImVec4(*DARK))
+        imgui.begin("Start", None, _WINDOW)
+        imgui.pop_style_color()
+        imgui.pop_style_var(3)
+        _title()
+        _drop_zone(space, scale, column)
+        _heading("Bundled drawings")
+        self._drawings(space, scale, column, density)
+        _heading("Recent files")
+        _recent(space, column)
+        imgui.end()
+
+    def _drawings(self, space: Workspace, scale: float, column: float, density: float) -> None:
+        paths = bundled_drawings()
+        gap = _GAP * scale
+        side = round((column - gap * (len(paths) - 1)) / len(paths))
+        draw = imgui.get_window_draw_list()
+        for path in paths:
+            corner = imgui.get_cursor_screen_pos()
+            name_height = imgui.get_text_line_height() + 8 * scale
+            if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BY_KEYS):
+                _open(space, path)
+            hovered = imgui.is_item_hovered() or imgui.is_item_focused()
+            end = ImVec2(corner.x + side, corner.y + side)
+            draw.add_rect_filled(corner, end, packed(HOVER if hovered else PANEL), 8 * scale)
+            self._thumbnail(draw, path, corner, side, round(12 * scale), density)
+            name = path.stem.capitalize()
+            at = ImVec2(corner.x + (side - imgui.calc_text_size(name).x) / 2, end.y + 6 * scale)
+            draw.add_text(at, packed(TEXT if hovered else QUIET), name)
+            imgui.same_line(0, gap)
+        imgui.new_line()
+
+    def _thumbnail(
+        self, draw: imgui.ImDrawList, path: Path, corner: ImVec2, side: float, margin: float, density: float
+    ) -> None:
+        """A picture in the middle of a square, pixel by pixel as it was scaled."""
+        texture = self._texture(path, max(16, round((side - 2 * margin) * density)))
+        width, height = texture.width / density, texture.height / density
+        low = ImVec2(round(corner.x + (side - width) / 2), round(corner.y + (side - height) / 2))
+        high = ImVec2(low.x + width, low.y + height)
+        draw.add_image(imgui.ImTextureRef(texture.glo), low, high)
+
+    def _texture(self, path: Path, pixels: int) -> moderngl.Texture:
+        if (path, pixels) not in self._textures:
+            picture = Image.fromarray(read_image(path))
+            picture.thumbnail((pixels, pixels), Image.Resampling.LANCZOS)
+            texture = self._ctx.texture(picture.size, 4, picture.tobytes(), alignment=1)
+            self._textures[path, pixels] = texture
+        return self._textures[path, pixels]
+
+
+def _open(space: Workspace, path: Path) -> None:
+    """Open a file; keys belong to the canvas then."""
+    space.open_path(path)
+    imgui.set_window_focus(None)
+    imgui.set_nav_cursor_visible(False)
+
+
+def _title() -> None:
+    imgui.push_font(None, imgui.get_style().font_size_base * 2.0)
+    imgui.text("akap-editor")
+    imgui.pop_font()
+    imgui.text_colored(ImVec4(*QUIET), "Pin a drawing, drag a pin, and it bends.")
+    imgui.spacing()
+    imgui.spacing()
+
+
+def _heading(title: str) -> None:
+    imgui.dummy(ImVec2(0, 0.6 * imgui.get_font_size()))
+    imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
+    imgui.text_colored(ImVec4(*QUIET), title.upper())
+    imgui.pop_font()
+
+
+def _drop_zone(space: Workspace, scale: float, column: float) -> None:
+    corner, height = imgui.get_cursor_screen_pos(), _DROP_HEIGHT * scale
+    if imgui.invisible_button("Drop a picture here", ImVec2(column, height), _BY_KEYS):
+        widgets.run(space, commands.OPEN)
+    hovered = imgui.is_item_hovered() or imgui.is_item_focused()
+    if imgui.is_item_hovered():
+        imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+    draw = imgui.get_window_draw_list()
+    end = ImVec2(corner.x + column, corner.y + height)
+    draw.add_rect_filled(corner, end, packed(FRAME if hovered else PANEL), 8 * scale)
+    _dashed_frame(draw, corner, end, scale, packed(ACCENT if hovered else STRONG_LINE))
+    lines = (
+        (icons.ICON_FA_IMAGE, 1.7, ACCENT),
+        ("Drop a picture here", 1.2, TEXT),
+        (f"or click to choose a file ({commands.OPEN.key_name})", 1.0, QUIET),
+    )
+    gap, line = 8 * scale, imgui.get_font_size()
+    y = corner.y + (height - line * sum(size for _, size, _ in lines) - 2 * gap) / 2
+    for text, size, color in lines:
+        imgui.push_font(None, imgui.get_style().font_size_base * size)
+        x = corner.x + (column - imgui.calc_text_size(text).x) / 2
+        draw.add_text(ImVec2(round(x), round(y)), packed(color), text)
+        imgui.pop_font()
+        y += size * line + gap
+
+
+def _dashed_frame(draw: imgui.ImDrawList, low: ImVec2, high: ImVec2, scale: float, color: int) -> None:
+    """A rectangle of dashes, so many on each side that one begins and one ends in each corner."""
+    dash, thickness = _DASH * scale, max(1.0, round(1.2 * scale))
+    for start, end in (
+        (low, ImVec2(high.x, low.y)),
+        (ImVec2(low.x, high.y), high),
+        (low, ImVec2(low.x, high.y)),
+        (ImVec2(high.x, low.y), high),
+    ):
+        way = ImVec2(end.x - start.x, end.y - start.y)
+        count = 2 * max(1, round((way.x + way.y) / (2 * dash))) + 1
+        for index in range(0, count, 2):
+            first, last = index / count, (index + 1) / count
+            draw.add_line(
+                ImVec2(start.x + first * way.x, start.y + first * way.y),
+                ImVec2(start.x + last * way.x, start.y + last * way.y),
+                color,
+                thickness,
+            )
+
+
+def _recent(space: Workspace, column: float) -> None:
+    files = space.preferences.recent
+    if not files:
+        widgets.quiet("None yet. What you open or save is listed here.")
+        return
+    room = int(imgui.get_content_region_avail().y / imgui.get_text_line_height_with_spacing())
+    for index, path in enumerate(files[: max(room, 3)]):
+        name = widgets.shortened(path.name, 0.4 * column)
+        if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
+            _open(space, path)
+        widgets.explain(str(path))
+        folder = widgets.shortened(str(path.parent), 0.55 * column, end=True)
+        room_left = imgui.get_content_region_avail().x
+        imgui.same_line(imgui.get_cursor_pos_x() + room_left - imgui.calc_text_size(folder).x)
+        imgui.text_colored(ImVec4(*QUIET), folder)

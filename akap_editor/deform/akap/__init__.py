@@ -1,0 +1,1 @@
+"""As-Killing-as-possible deformation: the method of the paper."""

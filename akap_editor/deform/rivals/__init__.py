@@ -1,0 +1,1 @@
+"""Other deformation methods under the same contract, for comparison."""

@@ -1,0 +1,1 @@
+"""How a document looks over time: motions, playback, keyframes."""

@@ -1,0 +1,136 @@
+"""A recording as a motion: a pose for every time, not only for those that were recorded."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import groupby
+from operator import attrgetter
+from typing import NamedTuple
+
+import numpy as np
+
+from ...deform.deformer import StepResult
+from ...deform.pose_interpolation import Ways
+from ...geometry.validation import Floats, Ints, as_number
+from ..document.depth import face_order
+from ..document.drawing import Drawing
+from ..document.easing import easing
+from ..session.recording import LATEST, Recording
+from ..session.replay import Moment
+
+
+class Frame(NamedTuple):
+    """What is seen at one moment: a drawing, its pose (n, 2), and the order (m,) in which faces are drawn.
+
+    None is the order of the mesh.
+    """
+
+    drawing: Drawing
+    pose: Floats
+    order: Ints | None = None
+
+
+SAME = 0.01  # pixels: poses that differ by less look alike
+LONGEST_MOVE = 0.25  # seconds: what moved after a longer pause moved in the last of it
+
+
+def shorten_pauses(recording: Recording, longest: float) -> Recording:
+    """The same, but where nothing was done for more than ``longest`` seconds, that long only."""
+    as_number(longest, "longest pause", 0, LATEST)
+    events, before, now = [], 0.0, 0.0
+    for event in recording.events:
+        now += min(event["t"] - before, longest)
+        before = event["t"]
+        events.append({**event, "t": now})
+    return replace(recording, events=events)
+
+
+def frame_times(start: float, end: float, fps: float, speed: float = 1.0, ease: str = "none") -> list[float]:
+    """When to look at a motion from ``start`` to ``end``, in seconds, for each frame of an animation.
+
+    fps: frames per second, 1 to 240; speed: 2 is twice as fast, 0.01 to 100; ease: see `easing`. The last
+    frame is the end. Raises InputError.
+    """
+    as_number(fps, "fps", 1, 240)
+    as_number(speed, "speed", 0.01, 100)
+    as_number(start, "start", 0, LATEST)
+    as_number(end, "end", start, LATEST)
+    eased, span = easing(ease), end - start
+    count = int(span / speed * fps + 1e-6)
+    return [*(start + span * eased(k * speed / fps / span) for k in range(count)), end]
+
+
+def closed(first: Frame, last: Frame) -> bool:
+    """Whether an animation ends as it begins, so that one of the two is enough where it repeats."""
+    return first.drawing is last.drawing and np.allclose(first.pose, last.pose, rtol=0.0, atol=SAME)
+
+
+@dataclass(frozen=True, eq=False)
+class _Stretch:
+    """From ``start``, where ``steps`` begin, to ``end``, where it is ``after``; earlier it is ``before``.
+
+    steps: each with the pose that it began with, and with the share of the time that it takes, which is that
+    of the way.
+    """
+
+    start: float
+    end: float
+    before: Frame
+    steps: tuple[tuple[Floats, StepResult, float], ...]
+    after: Frame
+
+
+class Motion:
+    """What is seen of a recording of ``drawing`` that is done again, at times that do not fall.
+
+    Between two recorded times the drawing moves along its trajectories (`StepResult.at`); of methods that
+    know none, each edge turns at a constant rate (`Inbetween`). So a few recorded steps a second play as many
+    frames along arcs. A pose that was set, and not reached by steps, comes at once, and so does another mesh.
+    """
+
+    def __init__(self, drawing: Drawing, moments: Iterable[Moment]) -> None:
+        self._drawing = drawing
+        self._groups = (list(group) for _, group in groupby(moments, key=attrgetter("time")))
+        rest = Frame(drawing, drawing.mesh.vertices)
+        self._stretch = _Stretch(0.0, 0.0, rest, (), rest)
+        self._ways = Ways()
+
+    def frames(self, times: Iterable[float]) -> Iterator[Frame]:
+        """Drawing and pose at each of ``times``, in seconds, ascending."""
+        for time in times:
+            while time > self._stretch.end and (group := next(self._groups, None)) is not None:
+                self._stretch = self._next(group)
+            yield self._frame(time)
+
+    def _next(self, group: list[Moment]) -> _Stretch:
+        before, last = self._stretch.after, group[-1]
+        drawing, pose, _ = before
+        bent = last.state.drawing or self._drawing
+        after = Frame(bent, last.state.positions, face_order(bent.mesh, last.state.pins))
+        if bent is not drawing or any(moment.jumped for moment in group):
+            return _Stretch(last.time, last.time, before, (), after)
+        moved: list[tuple[Floats, StepResult, float]] = []
+        for moment in group:
+            if moment.step is not None:
+                moved.append((pose, moment.step, float(np.abs(moment.state.positions - pose).max())))
+            pose = moment.state.positions
+        way = sum(length for *_, length in moved)
+        steps = tuple((began, step, length / way) for began, step, length in moved if length)
+        start = max(self._stretch.end, last.time - LONGEST_MOVE) if steps else last.time
+        return _Stretch(start, last.time, before, steps, after)
+
+    def _frame(self, time: float) -> Frame:
+        stretch = self._stretch
+        if time >= stretch.end:
+            return stretch.after
+        if time <= stretch.start:
+            return stretch.before
+        local = (time - stretch.start) / (stretch.end - stretch.start)
+        drawing, order = stretch.after.drawing, stretch.after.order
+        for began, step, share in stretch.steps:  # noqa: B007
+            if local <= share:
+                break
+            local -= share
+        local = min(local / share, 1.0)
+        if step.flow is not None:
+            return Frame(drawing, step.at(local), order)
+        return Frame(drawing, self._ways.pose(drawing.mesh, began, step.positions, local), order)

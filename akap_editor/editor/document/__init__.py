@@ -1,0 +1,1 @@
+"""What an open drawing is: frozen values, replaced and never edited."""

@@ -1,0 +1,1 @@
+"""What happens to a document: steps, edits, undo, recording and replay."""

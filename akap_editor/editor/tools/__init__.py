@@ -1,0 +1,1 @@
+"""Pointer tools: named states that turn events into edits."""

@@ -1,0 +1,133 @@
+"""The ring around a pin that turns the drawing there, and pins that hold their angle."""
+
+import math
+from typing import TYPE_CHECKING
+
+from ..camera import Point
+from ..events import PointerEvent
+from .base import Pointing, Tool, distance
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+RING = 28.0  # points of the screen: radius of the ring
+_GRIP = 14.0  # how far beside the ring a press takes it
+SNAP = math.radians(15.0)
+
+
+def ring_pin(editor: "Editor") -> int | None:
+    """The pin whose ring is shown: with Alt the one near the pointer, or the only one that is selected."""
+    if isinstance(editor.tool, TurningPin):
+        return editor.tool.pin
+    session = editor.session
+    idle = session is not None and session.turns and not editor.busy and editor.chosen_tool == "pins"
+    if not idle or editor.hand or "alt" not in editor.held or editor.pointer is None:
+        return None
+    pointer, places = editor.pointer, editor.pins_on_screen()
+    near = min(((distance(place, pointer), pin) for pin, place in places.items()), default=None)
+    if near is not None and near[0] <= (RING + _GRIP) * editor.ui_scale:
+        return near[1]
+    return next(iter(editor.selection)) if len(editor.selection) == 1 else None
+
+
+def ring_at(editor: "Editor", position: Point) -> int | None:
+    """The pin whose ring a press at a point of the screen would take."""
+    pin = ring_pin(editor)
+    if pin is None or editor.pin_at(position) is not None:
+        return None
+    away = distance(editor.pins_on_screen()[pin], position)
+    return pin if away <= (RING + _GRIP) * editor.ui_scale else None
+
+
+def hovered_ring(editor: "Editor") -> int | None:
+    """The pin whose ring is under the pointer."""
+    return ring_at(editor, editor.pointer) if editor.pointer is not None else None
+
+
+def toggle_hold(editor: "Editor") -> None:
+    """Let the selected pins hold the angles that they have, or turn as they will if all of them hold one."""
+    if editor.session is None:
+        return
+    chosen = [pin for pin in editor.session.state.pins if pin.id in editor.selection]
+    free = [pin.id for pin in chosen if pin.angle is None]
+    if free:
+        editor.edit("Hold angle", lambda session: session.hold_angles(free))
+    else:
+        editor.edit("Release angle", lambda session: session.hold_angles(editor.selection, False))
+
+
+def set_angle(editor: "Editor", pin: int, angle: float | None) -> None:
+    """Let a pin hold an angle (radians from rest), or none. Raises InputError on one out of range."""
+    if angle is None:
+        editor.edit("Release angle", lambda session: session.hold_angles({pin}, False))
+    else:
+        editor.edit("Turn", lambda session: session.turn_pins({pin: angle}))
+
+
+class PointingRing(Pointing):
+    """Pressed on a ring, not dragged yet."""
+
+    hint = "Drag to turn the drawing around this pin"
+
+    def __init__(self, editor: "Editor", event: PointerEvent, pin: int) -> None:
+        super().__init__(editor, event)
+        self.pin = pin
+
+    def dragged(self, event: PointerEvent) -> None:
+        turning = TurningPin(self.editor, self.start, self.pin)
+        self.editor.enter(turning)
+        turning.move(event)
+
+    def clicked(self, event: PointerEvent) -> None:
+        self.editor.rest()
+
+
+class TurningPin(Tool):
+    """The drawing turns around a pin with the pointer; in the end the pin holds that angle."""
+
+    def __init__(self, editor: "Editor", start: Point, pin: int) -> None:
+        super().__init__(editor)
+        session = editor.session
+        assert session is not None
+        self.pin, self._selection_before = pin, editor.selection
+        held = session.state.pin(pin).angle
+        self._angle = session.pin_angle(pin) if held is None else held
+        self._direction = self._towards(start)
+        editor.select({pin})
+        session.begin("Turn")
+        session.hold_pins()
+        editor.trails.clear()
+
+    @property
+    def hint(self) -> str:  # type: ignore[override]
+        """The angle, and how to end."""
+        session = self.editor.session
+        assert session is not None
+        angle = math.degrees(session.state.pin(self.pin).angle or 0.0)
+        return f"{angle:+.1f}°: release to hold this angle, Shift for steps of 15°, Escape to go back"
+
+    def move(self, event: PointerEvent) -> None:
+        session = self.editor.session
+        assert session is not None
+        direction = self._towards(event.position)
+        self._angle += math.remainder(direction - self._direction, 2 * math.pi)
+        self._direction = direction
+        snaps = event.shift or "shift" in self.editor.held
+        session.turn_pins({self.pin: SNAP * round(self._angle / SNAP) if snaps else self._angle})
+
+    def _towards(self, position: Point) -> float:
+        x, y = self.editor.pins_on_screen()[self.pin]
+        return math.atan2(position[1] - y, position[0] - x)
+
+    def release(self, event: PointerEvent) -> None:
+        if event.button == "left":
+            assert self.editor.session is not None
+            self.editor.session.commit()
+            self.editor.rest()
+
+    def cancel(self) -> None:
+        if self.editor.session is not None:
+            self.editor.session.abort()
+        self.editor.trails.clear()
+        self.editor.select(self._selection_before)
+        super().cancel()

@@ -1,0 +1,1 @@
+"""Files of this program: documents, poses, recordings and recovery copies."""

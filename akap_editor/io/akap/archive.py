@@ -1,0 +1,78 @@
+"""Zip archives that are not to be trusted, and such that give equal bytes for equal content."""
+
+import reprlib
+import zipfile
+from collections import Counter
+from collections.abc import Iterable
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InputError
+
+Entry = tuple[str, bytes, bool]  # name, content, whether it is worth compressing
+
+
+def pack(entries: Iterable[Entry]) -> bytes:
+    """A zip archive of these entries, in this order, dated 1980-01-01: equal entries give equal bytes."""
+    buffer = BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name, content, compressed in entries:
+            info = zipfile.ZipInfo(name)
+            info.create_system = 3  # Unix, wherever it is written
+            info.external_attr = 0o644 << 16
+            info.compress_type = zipfile.ZIP_DEFLATED if compressed else zipfile.ZIP_STORED
+            archive.writestr(info, content, compresslevel=1)
+    return buffer.getvalue()
+
+
+class Archive:
+    """The entries of a zip file, by exact name; a name that occurs twice makes it invalid.
+
+    Raises InputError on damage of any kind, and nothing else.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        try:
+            self._archive = zipfile.ZipFile(BytesIO(data))
+        except Exception as error:  # zipfile meets damage with exceptions of many kinds
+            raise InputError("expected an .akap file, got a truncated one or one of another kind") from error
+        entries = self._archive.infolist()
+        self._entries = {entry.filename: entry for entry in entries}
+        if len(self._entries) < len(entries):
+            name, count = Counter(entry.filename for entry in entries).most_common(1)[0]
+            raise InputError(f"expected each entry once, got {reprlib.repr(name)} {count} times")
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._entries
+
+    def read(self, name: str, most: int) -> bytes:
+        """The content of an entry of at most ``most`` bytes."""
+        if name not in self:
+            raise InputError(f"expected the entry {name}, which is missing")
+        entry = self._entries[name]
+        if entry.file_size > most:
+            raise InputError(f"{name}: expected at most {most} bytes, got {entry.file_size}")
+        if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise InputError(f"{name}: expected no compression or deflate, got method {entry.compress_type}")
+        try:
+            with self._archive.open(entry) as file:
+                content = file.read(entry.file_size)  # a bound: without, a false size would unpack at length
+        except Exception as error:
+            raise InputError(f"{name}: expected a readable entry, got a damaged one") from error
+        if len(content) != entry.file_size:
+            raise InputError(f"{name}: expected {entry.file_size} bytes, got {len(content)}")
+        return content
+
+    def read_array(self, name: str, dtype: str, rows: int, columns: int) -> NDArray[Any]:
+        """An array (rows, columns) stored row by row without a header, in the machine's byte order."""
+        size = rows * columns * np.dtype(dtype).itemsize
+        content = self.read(name, size)
+        if len(content) != size:
+            raise InputError(
+                f"{name}: expected {size} bytes for shape ({rows}, {columns}), got {len(content)}"
+            )
+        array = np.frombuffer(content, dtype).reshape(rows, columns)
+        return array.astype(array.dtype.newbyteorder("="))

@@ -1,0 +1,122 @@
+"""JSON that is not to be trusted, read strictly: objects with different keys, and values of known kinds."""
+
+import json
+import reprlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import metadata
+from itertools import chain
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ...errors import InputError
+from ...geometry.validation import Floats
+
+MAX_INTEGER = 2**53
+
+Json = dict[str, Any]
+T = TypeVar("T", bool, int, str, list[Any], Json)
+
+_KINDS = {bool: "true or false", int: "an integer", str: "a text", list: "a list", dict: "an object"}
+
+
+@contextmanager
+def inside(name: str | Path) -> Iterator[None]:
+    """An InputError from within the block begins with the name of the file or entry that it is about."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from error
+
+
+def parse_record(text: bytes) -> Json:
+    """A JSON object in UTF-8, with different keys and numbers that are finite and not excessively long.
+
+    Raises InputError, and nothing else.
+    """
+    try:
+        record = json.loads(
+            text.decode(), object_pairs_hook=_object, parse_int=_integer, parse_constant=_no_constant
+        )
+    except InputError:
+        raise
+    except (ValueError, RecursionError) as error:
+        raise InputError("expected JSON in UTF-8, got something else") from error
+    if not isinstance(record, dict):
+        raise InputError(f"expected an object, got {reprlib.repr(record)}")
+    return record
+
+
+def get(record: Json, name: str, kind: type[T], missing: T | None = None) -> T:
+    """The value of a key, of exactly this kind; ``missing`` where an optional key is not there.
+
+    Raises InputError on another kind, or where a key without ``missing`` is not there.
+    """
+    if name not in record:
+        if missing is not None:
+            return missing
+        raise InputError(f"expected {name} to be {_KINDS[kind]}, but it is missing")
+    value = record[name]
+    if type(value) is not kind:  # to isinstance, true would be an integer
+        raise InputError(f"expected {name} to be {_KINDS[kind]}, got {reprlib.repr(value)}")
+    return value
+
+
+def numbers(values: Any, name: str) -> Floats:
+    """A list of numbers as an array. Raises InputError."""
+    if type(values) is not list or not all(type(value) in (int, float) for value in values):
+        raise InputError(f"expected {name} to be numbers, got {reprlib.repr(values)}")
+    return np.array(values, dtype=np.float64)
+
+
+def pairs(values: list[Any], name: str) -> Floats:
+    """A list of pairs of numbers as an array (n, 2). Raises InputError."""
+    if not all(type(pair) is list and len(pair) == 2 for pair in values):
+        raise InputError(f"expected {name} to be pairs of numbers, got {reprlib.repr(values)}")
+    return numbers(list(chain.from_iterable(values)), name).reshape(-1, 2)
+
+
+def file_version(record: Json, expected: str) -> int:
+    """The version of a record in the format ``expected``. Raises InputError on one of another format."""
+    if get(record, "format", str) != expected:
+        raise InputError(f"expected format {expected!r}, got {reprlib.repr(record['format'])}")
+    version = get(record, "version", int)
+    if version < 1:
+        raise InputError(f"expected a version from 1, got {version}")
+    return version
+
+
+def refuse_newer(version: int, newest: int) -> None:
+    """Raise InputError where a file has a later version than this program knows."""
+    if version > newest:
+        raise InputError(
+            f"the file was written by a newer version of the program (file version {version}, "
+            f"this program reads up to {newest})"
+        )
+
+
+def program_name() -> str:
+    """What wrote a file; for people."""
+    try:
+        return f"akap-editor {metadata.version('akap-editor')}"
+    except metadata.PackageNotFoundError:  # a checkout that is not installed
+        return "akap-editor"
+
+
+def _object(pairs: list[tuple[str, Any]]) -> Json:
+    record = dict(pairs)
+    if len(record) < len(pairs):
+        raise InputError(f"expected each key once, got one of {reprlib.repr(list(record))} twice")
+    return record
+
+
+def _integer(digits: str) -> int:
+    if len(digits) > 17 or abs(int(digits)) > MAX_INTEGER:
+        raise InputError(f"expected integers up to {MAX_INTEGER}, got {reprlib.repr(digits)}")
+    return int(digits)
+
+
+def _no_constant(name: str) -> float:
+    raise InputError(f"expected finite numbers, got {name}")

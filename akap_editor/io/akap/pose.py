@@ -1,0 +1,91 @@
+"""The .pose.json file: pins and pose, to be carried to another session on the same drawing."""
+
+import json
+import reprlib
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...editor.document.document import Document, EditState
+from ...editor.document.drawing import Drawing
+from ...editor.document.pin import Pin
+from ...editor.session.recording import drawing_header
+from ...errors import InputError
+from ...geometry.validation import Floats
+from ..atomic import read_file, write_atomic
+from .json_records import file_version, get, inside, pairs, parse_record, program_name, refuse_newer
+from .state_records import check_state, describe_pins, read_pins
+
+POSE_SUFFIX = ".pose.json"
+FORMAT = "akap-pose"
+VERSION = 1
+MAX_BYTES = 2**24  # room for 400 000 vertices
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """pins: where they hold the drawing; positions: (n, 2) float64, of the mesh's vertices, in pixels."""
+
+    pins: tuple[Pin, ...]
+    positions: Floats
+
+
+def save_pose(document: Document, path: str | Path) -> None:
+    """Write pins and pose of a document, whole or not at all.
+
+    Raises InputError where the file cannot be written or could not be read again; the old file is then kept.
+    """
+    with inside(f"cannot write {path}"):
+        data = encode_pose(document)
+    write_atomic(path, data)
+
+
+def load_pose(path: str | Path, drawing: Drawing) -> Pose:
+    """The pose in a file, bit for bit as it was saved, which must be one of this drawing's mesh.
+
+    Raises InputError, and nothing else, on a file that is missing, damaged, malicious, of a newer version or
+    of another mesh.
+    """
+    data = read_file(path, "a pose")
+    with inside(path):
+        return decode_pose(data, drawing)
+
+
+def encode_pose(document: Document) -> bytes:
+    """The bytes of a .pose.json file. Raises InputError where they could not be read again."""
+    drawing, state = document.drawing, document.state
+    check_state(state, len(drawing.mesh.vertices), len(drawing.mesh.faces))
+    record = {
+        "format": FORMAT,
+        "version": VERSION,
+        "program": program_name(),
+        "drawing": drawing_header(drawing),
+        "pins": describe_pins(state.pins),
+        "positions": state.positions.tolist(),
+    }
+    data = json.dumps(record, allow_nan=False, separators=(",", ":")).encode() + b"\n"
+    _check_size(data)
+    return data
+
+
+def decode_pose(data: bytes, drawing: Drawing) -> Pose:
+    """The pose in the bytes of a .pose.json file, of this drawing's mesh. Raises InputError."""
+    _check_size(data)
+    record = parse_record(data)
+    refuse_newer(file_version(record, FORMAT), VERSION)
+    header, there = get(record, "drawing", dict), drawing_header(drawing)
+    if get(header, "mesh", str) != there["mesh"]:
+        name, count = get(header, "name", str), get(header, "vertices", int)
+        raise InputError(
+            f"expected a pose of this very mesh, with {there['vertices']} vertices, got one of the drawing "
+            f"{reprlib.repr(name)} with {count}"
+        )
+    vertices, faces = len(drawing.mesh.vertices), len(drawing.mesh.faces)
+    positions = pairs(get(record, "positions", list), "positions")
+    state = EditState(read_pins(get(record, "pins", list)), positions)
+    check_state(state, vertices, faces)
+    return Pose(state.pins, state.positions)
+
+
+def _check_size(data: bytes) -> None:
+    if len(data) > MAX_BYTES:
+        raise InputError(f"expected a pose of at most {MAX_BYTES} bytes, got {len(data)}")

@@ -1,0 +1,242 @@
+"""The .akap file: a drawing with its mesh, pins, pose and settings, as described in docs/file-format.md."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from ...editor.document.document import Document, EditState
+from ...editor.document.drawing import Drawing, Meshing
+from ...errors import InputError
+from ...geometry.mesh import TriMesh
+from ...geometry.validation import Floats, as_number, frozen
+from ..atomic import read_file, write_atomic
+from ..images import MAX_PIXELS, decode_image, encode_png
+from .archive import Archive, Entry, pack
+from .json_records import Json, file_version, get, inside, numbers, parse_record, program_name, refuse_newer
+from .keyframes import keyframe_entries, read_keyframes
+from .poses import pose_entries, read_poses
+from .state_records import check_state, describe_pins, describe_settings, read_pins, read_settings
+
+MIMETYPE = b"application/x-akap"
+FORMAT = "akap"
+VERSION = 1
+STIFFNESS = "stiffness"  # entry with a factor for each face
+ORIGINAL = "original.png"  # entry with the picture before its background was removed
+
+MAX_VERTICES = 1_000_000
+MAX_FACES = 2_000_000
+MAX_COORDINATE = 1e9
+MAX_DOCUMENT_BYTES = 2**24
+MAX_PICTURE_BYTES = 2**29
+THUMBNAIL_SIDE = 256
+
+
+def save(document: Document, path: str | Path) -> Document:
+    """Write an .akap file, whole or not at all, and return the document with its ``path`` set.
+
+    Equal documents give equal bytes. Raises InputError where the file cannot be written or could not be
+    opened again, e.g. for two pins with one id; the old file is then kept.
+    """
+    with inside(f"cannot write {path}"):
+        data = encode(document)
+    write_atomic(path, data)
+    return replace(document, path=Path(path))
+
+
+def load(path: str | Path) -> Document:
+    """The document in an .akap file, bit for bit as it was saved; its ``revision`` is 0.
+
+    Raises InputError, and nothing else, on a file that is missing, damaged, malicious or of a newer version.
+    """
+    data = read_file(path, "an .akap file")
+    with inside(path):
+        document = decode(data)
+    return replace(document, path=Path(path))
+
+
+def encode(document: Document, more: Sequence[Entry] = ()) -> bytes:
+    """The bytes of an .akap file, with ``more`` entries in the end, which readers ignore.
+
+    Raises InputError where the file could not be opened again.
+    """
+    _check(document)
+    drawing = document.drawing
+    text = json.dumps(_describe(document), allow_nan=False).encode()
+    if len(text) > MAX_DOCUMENT_BYTES:
+        raise InputError(f"expected a description of at most {MAX_DOCUMENT_BYTES} bytes, got {len(text)}")
+    return pack(
+        [
+            ("mimetype", MIMETYPE, False),
+            ("document.json", text, True),
+            ("mesh/vertices", drawing.mesh.vertices.astype("<f8").tobytes(), True),
+            ("mesh/faces", drawing.mesh.faces.astype("<i4").tobytes(), True),
+            ("mesh/uv", drawing.uv.astype("<f4").tobytes(), True),
+            ("pose/positions", document.state.positions.astype("<f8").tobytes(), True),
+            *_stiffness_entries(document.state),
+            *_picture_entries(drawing),
+            *pose_entries(document.state.poses),
+            *keyframe_entries(document.state.animation),
+            *more,
+        ]
+    )
+
+
+def decode(data: bytes) -> Document:
+    """The document in the bytes of an .akap file. Raises InputError, and nothing else."""
+    document = _decode(Archive(data))
+    _check(document)
+    return document
+
+
+def _check(document: Document) -> None:
+    """What holds for every .akap file and is not promised by the types of a document."""
+    mesh = document.drawing.mesh
+    _check_sizes(*document.drawing.size, len(mesh.vertices), len(mesh.faces))
+    _check_vertices(mesh.vertices)
+    check_state(document.state, len(mesh.vertices), len(mesh.faces))
+
+
+def _check_sizes(width: int, height: int, vertices: int, faces: int) -> None:
+    if min(width, height, vertices, faces) < 1:
+        raise InputError(
+            f"expected sizes above 0, got {width} x {height}, {vertices} vertices, {faces} faces"
+        )
+    limits = (
+        (width * height, MAX_PIXELS, "pixels"),
+        (vertices, MAX_VERTICES, "vertices"),
+        (faces, MAX_FACES, "faces"),
+    )
+    for count, most, name in limits:
+        if count > most:
+            raise InputError(f"expected at most {most} {name}, got {count}")
+
+
+def _check_vertices(vertices: Floats) -> None:
+    far = np.abs(vertices).max()
+    if not far <= MAX_COORDINATE:  # of NaN, too; areas of anything farther could overflow
+        raise InputError(f"vertices: expected coordinates up to {MAX_COORDINATE:g} pixels, got {far:g}")
+
+
+# Writing
+
+
+# The picture of a drawing never changes, and encoding it takes longer than all the rest of a save.
+_encoded: WeakKeyDictionary[Drawing, list[Entry]] = WeakKeyDictionary()
+
+
+def _picture_entries(drawing: Drawing) -> list[Entry]:
+    if drawing not in _encoded:
+        pictures = {"picture.png": drawing.image, "thumbnail.png": _thumbnail(drawing.image)}
+        if drawing.original is not None:
+            pictures[ORIGINAL] = drawing.original
+        _encoded[drawing] = [(name, encode_png(picture), False) for name, picture in pictures.items()]
+    return _encoded[drawing]
+
+
+def _stiffness_entries(state: EditState) -> list[Entry]:
+    if state.stiffness is None:
+        return []
+    return [(STIFFNESS, state.stiffness.astype("<f8").tobytes(), True)]
+
+
+def _describe(document: Document) -> Json:
+    drawing = document.drawing
+    width, height = drawing.size
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "program": program_name(),
+        "name": drawing.name,
+        "picture": {"width": width, "height": height},
+        "mesh": {
+            "vertices": len(drawing.mesh.vertices),
+            "faces": len(drawing.mesh.faces),
+            "tied": drawing.mesh.tied,
+            **({"made": _describe_meshing(drawing)} if drawing.meshing is not None else {}),
+        },
+        "pins": describe_pins(document.state.pins),
+        "settings": describe_settings(document.state.settings),
+    }
+
+
+def _describe_meshing(drawing: Drawing) -> Json:
+    """The background only where the file has it."""
+    meshing = drawing.meshing
+    assert meshing is not None
+    removed = meshing.background is not None and drawing.original is not None
+    return {
+        "vertices": int(meshing.vertices),
+        "expand": float(meshing.expand),
+        "threshold": float(meshing.threshold),
+        **({"background": float(meshing.background or 0.0)} if removed else {}),
+    }
+
+
+def _thumbnail(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    step = 1 + max(image.shape[:2]) // (4 * THUMBNAIL_SIDE)  # a quick first reduction of large pictures
+    picture = Image.fromarray(np.ascontiguousarray(image[::step, ::step]))
+    picture.thumbnail((THUMBNAIL_SIDE, THUMBNAIL_SIDE))
+    return np.asarray(picture)
+
+
+# Reading
+
+
+def _decode(archive: Archive) -> Document:
+    if "mimetype" not in archive or archive.read("mimetype", 256) != MIMETYPE:
+        raise InputError("expected an .akap file, got a zip archive of another kind")
+    text = archive.read("document.json", MAX_DOCUMENT_BYTES)
+    with inside("document.json"):
+        record = parse_record(text)
+        version = file_version(record, FORMAT)
+    refuse_newer(version, VERSION)
+    with inside("document.json"):
+        name, picture, mesh = (
+            get(record, "name", str),
+            get(record, "picture", dict),
+            get(record, "mesh", dict),
+        )
+        width, height = get(picture, "width", int), get(picture, "height", int)
+        n, m = get(mesh, "vertices", int), get(mesh, "faces", int)
+        tied = get(mesh, "tied", bool, missing=True)
+        meshing = _read_meshing(get(mesh, "made", dict)) if "made" in mesh else None
+        _check_sizes(width, height, n, m)
+    positions = archive.read_array("pose/positions", "<f8", n, 2)
+    with inside("document.json"):
+        pins = read_pins(get(record, "pins", list))
+        settings = read_settings(get(record, "settings", dict))
+    stiffness = archive.read_array(STIFFNESS, "<f8", m, 1)[:, 0] if STIFFNESS in archive else None
+    poses, animation = read_poses(archive, n), read_keyframes(archive, n)
+    state = EditState(pins, positions, settings, None, poses, stiffness, animation)
+    vertices = archive.read_array("mesh/vertices", "<f8", n, 2)
+    _check_vertices(vertices)
+    trimesh = TriMesh(vertices, archive.read_array("mesh/faces", "<i4", m, 3), tied)
+    uv = archive.read_array("mesh/uv", "<f4", n, 2)
+    image, original = _picture(archive, "picture.png", width, height), None
+    if meshing is not None and meshing.background is not None:
+        original = _picture(archive, ORIGINAL, width, height)
+    return Document(Drawing(image, trimesh, uv, name, meshing, original), state)
+
+
+def _read_meshing(record: Json) -> Meshing:
+    expand, threshold = numbers([record.get("expand"), record.get("threshold")], "expand and threshold")
+    background = None
+    if "background" in record:
+        (tolerance,) = numbers([record["background"]], "background")
+        background = as_number(float(tolerance), "background", 0.0, 1.0)
+    return Meshing(get(record, "vertices", int), float(expand), float(threshold), background)
+
+
+def _picture(archive: Archive, name: str, width: int, height: int) -> NDArray[np.uint8]:
+    content = archive.read(name, MAX_PICTURE_BYTES)
+    with inside(name):
+        image = decode_image(content, ("PNG",), (width, height))
+        if image.shape[:2] != (height, width):
+            raise InputError("expected a picture that stands upright, got one turned by its EXIF data")
+    return frozen(image)

@@ -1,0 +1,79 @@
+"""The .akaprec file: a recorded session as text, described in docs/file-format.md."""
+
+import base64
+from pathlib import Path
+
+from ...editor.document.document import new_document
+from ...editor.document.drawing import Drawing, make_drawing
+from ...editor.session.recording import Recording, mesh_digest, parse_recording
+from ...errors import InputError
+from ...resources import bundled_drawings
+from ..atomic import read_file, write_atomic
+from ..images import read_image
+from . import project as project_file
+from .json_records import inside
+
+RECORDING_SUFFIX = ".akaprec"
+
+
+def read_recording(path: str | Path) -> Recording:
+    """The recording in a file. Raises InputError with the file's name and the number of the bad line."""
+    data = read_file(path, "a recording")
+    with inside(path):
+        return decode_recording(data)
+
+
+def decode_recording(data: bytes) -> Recording:
+    """The recording in the bytes of a file. Raises InputError, and nothing else."""
+    try:
+        return parse_recording(_text(data))
+    except UnicodeDecodeError as error:
+        raise InputError("expected a recording, which is text, got other bytes") from error
+
+
+def _text(data: bytes) -> str:
+    """The text of a file; a last line that was cut off inside a character ends before it."""
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        if error.end < len(data) or error.start < data.rfind(b"\n"):
+            raise
+        return data[: error.start].decode("utf-8")
+
+
+def write_recording(recording: Recording, path: str | Path, drawing: Drawing | None = None) -> None:
+    """Write a recording, whole or not at all. Raises InputError where that is not possible.
+
+    drawing: goes into the file as well, so that it can be replayed wherever it is sent.
+    """
+    if drawing is not None:
+        data = project_file.encode(new_document(drawing))
+        header = {**recording.header, "akap": base64.b64encode(data).decode("ascii")}
+        recording = Recording(header, recording.events)
+    write_atomic(path, recording.to_text().encode("utf-8"))
+
+
+def recorded_drawing(recording: Recording) -> Drawing:
+    """The drawing that a recording was made on: the one inside it, or the bundled one that it names.
+
+    Raises InputError where there is neither, or what is inside is damaged.
+    """
+    header = recording.header
+    if "akap" in header:
+        try:
+            return project_file.decode(base64.b64decode(header["akap"], validate=True)).drawing
+        except (InputError, TypeError, ValueError) as error:
+            raise InputError(f"recording line 1: the drawing inside is damaged, {error}") from error
+    bundled = {path.stem: path for path in bundled_drawings()}
+    name = header.get("name")
+    if name not in list(bundled):
+        raise InputError(
+            f"recording line 1: expected a drawing inside, or the name of a bundled one "
+            f"({', '.join(bundled)}), got {name!r}; name its file with --drawing"
+        )
+    image = read_image(bundled[name])
+    drawing = make_drawing(image, name=name)
+    count = header.get("wanted", header.get("vertices"))
+    if header.get("mesh") != mesh_digest(drawing.mesh) and type(count) is int:
+        drawing = make_drawing(image, vertices=count, name=name)
+    return drawing

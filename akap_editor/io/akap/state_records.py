@@ -1,0 +1,121 @@
+"""Pins and settings as JSON, the same in .akap files and in poses, and what holds for both."""
+
+import reprlib
+from collections import Counter
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from ...editor.document.depth import MOST
+from ...editor.document.document import EditState
+from ...editor.document.pin import Pin
+from ...editor.document.pin_angles import MOST_ANGLE
+from ...editor.document.settings import Settings
+from ...editor.document.stiffness import as_stiffness
+from ...errors import InputError
+from ...geometry.validation import as_points
+from .json_records import MAX_INTEGER, Json, get, numbers
+
+WEIGHT_TOLERANCE = 1e-9
+MAX_PINS = 10_000
+
+
+def describe_pins(pins: Iterable[Pin]) -> list[Json]:
+    """The pins of a file, in order."""
+    return [
+        {
+            "id": int(pin.id),
+            "face": int(pin.face),
+            "weights": pin.weights.tolist(),
+            "target": pin.target.tolist(),
+            **({"depth": int(pin.depth)} if pin.depth else {}),
+            **({"angle": float(pin.angle)} if pin.angle is not None else {}),
+        }
+        for pin in pins
+    ]
+
+
+def read_pins(records: list[Any]) -> tuple[Pin, ...]:
+    """What `describe_pins` wrote. Raises InputError on values of other kinds."""
+    _check_count(len(records))
+    return tuple(map(_pin, records))
+
+
+def _check_count(pins: int) -> None:
+    if pins > MAX_PINS:
+        raise InputError(f"expected at most {MAX_PINS} pins, got {pins}")
+
+
+def _pin(record: Any) -> Pin:
+    if not isinstance(record, dict):
+        raise InputError(f"expected pins to be objects, got {reprlib.repr(record)}")
+    weights, target = (numbers(get(record, name, list), name) for name in ("weights", "target"))
+    depth = get(record, "depth", int) if "depth" in record else 0
+    angle = float(numbers([record["angle"]], "angle")[0]) if "angle" in record else None
+    return Pin(get(record, "id", int), get(record, "face", int), weights, target, depth, angle)
+
+
+def describe_settings(settings: Settings) -> Json:
+    """The settings of a file."""
+    return {"method": settings.method, "parameters": dict(settings.parameters)}
+
+
+def read_settings(record: Json) -> Settings:
+    """What `describe_settings` wrote. Raises InputError on values of other kinds."""
+    return Settings(get(record, "method", str), tuple(get(record, "parameters", dict).items()))
+
+
+def check_state(state: EditState, vertices: int, faces: int) -> None:
+    """Raise InputError where a state is not one of a mesh with so many vertices and faces."""
+    as_points(state.positions, "positions", vertices)
+    _check_count(len(state.pins))
+    if state.stiffness is not None:
+        as_stiffness(state.stiffness, faces)
+    for pin in state.pins:
+        _check_pin(pin, faces)
+    for name, value in state.settings.parameters:
+        _check_parameter(name, value)
+    _check_unique("pin", [pin.id for pin in state.pins])
+    _check_unique("parameter", [name for name, _ in state.settings.parameters])
+
+
+def _check_unique(kind: str, names: list[Any]) -> None:
+    for name, count in Counter(names).items():
+        if count > 1:
+            raise InputError(f"expected each {kind} once, got {kind} {reprlib.repr(name)} {count} times")
+
+
+def _check_pin(pin: Pin, faces: int) -> None:
+    if abs(pin.id) > MAX_INTEGER:
+        raise InputError(f"pins: expected ids up to {MAX_INTEGER}, got {pin.id}")
+    if not 0 <= pin.face < faces:
+        raise InputError(f"pin {pin.id}: expected a face from 0 to {faces - 1}, got {pin.face}")
+    if pin.weights.shape != (3,) or pin.target.shape != (2,):
+        came = f"{pin.weights.size} and {pin.target.size}"
+        raise InputError(f"pin {pin.id}: expected 3 weights and a target of 2 coordinates, got {came}")
+    low, high = -WEIGHT_TOLERANCE, 1 + WEIGHT_TOLERANCE
+    inside = all(low <= weight <= high for weight in pin.weights)
+    if not inside or abs(pin.weights.sum() - 1) > WEIGHT_TOLERANCE:
+        came = str(pin.weights.tolist())
+        raise InputError(f"pin {pin.id}: expected weights from 0 to 1 that sum to 1, got {came}")
+    if abs(pin.depth) > MOST:
+        raise InputError(f"pin {pin.id}: expected a depth from -{MOST} to {MOST}, got {pin.depth}")
+    if pin.angle is not None and not abs(pin.angle) <= MOST_ANGLE:
+        expected = f"an angle from -{MOST_ANGLE:.5g} to {MOST_ANGLE:.5g} radians"
+        raise InputError(f"pin {pin.id}: expected {expected}, got {pin.angle}")
+    if not np.isfinite(pin.target).all():
+        raise InputError(f"pin {pin.id}: expected a finite target, got {pin.target.tolist()}")
+
+
+def _check_parameter(name: str, value: object) -> None:
+    if not isinstance(name, str) or not isinstance(value, bool | int | float | str | None):
+        came = f"{type(value).__name__} for {reprlib.repr(name)}"
+        raise InputError(f"parameters: expected names and numbers, texts, true, false or null, got {came}")
+    if isinstance(value, float) and not np.isfinite(value):
+        raise InputError(f"parameter {reprlib.repr(name)}: expected a finite number, got {value}")
+    if isinstance(value, int) and abs(value) > MAX_INTEGER:
+        came = f"one of {value.bit_length()} bits"
+        raise InputError(
+            f"parameter {reprlib.repr(name)}: expected an integer up to {MAX_INTEGER}, got {came}"
+        )

@@ -1,0 +1,1 @@
+"""Animation files: frames, animated pictures, videos and sprite sheets."""

@@ -1,0 +1,106 @@
+"""Frames as pictures: numbered files in a folder, or one sheet with an index for games."""
+
+import json
+import math
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import InputError
+from ..atomic import Write, write_atomic
+from ..images import Picture, check_picture, encode_png, write_png
+
+MAX_SHEET_SIDE = 16384
+_FRAME_NAME = re.compile(r"frame-(\d{4,})\.png")
+
+
+def write_frames(folder: str | Path, frames: Iterable[Picture]) -> int:
+    """Write frames, (h, w, 4) uint8 each, as frame-0000.png, frame-0001.png, ...; how many there were.
+
+    The folder is made if need be; frames that an older, longer animation left in it are removed.
+    Raises InputError.
+    """
+    folder = Path(folder)
+    count = 0
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for count, image in enumerate(frames, start=1):
+            write_png(folder / f"frame-{count - 1:04d}.png", image)
+        for path in folder.iterdir():
+            match = _FRAME_NAME.fullmatch(path.name)
+            if match and int(match[1]) >= count:
+                path.unlink()
+    except OSError as error:
+        raise InputError(f"cannot write {folder}: {error.strerror}") from error
+    return count
+
+
+def write_sheet(
+    path: str | Path, frames: Iterable[Picture], fps: float, write: Write = write_atomic
+) -> tuple[int, int]:
+    """Write frames as one PNG, row by row, and an index beside it, ``path`` with the ending .json.
+
+    frames: (h, w, 4) uint8 each, all of one size. Margins that are empty in all of them are left out.
+    The index is in the widespread form of texture packers: for each frame its rectangle in the sheet, its
+    place in the whole picture, and its duration in milliseconds. Returns columns and rows.
+    Raises InputError, also for a sheet of more than `MAX_SHEET_SIDE` pixels a side.
+    """
+    path = Path(path)
+    images = [image.copy() for image in frames]
+    if not images:
+        raise InputError("frames: expected at least one frame, got none")
+    for number, image in enumerate(images):
+        check_picture(image, f"frame {number}")
+        if image.shape != images[0].shape:
+            raise InputError(f"frame {number}: expected the size of frame 0, got another")
+    height, width = images[0].shape[:2]
+    left, top, right, bottom = _seen(images)
+    w, h = right - left, bottom - top
+    columns = min(len(images), max(1, round(math.sqrt(len(images) * h / w))))
+    rows = math.ceil(len(images) / columns)
+    if max(columns * w, rows * h) > MAX_SHEET_SIDE:
+        raise InputError(
+            f"sheet: expected at most {MAX_SHEET_SIDE} pixels a side, got {columns * w} x {rows * h} for "
+            f"{len(images)} frames; choose a smaller size or rate"
+        )
+    sheet = np.zeros((rows * h, columns * w, 4), dtype=np.uint8)
+    index = []
+    for number, image in enumerate(images):
+        y, x = number // columns * h, number % columns * w
+        sheet[y : y + h, x : x + w] = image[top:bottom, left:right]
+        index.append(
+            {
+                "filename": f"{path.stem}-{number:04d}",
+                "frame": {"x": x, "y": y, "w": w, "h": h},
+                "rotated": False,
+                "trimmed": (w, h) != (width, height),
+                "spriteSourceSize": {"x": left, "y": top, "w": w, "h": h},
+                "sourceSize": {"w": width, "h": height},
+                "duration": round(1000 * (number + 1) / fps) - round(1000 * number / fps),
+            }
+        )
+    meta = {
+        "app": "akap-editor",
+        "image": path.name,
+        "format": "RGBA8888",
+        "size": {"w": sheet.shape[1], "h": sheet.shape[0]},
+        "scale": "1",
+        "fps": fps,
+    }
+    write(path, encode_png(sheet))
+    write(path.with_suffix(".json"), json.dumps({"frames": index, "meta": meta}, indent=1).encode())
+    return columns, rows
+
+
+def _seen(images: list[Picture]) -> tuple[int, int, int, int]:
+    """(left, top, right, bottom) of what is visible in any of the images; all where nothing is."""
+    height, width = images[0].shape[:2]
+    seen = np.zeros((height, width), dtype=bool)
+    for image in images:
+        seen |= image[..., 3] > 0
+    rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+    if not len(rows):
+        return 0, 0, width, height
+    return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1

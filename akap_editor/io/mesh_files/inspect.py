@@ -1,0 +1,137 @@
+"""Meshes in files of all kinds that are written here or opened, to tell whether they are sound."""
+
+import json
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from ...errors import InputError
+from ...geometry.validation import Floats, Ints, as_indices, as_points
+from .reader import READERS
+
+_COMPONENTS = {5121: "<u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+# What malformed JSON raises where it is used.
+_MALFORMED = (AttributeError, IndexError, KeyError, TypeError, ValueError, struct.error)
+
+
+@dataclass(frozen=True, eq=False)
+class MeshData:
+    """kind: of the file; vertices: (n, 2) or (n, 3) float64; faces: (m, 3), indices of vertices."""
+
+    kind: str
+    vertices: Floats
+    faces: Ints
+
+
+def decode_mesh(data: bytes) -> MeshData:
+    """The mesh in the bytes of an OBJ, OFF or .glb file, or of a JSON export, for Spine or of mesh and pins.
+
+    Several meshes of one file become one. Raises InputError, and nothing else.
+    """
+    kind, read = _reader(data)
+    try:
+        vertices, faces = read(data)
+    except InputError:
+        raise
+    except (*_MALFORMED, RecursionError) as error:
+        raise InputError(f"expected a whole {kind} file, got a damaged one ({error})") from error
+    if np.ndim(vertices) != 2:
+        raise InputError(f"expected vertices in the {kind} file, got none")
+    points = as_points(vertices, "vertices", columns=np.shape(vertices)[1])
+    return MeshData(kind, points, as_indices(faces, "faces", 3, len(points)))
+
+
+def mesh_problems(mesh: MeshData) -> list[str]:
+    """What keeps a mesh from being one surface with a front and a back, in sentences; none if it is sound."""
+    if not len(mesh.faces):
+        return ["it has no faces"]
+    corners = mesh.vertices[mesh.faces]
+    points = np.pad(corners, [(0, 0), (0, 0), (0, 3 - corners.shape[2])])
+    areas = np.linalg.norm(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]), axis=1)
+    half_edges = mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2) @ np.array([len(mesh.vertices), 1])
+    _, counts = np.unique(half_edges, return_counts=True)
+    unused = len(mesh.vertices) - len(np.unique(mesh.faces))
+    found = (
+        (int((areas == 0).sum()), "without area", "face"),
+        (int((counts > 1).sum()), "with two faces on one side", "edge"),
+        (unused, "in no face", "vertex"),
+    )
+    plural = {"face": "faces", "edge": "edges", "vertex": "vertices"}
+    return [f"{n} {name if n == 1 else plural[name]} {what}" for n, what, name in found if n]
+
+
+def count_parts(mesh: MeshData) -> int:
+    """The number of connected parts."""
+    n = len(mesh.vertices)
+    i, j = mesh.faces[:, [0, 1, 1, 2]].reshape(-1, 2).T
+    graph = coo_array((np.ones(len(i)), (i, j)), shape=(n, n))
+    _, part = connected_components(graph, directed=False)
+    return len(np.unique(part[mesh.faces])) if len(mesh.faces) else 0
+
+
+def _reader(data: bytes) -> tuple[str, Callable[[bytes], tuple[Any, Any]]]:
+    if data[:4] == b"glTF":
+        return "glTF", _read_glb
+    if data.lstrip()[:1] == b"{":
+        return "JSON mesh", _read_json
+    suffix = ".off" if data.lstrip().startswith(b"OFF") else ".obj"
+    return suffix[1:].upper(), partial(_read_polygons, suffix)
+
+
+def _read_polygons(suffix: str, data: bytes) -> tuple[Any, Any]:
+    content = READERS[suffix](data.decode("utf-8", "replace"))
+    fans = [[loop[0], a, b] for loop in content.faces for a, b in pairwise(loop[1:])]
+    return content.vertices, fans
+
+
+def _read_json(data: bytes) -> tuple[Any, Any]:
+    record = json.loads(data)
+    if "faces" in record:
+        return record["vertices"], record["faces"]
+    vertices: list[Floats] = []
+    faces: list[Ints] = []
+    for skin in record["skins"]:
+        for slot in skin["attachments"].values():
+            for mesh in slot.values():
+                points = np.array(mesh["vertices"], dtype=np.float64).reshape(-1, 2)
+                faces.append(np.array(mesh["triangles"]).reshape(-1, 3) + sum(map(len, vertices)))
+                vertices.append(points)
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def _read_glb(data: bytes) -> tuple[Any, Any]:
+    size = struct.unpack_from("<I", data, 12)[0]
+    record = json.loads(data[20 : 20 + size])
+    binary = data[28 + size :]
+    vertices: list[NDArray[Any]] = []
+    faces: list[NDArray[Any]] = []
+    for mesh in record["meshes"]:
+        for primitive in mesh["primitives"]:
+            points = _accessor(record, binary, primitive["attributes"]["POSITION"])
+            corners = _accessor(record, binary, primitive["indices"]).reshape(-1, 3).astype(np.int64)
+            if corners.size and corners.max() >= len(points):
+                raise InputError(f"faces: expected indices up to {len(points) - 1}, got {corners.max()}")
+            faces.append(corners + sum(map(len, vertices)))
+            vertices.append(points)
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def _accessor(record: dict[str, Any], binary: bytes, number: int) -> NDArray[Any]:
+    accessor = record["accessors"][number]
+    view = record["bufferViews"][accessor["bufferView"]]
+    columns = _COLUMNS[accessor["type"]]
+    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+    kind = np.dtype(_COMPONENTS[accessor["componentType"]])
+    count = accessor["count"] * columns
+    if count * kind.itemsize > view["byteLength"]:
+        raise InputError(f"accessor {number}: expected it to fit into its buffer view, got a longer one")
+    return np.frombuffer(binary, kind, count, start).reshape(-1, columns)

@@ -1,0 +1,361 @@
+"""Mouse on the canvas: pins, bending, selection, moving about, and what ends a gesture."""
+
+from imgui_bundle import imgui  # isort: skip
+from functools import partial
+
+import glfw
+import numpy as np
+import pytest
+
+from akap_editor.editor.camera import Camera
+from akap_editor.editor.editor import PICK_RADIUS
+from akap_editor.editor.session.bent import PIN_TOLERANCE
+from akap_editor.errors import SolverError
+
+Key = imgui.Key
+PANEL, STATUS = (1020.0, 500.0), (600.0, 790.0)  # where nothing is to be moved
+
+
+def move(hand, at):
+    hand.mouse_move_to_pos(imgui.ImVec2(*at))
+
+
+def pose(ui):
+    return ui.session.state.positions
+
+
+# -- pins ---------------------------------------------------------------------------------------------------
+
+
+def test_a_click_adds_a_pin_exactly_there(ui):
+    at = ui.screen((100.0, 80.0))
+    ui.click(at)
+    (pin,) = ui.pins
+    assert tuple(pin.target) == ui.place(at)
+    np.testing.assert_allclose(ui.pin_place(pin.id), ui.place(at), atol=1e-9)
+    assert ui.editor.selection == {pin.id}
+    assert ui.session.history.undo_label == "Add pin"
+    assert not ui.session.posed
+
+
+def test_a_click_beside_the_drawing_adds_none_and_deselects(pinned):
+    pinned.editor.select({1})
+    pinned.click(pinned.beside)
+    assert len(pinned.pins) == 3
+    assert not pinned.editor.selection
+    assert pinned.session.history.depth == 0
+
+
+def test_a_drag_bends_and_the_pin_arrives_while_others_hold(pinned):
+    held = {pin: pinned.pin_place(pin) for pin in (1, 2)}
+    start = pinned.screen(pinned.pin_place(3))
+    end = start[0] - 60, start[1] - 200
+    wanted = pinned.pin_place(3) + np.subtract(end, start) / pinned.editor.camera.zoom
+    pinned.drag(start, end)
+    np.testing.assert_allclose(pinned.session.state.pin(3).target, wanted, atol=1e-9)
+    assert np.linalg.norm(pinned.pin_place(3) - wanted) < PIN_TOLERANCE == 0.25
+    for pin, place in held.items():
+        assert np.linalg.norm(pinned.pin_place(pin) - place) < PIN_TOLERANCE
+    assert pinned.session.history.undo_label == "Bend"
+    assert pinned.session.history.depth == 1
+
+
+def test_press_and_drag_on_the_drawing_adds_a_pin_and_bends_in_one_gesture(ui):
+    ui.click(ui.screen((50.0, 80.0)))
+    before = pose(ui)
+    start = ui.screen((200.0, 80.0))
+    end = start[0], start[1] + 150
+    ui.drag(start, end)
+    assert np.linalg.norm(ui.pin_place(2) - ui.place(end)) < PIN_TOLERANCE
+    assert ui.session.history.undo_label == "Add pin and bend"
+    ui.key(Key.mod_ctrl | Key.z)
+    assert [pin.id for pin in ui.pins] == [1]
+    assert pose(ui).tobytes() == before.tobytes()
+
+
+def test_shift_click_selects_and_unselects_pins(pinned):
+    pinned.click(pinned.screen(pinned.pin_place(1)))
+    pinned.click(pinned.screen(pinned.pin_place(2)), shift=True)
+    assert pinned.editor.selection == {1, 2}
+    pinned.click(pinned.screen(pinned.pin_place(1)), shift=True)
+    assert pinned.editor.selection == {2}
+    assert pinned.session.history.depth == 0
+
+
+def test_selected_pins_are_dragged_together(pinned):
+    pinned.editor.select({2, 3})
+    before = {pin: pinned.pin_place(pin) for pin in (2, 3)}
+    start = pinned.screen(before[3])
+    pinned.drag(start, (start[0], start[1] + 100))
+    for pin, place in before.items():
+        wanted = place + np.array([0, 100 / pinned.editor.camera.zoom])
+        assert np.linalg.norm(pinned.pin_place(pin) - wanted) < PIN_TOLERANCE
+
+
+def test_a_rubber_band_selects_what_is_in_it(pinned):
+    x, y = pinned.screen(pinned.pin_place(3))
+    corner = pinned.screen((232.0, 2.0))
+    pinned.drag(corner, (x - 20, y + 20))
+    assert pinned.editor.selection == {3}
+    assert len(pinned.pins) == 3
+
+
+def test_a_rubber_band_that_is_escaped_selects_nothing(pinned):
+    pinned.editor.select({1})
+    x, y = pinned.screen(pinned.pin_place(3))
+    seen = []
+
+    def actions(hand):
+        pinned.begin_drag(hand, pinned.screen((232.0, 2.0)))
+        move(hand, (x - 20, y + 20))
+        seen.append((pinned.tool, pinned.editor.selection))
+        hand.key_press(Key.escape)
+        seen.append((pinned.tool, pinned.editor.selection))
+        hand.mouse_up(0)
+
+    pinned.do(actions)
+    assert seen == [("RubberBand", {3}), ("Idle", {1})]
+
+
+# -- moving about -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("notches", [3.0, -2.0])
+def test_the_wheel_zooms_at_the_pointer(ui, notches):
+    at = (300.0, 500.0)
+    place, zoom = ui.place(at), ui.editor.camera.zoom
+    ui.wheel(at, notches)
+    assert ui.editor.camera.zoom == pytest.approx(zoom * 1.15**notches)
+    np.testing.assert_allclose(ui.place(at), place, atol=1e-9)
+
+
+@pytest.mark.parametrize("how", ["middle button", "space", "hand tool"])
+def test_panning_takes_the_canvas_along_and_edits_nothing(pinned, how):
+    start = pinned.screen(pinned.pin_place(2))
+    end = start[0] + 70, start[1] - 40
+    place = pinned.place(start)
+    if how == "hand tool":
+        pinned.editor.chosen_tool = "hand"
+    pinned.drag(
+        start, end, button=2 if how == "middle button" else 0, held=Key.space if how == "space" else None
+    )
+    np.testing.assert_allclose(pinned.place(end), place, atol=1e-9)
+    assert not pinned.editor.modified
+    assert pinned.tool == "Idle"
+    assert pinned.editor.hand == (how == "hand tool")
+
+
+def test_escape_in_a_pan_goes_back(ui):
+    camera = ui.editor.camera
+
+    def actions(hand):
+        ui.begin_drag(hand, (400.0, 300.0), button=2)
+        move(hand, (450.0, 350.0))
+        assert ui.editor.camera != camera
+        hand.key_press(Key.escape)
+        hand.mouse_up(2)
+
+    ui.do(actions)
+    assert ui.editor.camera == camera
+
+
+def test_space_released_where_the_canvas_does_not_hear_it_leaves_no_hand(ui):
+    def actions(hand):
+        move(hand, ui.beside)
+        hand.key_down(Key.space)
+        hand.yield_(2)
+        assert ui.editor.hand
+        ui.space.error = "A message takes the keyboard."
+        hand.yield_(3)
+        hand.key_up(Key.space)
+        hand.yield_(2)
+        hand.item_click("//That did not work###dialog That did not work/OK")
+
+    ui.do(actions)
+    assert not ui.editor.hand
+
+
+# -- canvas and panels --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("at", [PANEL, STATUS, (20.0, 500.0), (900.0, 8.0)])
+def test_a_click_on_a_panel_never_reaches_the_canvas(ui, at):
+    ui.editor.camera = Camera(6.0, (at[0] - 6 * 70, at[1] - 6 * 80))  # the head lies under the panel
+    assert ui.session.drawing.mesh.find(ui.place(at), pose(ui)) is not None
+    over = []
+
+    def click(hand):
+        move(hand, at)
+        hand.mouse_click(0)
+        over.append((ui.editor.pointer, ui.tool))
+
+    ui.do(click)
+    assert over == [(None, "Idle")]
+    assert not ui.pins
+
+
+def test_the_wheel_over_a_panel_does_not_zoom(ui):
+    camera = ui.editor.camera
+    ui.wheel(PANEL, 2.0)
+    assert ui.editor.camera == camera
+
+
+def test_a_drag_goes_on_over_a_panel_and_ends_there(pinned):
+    start = pinned.screen(pinned.pin_place(3))
+    seen = []
+
+    def actions(hand):
+        pinned.begin_drag(hand, start)
+        move(hand, (start[0] - 50, start[1] - 50))
+        move(hand, PANEL)
+        hand.yield_(2)
+        seen.append((pinned.tool, pinned.session.state.pin(3).target))
+        hand.mouse_up(0)
+
+    pinned.do(actions)
+    wanted = pinned.pin_place(3)
+    (tool, target), shift = seen[0], np.subtract(PANEL, start) / pinned.editor.camera.zoom
+    assert tool == "DraggingPin"
+    np.testing.assert_allclose(target, np.add((210.0, 80.0), shift), atol=0.01)
+    assert pinned.tool == "Idle"
+    assert np.linalg.norm(wanted - target) < PIN_TOLERANCE
+
+
+def test_a_press_that_began_on_a_panel_drags_no_pin(pinned):
+    pinned.drag(PANEL, pinned.screen(pinned.pin_place(3)), pinned.screen(pinned.pin_place(2)))
+    assert not pinned.editor.modified
+    assert not pinned.editor.selection
+
+
+# -- what ends a gesture ------------------------------------------------------------------------------------
+
+
+def escape(ui, hand):
+    hand.key_press(Key.escape)
+
+
+def lose_focus(ui, hand):
+    for call in (glfw.hide_window, glfw.show_window, glfw.focus_window):
+        ui.on_main_thread(hand, partial(call, ui.window._handle))
+
+
+def undo(ui, hand):
+    hand.key_press(Key.mod_ctrl | Key.z)
+
+
+def open_dialog(ui, hand):
+    hand.key_press(Key.mod_ctrl | Key.o)
+    hand.yield_(2)
+    assert ui.space.request is not None
+    hand.mouse_up(0)
+    hand.key_press(Key.escape)
+
+
+@pytest.mark.parametrize("end", [escape, lose_focus, undo, open_dialog])
+def test_a_drag_that_is_cut_short_restores_everything(pinned, end):
+    before = pinned.session.state
+    start = pinned.screen(pinned.pin_place(3))
+    seen = []
+
+    def actions(hand):
+        pinned.begin_drag(hand, start)
+        move(hand, (start[0], start[1] + 100))
+        hand.yield_(3)
+        seen.append((pinned.tool, pose(pinned) is before.positions))
+        end(pinned, hand)
+        hand.yield_(2)
+        seen.append((pinned.tool, pinned.session.state is before))
+        hand.mouse_up(0)
+        move(hand, (start[0], start[1] + 150))
+
+    pinned.do(actions)
+    assert seen == [("DraggingPin", False), ("Idle", True)]
+    assert pinned.session.state is before
+    assert pinned.session.history.depth == 0
+
+
+def test_a_pointer_that_has_left_the_window_hovers_over_nothing(pinned):
+    no_place = -float(np.finfo(np.float32).max)
+    hovered = []
+
+    def actions(hand):
+        for at in (pinned.screen(pinned.pin_place(2)), (no_place, no_place)):
+            hand.mouse_teleport_to_pos(imgui.ImVec2(*at))
+            hand.yield_(2)
+            hovered.append(pinned.editor.hovered_pin)
+
+    pinned.do(actions)
+    assert hovered == [2, None]
+
+
+def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkeypatch):
+    before = pinned.session.state
+    start = pinned.screen(pinned.pin_place(3))
+    seen = []
+
+    def actions(hand):
+        pinned.begin_drag(hand, start)
+        move(hand, (start[0], start[1] + 100))
+        hand.yield_(2)
+        monkeypatch.setattr(pinned.session._bending.deformer, "step", fail)
+        move(hand, (start[0], start[1] + 200))
+        hand.yield_(2)
+        seen.append((pinned.space.error, pinned.tool))
+        hand.mouse_up(0)
+        hand.item_click("//That did not work###dialog That did not work/OK")
+
+    def fail(positions, targets):
+        raise SolverError("the pose became infinite")
+
+    pinned.do(actions)
+    assert seen == [("the pose became infinite", "Idle")]
+    assert pinned.session.state is before
+    assert not pinned.space.error
+    monkeypatch.undo()
+    pinned.drag(start, (start[0], start[1] + 50))
+    assert pinned.session.posed
+
+
+# -- how it looks -------------------------------------------------------------------------------------------
+
+
+def marker_pixels(shot, at, radius):
+    """The part of a screenshot around a point."""
+    x, y = map(round, at)
+    return shot[y - radius : y + radius + 1, x - radius : x + radius + 1].astype(int)
+
+
+def test_pins_are_drawn_where_they_are_and_only_when_shown(pinned):
+    at = pinned.screen(pinned.pin_place(2))
+    shown = pinned.screenshot()
+    pinned.space.show_pins = False
+    hidden = pinned.screenshot()
+    on_canvas = slice(0, round(pinned.editor.canvas[2]))
+    changed = np.argwhere((shown != hidden).any(axis=2)[:, on_canvas])
+    around = [pinned.screen(pinned.pin_place(pin)) for pin in (1, 2, 3)]
+    distances = np.min([np.hypot(*(changed[:, ::-1] + 0.5 - place).T) for place in around], axis=0)
+    assert distances.max() < PICK_RADIUS
+    ring = marker_pixels(shown, (at[0] + 6, at[1]), 0)[0, 0]
+    assert ring.min() > 240, "a white ring around the dot"
+    disc = changed[np.hypot(*(changed[:, ::-1] + 0.5 - at).T) < 2 * PICK_RADIUS]
+    np.testing.assert_allclose(
+        disc.mean(axis=0)[::-1] + 0.5, pinned.editor.camera.to_screen(pinned.pin_place(2)), atol=0.5
+    )
+
+
+def test_the_drawing_is_shown_where_the_camera_says(ui, image):
+    background = ui.screenshot()[int(ui.beside[1]) + 2, int(ui.beside[0]) + 2]
+    ui.space.checker = False
+    shot = ui.screenshot().astype(int)
+    inside = ui.screen((70.0, 80.0))
+    np.testing.assert_allclose(shot[round(inside[1]), round(inside[0])], [90, 140, 200], atol=1)
+    left, top, right, bottom = (round(side) for side in ui.editor.canvas)
+    part = shot[top:bottom, left:right]
+    drawn = np.argwhere((abs(part - part[0, 0]) > 24).any(axis=2))[:, ::-1] + (left, top)
+    opaque = np.argwhere(image[..., 3] > 40)[:, ::-1]
+    low = ui.editor.camera.to_screen(opaque.min(axis=0))
+    high = ui.editor.camera.to_screen(opaque.max(axis=0) + 1)
+    zoom = ui.editor.camera.zoom
+    np.testing.assert_allclose(drawn.min(axis=0), low, atol=zoom)
+    np.testing.assert_allclose(drawn.max(axis=0) + 1, high, atol=zoom)
+    assert background.max() < 200

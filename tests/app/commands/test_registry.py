@@ -1,0 +1,523 @@
+"""Each command by its menu, its button and its keys; the side panel; the two pages of help."""
+
+from imgui_bundle import imgui  # isort: skip
+import glfw
+import numpy as np
+import pytest
+
+from akap_editor.app import glfw_key_order as key_order
+from akap_editor.app.canvas.view_options import RANGES
+from akap_editor.app.commands import registry as commands
+from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
+from akap_editor.app.commands.registry import COMMANDS, MENUS
+from akap_editor.app.panels import side_panel as panels
+from akap_editor.deform.deformer import method_names
+from akap_editor.deform.methods import VARIANTS, variant_of
+from akap_editor.editor.camera import Camera
+from akap_editor.editor.events import PinRequest
+from akap_editor.editor.tools.stiffness_brush import Brush
+from akap_editor.errors import SolverError
+
+ITEMS = [(menu, command) for menu, group in MENUS for command in group if isinstance(command, Command)]
+
+
+def bend(ui):
+    """Pin 3 goes up; one undo entry."""
+    start = ui.screen(ui.pin_place(3))
+    ui.drag(start, (start[0], start[1] - 120))
+    assert ui.session.posed
+
+
+# -- what each command does: prepare, and a law that holds after it -----------------------------------------
+
+
+def nothing(ui):
+    pass
+
+
+def bent(ui):
+    bend(ui)
+
+
+def undone(ui):
+    bend(ui)
+    ui.editor.undo()
+
+
+def one_selected(ui):
+    ui.editor.select({2})
+
+
+def with_tool(name):
+    return lambda ui: setattr(ui.editor, "chosen_tool", name)
+
+
+def stiffened(ui):
+    ui.editor.edit("Stiffen", lambda session: session.paint_stiffness([(50.0, 80.0)], 30.0, 100.0))
+
+
+def moved_camera(ui):
+    ui.editor.camera = Camera(0.7, (10.0, 20.0))
+
+
+def watch_palette(ui):
+    """Test Engine closes popups at the end of its tests, so each frame is looked at."""
+    ui.palettes = []
+    ui.window.after_draw[:] = [lambda: ui.palettes.append(ui.space.palette)]
+
+
+def is_rest(ui):
+    return not ui.session.posed
+
+
+def zoom_is(factor):
+    def holds(ui):
+        middle = 48 + (1280 - 48 - 268) / 2
+        assert ui.editor.canvas[0] == 48
+        assert (ui.editor.canvas[0] + ui.editor.canvas[2]) / 2 == middle
+        return ui.editor.camera.zoom == pytest.approx(0.7 * factor)
+
+    return holds
+
+
+def keyed(ui):
+    """Two keyframes, at 0 and at 1 second, the second one chosen."""
+    player = ui.space.key_player
+    ui.space.show_timeline, ui.space.timeline = True, "keyframes"
+    ui.settle()
+    player.put(0.0)
+    bend(ui)
+    player.put(1.0)
+    player.scrub(1.0)
+    player.chosen = frozenset({1.0})
+    ui.settle()
+
+
+def looking_between(ui):
+    keyed(ui)
+    ui.space.key_player.scrub(0.5)
+
+
+def once_keyed(ui):
+    """Playing takes a tenth of a second, and then the range is over."""
+    keyed(ui)
+    ui.space.key_player.loop = False
+    ui.space.key_player.cut_to(0.1, 0.2)
+
+
+def looked_at(ui):
+    """Three seconds, the first and the last one cut off, looked at after a half second of the rest."""
+    keyed(ui)
+    ui.space.key_player.put(3.0)
+    ui.space.key_player.cut_to(1.0, 2.5)
+    ui.space.key_player.scrub(1.5)
+
+
+def look_is(moment):
+    return lambda ui: ui.space.key_player.at == pytest.approx(moment)
+
+
+def range_is(start, end):
+    return lambda ui: ui.space.key_player.range == pytest.approx((start, end))
+
+
+def watch_requests(ui):
+    """What is asked for a pin, at the end of each frame."""
+    one_selected(ui)
+    ui.requests = []
+    ui.window.after_draw[:] = [lambda: ui.requests.append(ui.editor.request)]
+
+
+def watch_tools(ui):
+    """Test Engine takes its mouse away at the end of its tests, and a mouse that moves ends the crosshair."""
+    ui.tools = []
+    ui.window.after_draw[:] = [lambda: ui.tools.append(ui.tool)]
+
+
+def asked_for(kind):
+    return lambda ui: PinRequest(kind, 2) in ui.requests
+
+
+def looks(x, y):
+    def holds(ui):
+        dx, dy = ui.editor.camera.offset[0] - 10.0, ui.editor.camera.offset[1] - 20.0
+        return (np.sign([-dx, -dy]) == (x, y)).all()
+
+    return holds
+
+
+def times(ui):
+    return ui.session.present.animation.times
+
+
+CASES = {
+    "Step Forward": (looked_at, look_is(1.55)),
+    "Step Back": (looked_at, look_is(1.45)),
+    "One Second Forward": (looked_at, look_is(2.5)),
+    "One Second Back": (looked_at, look_is(0.5)),
+    "Go to Start": (looked_at, look_is(1.0)),
+    "Go to End": (looked_at, look_is(2.5)),
+    "Start Range Here": (looked_at, range_is(1.5, 2.5)),
+    "End Range Here": (looked_at, range_is(1.0, 1.5)),
+    "Range Is Everything": (looked_at, range_is(0.0, 3.0)),
+    "Zoom into Timeline": (keyed, lambda ui: ui.space.key_player.view.zoomed),
+    "Zoom out of Timeline": (
+        lambda ui: [keyed(ui), ui.space.key_player.view.zoom(1.4, 0.0)],
+        lambda ui: not ui.space.key_player.view.zoomed,
+    ),
+    "Select All Keyframes": (keyed, lambda ui: ui.space.key_player.chosen == {0.0, 1.0}),
+    "Crosshair": (watch_tools, lambda ui: "Crosshair" in ui.tools),
+    "Next Pin": (one_selected, lambda ui: ui.editor.selection == {3}),
+    "Previous Pin": (one_selected, lambda ui: ui.editor.selection == {1}),
+    "Pin Values...": (watch_requests, asked_for("values")),
+    "Menu of Pin or Keyframe": (watch_requests, asked_for("menu")),
+    "Look Left": (moved_camera, looks(-1, 0)),
+    "Look Right": (moved_camera, looks(1, 0)),
+    "Look Up": (moved_camera, looks(0, -1)),
+    "Look Down": (moved_camera, looks(0, 1)),
+    "Next Range of Distortion": (
+        lambda ui: setattr(ui.space.view, "heat", "area"),
+        lambda ui: RANGES[ui.space.view.heat_range] == 2.0,
+    ),
+    "Play": (once_keyed, lambda ui: ui.space.key_player.at == 0.2),
+    "Export Animation...": (keyed, lambda ui: ui.space.animating),
+    "Keyframe Here": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
+    "Remove Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
+    "Duplicate Keyframe": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5)),
+    "Next Keyframe": (looking_between, lambda ui: ui.space.key_player.at == 1.0),
+    "Previous Keyframe": (looking_between, lambda ui: ui.space.key_player.at == 0.0),
+    "Move Keyframe Earlier": (keyed, lambda ui: times(ui) == (0.0, 0.95)),
+    "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
+    "Onion Skin": (keyed, lambda ui: ui.space.key_player.onion.shown),
+    "Open...": (nothing, lambda ui: ui.space.request is not None and not ui.space.request.saving),
+    "Cut Out with Mask...": (
+        nothing,
+        lambda ui: ui.space.request is not None and not ui.space.request.saving,
+    ),
+    "Save": (bent, lambda ui: ui.space.request is not None and ui.space.request.saving),
+    "Save As...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
+    "Export...": (nothing, lambda ui: ui.space.export.shown),
+    "Close": (nothing, lambda ui: ui.space.document is None),
+    "Quit": (nothing, lambda ui: ui.space.closing),
+    "Undo": (bent, is_rest),
+    "Redo": (undone, lambda ui: ui.session.posed),
+    "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
+    "Bring Forward": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, 1, 0]),
+    "Send Back": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, -1, 0]),
+    "Remove Last Pin": (nothing, lambda ui: [pin.id for pin in ui.pins] == [1, 2]),
+    "Select All Pins": (nothing, lambda ui: ui.editor.selection == {1, 2, 3}),
+    "Deselect": (one_selected, lambda ui: not ui.editor.selection),
+    "Reset Pose": (bent, lambda ui: not ui.session.posed and len(ui.pins) == 3),
+    "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.posed and ui.editor.modified),
+    "Remember the Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
+    "Default Parameters": (
+        lambda ui: ui.space.change_settings(
+            ui.session.state.settings.with_parameter("memory", 0.25).with_parameter("exact", True)
+        ),
+        lambda ui: (
+            ui.session.state.settings.get("memory") == 1.0 and not ui.session.state.settings.get("exact")
+        ),
+    ),
+    "Fit in Window": (moved_camera, lambda ui: ui.editor.camera == fitted(ui)),
+    "100 %": (moved_camera, lambda ui: ui.editor.camera.zoom == pytest.approx(1.0)),
+    "Zoom In": (moved_camera, zoom_is(1.25)),
+    "Zoom Out": (moved_camera, zoom_is(0.8)),
+    "Show Mesh": (nothing, lambda ui: ui.space.show_mesh),
+    "Show Pins": (nothing, lambda ui: not ui.space.show_pins),
+    "Checkerboard": (nothing, lambda ui: not ui.space.checker),
+    "Vector Field of the Drag": (nothing, lambda ui: ui.space.view.vectors),
+    "Distortion of Areas": (nothing, lambda ui: ui.space.view.heat == "area"),
+    "Distortion of Angles": (
+        lambda ui: setattr(ui.space.view, "heat", "area"),
+        lambda ui: ui.space.view.heat == "angle",
+    ),
+    "Rest Pose": (nothing, lambda ui: ui.space.view.ghost),
+    "Pin Trails": (nothing, lambda ui: ui.space.view.trails),
+    "Reference Picture...": (nothing, lambda ui: ui.space.request is not None),
+    "Show Reference Picture": (
+        lambda ui: ui.space.view.set_reference(ui.document.drawing.image),
+        lambda ui: not ui.space.view.show_reference,
+    ),
+    "Save Pose...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
+    "Apply Pose...": (nothing, lambda ui: ui.space.request is not None and not ui.space.request.saving),
+    "Save Recording...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
+    "Two Methods Side by Side": (nothing, lambda ui: ui.space.split),
+    "Timeline": (nothing, lambda ui: ui.space.show_timeline),
+    "Find Command...": (watch_palette, lambda ui: any(ui.palettes)),
+    "Keys and Mouse": (nothing, lambda ui: ui.space.keys),
+    "About akap-editor": (nothing, lambda ui: ui.space.about),
+    "Pins": (with_tool("hand"), lambda ui: ui.editor.chosen_tool == "pins"),
+    "Move Canvas": (nothing, lambda ui: ui.editor.chosen_tool == "hand"),
+    "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool == "brush"),
+    "Erase Stiffness": (with_tool("brush"), lambda ui: ui.editor.brush.erasing),
+    "Smaller Brush": (with_tool("brush"), lambda ui: ui.editor.brush.radius < Brush().radius),
+    "Larger Brush": (with_tool("brush"), lambda ui: ui.editor.brush.radius > Brush().radius),
+    "Remove All Stiffness": (stiffened, lambda ui: ui.session.state.stiffness is None),
+    "Hold Angle": (one_selected, lambda ui: [pin.angle is None for pin in ui.pins] == [True, False, True]),
+}
+
+
+def fitted(ui):
+    camera = ui.editor.camera
+    ui.editor.fit()
+    expected, ui.editor.camera = ui.editor.camera, camera
+    return expected
+
+
+def test_every_command_has_a_case():
+    assert {command.label for command in COMMANDS} == set(CASES)
+
+
+def check(ui, command, run):
+    prepare, holds = CASES[command.label]
+    prepare(ui)
+    assert not holds(ui), "the law must not hold before"
+    run()
+    assert holds(ui)
+    assert not ui.space.error
+
+
+@pytest.mark.parametrize(("menu", "command"), ITEMS, ids=[command.label for _, command in ITEMS])
+def test_by_menu(pinned, menu, command):
+    check(pinned, command, lambda: pinned.menu(menu, command.label))
+
+
+CHORDS = [(command, chord) for command in COMMANDS for chord in command.chords]
+
+
+@pytest.mark.parametrize(("command", "chord"), CHORDS, ids=[f"{c.label}-{chord_name(k)}" for c, k in CHORDS])
+def test_by_key(pinned, command, chord):
+    check(pinned, command, lambda: pinned.key(chord))
+
+
+BUTTONS = [
+    commands.PIN_TOOL,
+    commands.HAND_TOOL,
+    commands.BRUSH_TOOL,
+    commands.UNDO,
+    commands.REDO,
+    commands.REMOVE,
+    commands.FIT,
+    commands.SHOW_MESH,
+]
+
+
+@pytest.mark.parametrize("command", BUTTONS, ids=[command.label for command in BUTTONS])
+def test_by_button(pinned, command):
+    check(pinned, command, lambda: pinned.tool_button(command))
+
+
+def test_no_key_means_two_things():
+    chords = [int(chord) for command in COMMANDS for chord in command.chords]
+    assert len(set(chords)) == len(chords)
+
+
+@pytest.mark.parametrize(
+    ("chord", "name"),
+    [
+        (CTRL | SHIFT | Key.z, "Ctrl+Shift+Z"),
+        (Key.delete, "Del"),
+        (Key._1, "1"),
+        (CTRL | Key.equal, "Ctrl++"),
+        (Key.f1, "F1"),
+    ],
+)
+def test_chord_name(chord, name):
+    assert chord_name(chord) == name
+
+
+@pytest.mark.parametrize("command", [commands.UNDO, commands.REDO, commands.REMOVE, commands.RESET])
+def test_commands_that_have_nothing_to_do_are_disabled(pinned, command):
+    assert not command.enabled(pinned.space)
+    revision = pinned.document.revision
+    pinned.key(*command.chords)
+    assert pinned.document.revision == revision
+    assert pinned.session.history.depth == 0
+
+
+def test_undo_and_redo_restore_bit_for_bit(pinned):
+    rest = pinned.session.state
+    bend(pinned)
+    bent = pinned.session.state
+    pinned.key(CTRL | Key.z)
+    assert pinned.session.state is rest
+    pinned.key(CTRL | SHIFT | Key.z)
+    assert pinned.session.state.positions.tobytes() == bent.positions.tobytes()
+    pinned.key(CTRL | Key.z, CTRL | Key.y)
+    assert pinned.session.state.positions.tobytes() == bent.positions.tobytes()
+
+
+def test_a_shortcut_within_one_frame_is_not_its_key_alone(pinned):
+    pinned.editor.select({1})
+    io = imgui.get_io()
+    io.add_key_event(CTRL, True)
+    io.add_key_event(Key.d, True)
+    key_order.on_key(None, glfw.KEY_LEFT_CONTROL, 0, glfw.RELEASE, 0)
+    io.add_key_event(CTRL, False)
+    io.add_key_event(Key.d, False)
+    pinned.settle()
+    assert not pinned.editor.selection
+    assert pinned.space.overlays(1.0).heat is None
+    assert not io.key_ctrl
+
+
+def test_space_presses_no_button_that_was_clicked_before(pinned):
+    pinned.tool_button(commands.SHOW_MESH)
+    start = pinned.screen(pinned.pin_place(2))
+    camera = pinned.editor.camera
+    pinned.drag(start, (start[0] + 30, start[1]), held=Key.space)
+    assert pinned.editor.camera != camera
+    assert pinned.space.show_mesh
+
+
+def test_keys_do_nothing_while_a_name_is_typed(pinned):
+    pinned.editor.select({1})
+    pinned.key(CTRL | Key.o)
+    pinned.type_name("Open picture or drawing", "mfb", enter=False)
+    pinned.key(Key.delete)
+    assert pinned.space.request.name == "mfb"
+    assert not pinned.space.show_mesh
+    assert len(pinned.pins) == 3
+    pinned.key(Key.escape)
+    assert pinned.space.request is None
+
+
+# -- side panel ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("label", "name"), [("Mesh", "show_mesh"), ("Pins", "show_pins"), ("Checkerboard", "checker")]
+)
+def test_view_switches(pinned, label, name):
+    before = getattr(pinned.space, name)
+    picture = pinned.screenshot()
+    pinned.panel(label)
+    assert getattr(pinned.space, name) != before
+    left, top, right, bottom = map(round, pinned.editor.canvas)
+    assert (pinned.screenshot() != picture)[top:bottom, left:right].any()
+    pinned.panel(label)
+    assert getattr(pinned.space, name) == before
+    assert not pinned.editor.modified
+
+
+def test_the_rest_shape_switch_is_an_edit(pinned):
+    pinned.panel("Remember the rest shape")
+    assert pinned.session.state.settings.get("memory") == 0.0
+    pinned.panel("Remember the rest shape")
+    assert pinned.session.state.settings.get("memory") == 1.0
+    pinned.key(CTRL | Key.z)
+    assert pinned.session.state.settings.get("memory") == 0.0
+
+
+def test_reset_pose_by_the_panel(pinned):
+    bend(pinned)
+    pinned.panel("Reset pose")
+    assert not pinned.session.posed
+
+
+def pin_in_list(ui, pin, shift=False):
+    """Click a line of the pin list."""
+
+    def click(hand):
+        if shift:
+            hand.key_down(imgui.Key.mod_shift)
+        hand.item_click(f"//Panel/**/  Pin {pin}##pin")
+        if shift:
+            hand.key_up(imgui.Key.mod_shift)
+
+    ui.do(click)
+
+
+def test_the_pin_list_selects(pinned):
+    pin_in_list(pinned, 2)
+    assert pinned.editor.selection == {2}
+    pin_in_list(pinned, 3, shift=True)
+    assert pinned.editor.selection == {2, 3}
+    pin_in_list(pinned, 2, shift=True)
+    assert pinned.editor.selection == {3}
+    pin_in_list(pinned, 1)
+    assert pinned.editor.selection == {1}
+    assert not pinned.editor.modified
+    pinned.panel("Remove selected")
+    assert [pin.id for pin in pinned.pins] == [2, 3]
+
+
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [
+        (SolverError("the numbers are not finite"), "the numbers are not finite"),
+        (KeyError("oops"), "Something went wrong in the program (KeyError: 'oops')"),
+    ],
+)
+def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd, error, message):
+    def fail(space, scale):
+        raise error
+
+    with monkeypatch.context() as patch:
+        patch.setattr(panels, "SECTIONS", (*panels.SECTIONS, panels.Section("Broken", fail)))
+        pinned.frame()
+        assert pinned.space.error == message
+    assert ("Traceback" in capfd.readouterr().err) == isinstance(error, KeyError)
+    pinned.settle()
+    pinned.dialog("That did not work", "OK")
+    assert not pinned.space.error
+    bend(pinned)
+    pinned.menu("Edit", "Undo")
+    assert not pinned.session.posed
+
+
+# -- help ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("label", "name", "title"),
+    [("Keys and Mouse", "keys", "Keys and mouse"), ("About akap-editor", "about", "About akap-editor")],
+)
+@pytest.mark.parametrize("close", ["Close", "escape", "enter"])
+def test_help_opens_and_closes(pinned, label, name, title, close):
+    pinned.menu("Help", label)
+    assert getattr(pinned.space, name)
+    if close == "Close":
+        pinned.dialog(title, "Close")
+    else:
+        pinned.key(Key.escape if close == "escape" else Key.enter)
+    assert not getattr(pinned.space, name)
+    pinned.click(pinned.screen((100.0, 80.0)))
+    assert len(pinned.pins) == 4, "the canvas is free again"
+
+
+# -- methods ------------------------------------------------------------------------------------------------
+
+
+def test_every_method_can_be_chosen():
+    assert {variant.method for variant in VARIANTS} == set(method_names())
+
+
+@pytest.mark.parametrize("variant", [each for each in VARIANTS if each.settings], ids=lambda each: each.spec)
+def test_a_variant_is_chosen_and_keeps_its_memory(pinned, variant):
+    def choose(hand):
+        hand.set_ref("Panel")
+        hand.combo_click(f"##method/{variant.label}")
+
+    pinned.do(choose)
+    settings = pinned.session.state.settings
+    assert settings.method == variant.method
+    memory = {"memory": 1.0} if variant.method == "akap" else {}
+    assert dict(settings.parameters) == {**variant.settings, **memory}
+    assert variant_of(settings.method, dict(settings.parameters)) is variant
+
+
+def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):
+    bend(pinned)
+    pose = pinned.session.state.positions
+
+    def choose(hand):
+        hand.set_ref("Panel")
+        hand.combo_click("##method/As rigid as possible")
+
+    pinned.do(choose)
+    assert pinned.session.state.settings.method == "arap"
+    assert pinned.session.state.positions is pose
+    pinned.menu("Edit", "Undo")
+    assert pinned.session.state.settings.method == "akap"
+    assert pinned.session.state.positions is pose

@@ -1,0 +1,152 @@
+"""Exporting through the window: the dialog, its numbers, and the files."""
+
+import numpy as np
+import pygltflib
+import pytest
+
+from akap_editor.app.commands.command import CTRL, Key
+from akap_editor.editor.document.framing import crop_box
+from akap_editor.io.export import FORMATS
+from akap_editor.io.images import read_image
+from akap_editor.render.offscreen import OffscreenRenderer
+
+EXPORT, FILE, MESSAGE = "Export", "Export to", "That did not work"
+BY_SUFFIX = {each.suffix: each for each in FORMATS}
+
+
+@pytest.fixture
+def bent(pinned, tmp_path):
+    """Three pins, one of them dragged; dialogs begin in an empty folder."""
+    start = pinned.screen(pinned.pin_place(3))
+    pinned.drag(start, (start[0], start[1] - 120))
+    pinned.space.folder = tmp_path
+    return pinned
+
+
+def expected_picture(ui, crop="none", scale=1.0, background=None):
+    drawing, pose = ui.document.drawing, ui.session.state.positions
+    with OffscreenRenderer(ui.window.ctx) as renderer:
+        return renderer.render(drawing, pose, crop_box(drawing, pose, crop), scale, background)
+
+
+def export_as(ui, name):
+    ui.dialog(EXPORT, "Export...")
+    assert not ui.space.export.shown
+    ui.type_name(FILE, name)
+    ui.settle()
+    assert not ui.space.waiting
+
+
+def option(label):
+    return f"**/{label}"
+
+
+def test_enter_twice_writes_the_picture_as_it_is_seen(bent, tmp_path):
+    bent.key(CTRL | Key.e)
+    assert bent.space.export.shown
+    bent.key(Key.enter)
+    assert bent.space.request.name == "figure-posed.png"
+    bent.key(Key.enter)
+    bent.settle()
+    expected = expected_picture(bent)
+    np.testing.assert_array_equal(read_image(tmp_path / "figure-posed.png"), expected)
+    assert bent.space.notice == f"Exported figure-posed.png, {expected.shape[1]} × {expected.shape[0]} pixels"
+    assert bent.editor.modified, "an export is not the drawing's file"
+
+
+def test_all_that_can_be_chosen_about_a_picture(bent, tmp_path):
+    bent.menu("File", "Export...")
+    bent.dialog(EXPORT, option("2×"), option("Color"))
+
+    def crop(hand):
+        hand.set_ref(hand.window_info(f"//{EXPORT}###dialog {EXPORT}/##options").window)
+        hand.combo_click("##crop/Pose alone")
+
+    bent.do(crop)
+    choice = bent.space.export
+    assert (choice.scale, choice.opaque, choice.crop) == (2.0, True, "pose")
+    size = choice.size(bent.document)
+    export_as(bent, "large")
+    written = read_image(tmp_path / "large.png")
+    assert written.shape == (size[1], size[0], 4)
+    np.testing.assert_array_equal(written, expected_picture(bent, "pose", 2.0, (1.0, 1.0, 1.0)))
+    bent.menu("File", "Export...")
+    assert (choice.scale, choice.opaque, choice.crop) == (2.0, True, "pose"), "kept for the next time"
+    bent.dialog(EXPORT, "Cancel")
+
+
+@pytest.mark.parametrize("suffix", BY_SUFFIX)
+def test_every_format(bent, tmp_path, suffix):
+    bent.menu("File", "Export...")
+    bent.dialog(EXPORT, option(BY_SUFFIX[suffix].label))
+    assert bent.space.export.format is BY_SUFFIX[suffix]
+    export_as(bent, "cat")
+    assert (tmp_path / f"cat{suffix}").stat().st_size
+    for path in tmp_path.iterdir():
+        assert path.name in bent.space.notice
+
+
+def test_the_drawing_at_rest(bent, tmp_path):
+    bent.menu("File", "Export...")
+    bent.dialog(EXPORT, option("glTF binary"), option("At rest"), "Export...")
+    assert bent.space.request.name == "figure-rest.glb"
+    bent.key(Key.enter)
+    bent.settle()
+    gltf = pygltflib.GLTF2().load(str(tmp_path / "figure-rest.glb"))
+    target = gltf.accessors[gltf.meshes[0].primitives[0].targets[0]["POSITION"]]
+    assert target.min == target.max == [0.0, 0.0, 0.0]
+
+
+def test_too_large_a_picture_cannot_be_asked_for(bent):
+    bent.menu("File", "Export...")
+    bent.space.export.scale = 60.0
+    bent.settle()
+    bent.key(Key.enter)
+    assert bent.space.export.shown
+    assert bent.space.request is None
+    bent.dialog(EXPORT, option("glTF binary"))
+    bent.key(Key.enter)
+    assert bent.space.request.suffixes == (".glb",), "a mesh has no size in pixels"
+    bent.key(Key.escape)
+
+
+def test_a_scale_can_be_typed(bent):
+    bent.menu("File", "Export...")
+
+    def type_(hand):
+        hand.item_input(f"//{EXPORT}###dialog {EXPORT}/**/##scale")
+        hand.key_chars_replace_enter("37.5")
+
+    bent.do(type_)
+    assert bent.space.export.shown, "Enter ended the typing only"
+    assert bent.space.export.scale == pytest.approx(0.375)
+    bent.key(Key.escape)
+    assert not bent.space.export.shown
+
+
+def test_cancel_and_escape_write_nothing(bent, tmp_path):
+    bent.key(CTRL | Key.e)
+    bent.key(Key.escape)
+    assert not bent.space.export.shown
+    bent.key(CTRL | Key.e)
+    bent.dialog(EXPORT, "Cancel")
+    bent.key(CTRL | Key.e, Key.enter)
+    bent.dialog(FILE, "Cancel")
+    assert bent.space.request is None
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_cannot_be_written_is_told(bent, tmp_path):
+    bent.key(CTRL | Key.e)
+    export_as(bent, "no-such-folder/cat")
+    assert str(tmp_path / "no-such-folder" / "cat.png") in bent.space.error
+    bent.dialog(MESSAGE, "OK")
+
+
+def test_only_files_of_the_format_are_listed(bent, tmp_path):
+    for name in ("a.json", "b.spine.json", "c.png"):
+        (tmp_path / name).write_bytes(b"")
+    bent.menu("File", "Export...")
+    bent.dialog(EXPORT, option("Spine skeleton"), "Export...")
+    assert bent.space.request.entries() == [("b.spine.json", False)]
+    bent.key(Key.escape)

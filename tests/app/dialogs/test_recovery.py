@@ -1,0 +1,148 @@
+"""After a crash: what was lost is offered with a picture, and taken, thrown away or left for later."""
+
+import os
+
+import numpy as np
+import pytest
+
+from akap_editor.io.akap.autosave import SECONDS, Autosave
+from akap_editor.io.akap.project import load, save
+
+TITLE = "Recover unsaved work"
+
+
+@pytest.fixture
+def crash(tmp_path):
+    """Leaves a copy as a program does that ends without a word."""
+
+    def leave(document):
+        now = [0.0]
+        autosave = Autosave(tmp_path, clock=lambda: now[0])
+        autosave.watch(document, True)
+        now[0] = SECONDS
+        autosave.watch(document, True)
+        autosave._worker.shutdown()
+        autosave._copy.lock.release()
+
+    return leave
+
+
+@pytest.fixture
+def restart(ui, tmp_path):
+    """The window as it starts with this folder of copies."""
+
+    def start():
+        ui.space.autosave = Autosave(tmp_path)
+        ui.space.lost = ui.space.autosave.lost()
+        ui.settle()
+        return ui
+
+    yield start
+    ui.space.autosave._worker.shutdown()
+    for copy in ui.space.lost:
+        copy.leave()
+
+
+@pytest.fixture
+def bent(pinned):
+    """The state of a drawing with three pins, one of them dragged."""
+    start = pinned.screen(pinned.pin_place(3))
+    pinned.drag(start, (start[0], start[1] - 90))
+    return pinned.document
+
+
+def wait(ui):
+    ui.space.autosave._worker.submit(int).result()
+
+
+def test_nothing_is_offered_where_nothing_was_lost(restart):
+    restart()
+    assert not restart().space.lost
+
+
+def test_recovering_brings_the_drawing_back_unsaved(bent, crash, restart, tmp_path):
+    crash(bent)
+    ui = restart()
+    shot = ui.screenshot()
+    middle = shot[200:600, 250:800]
+    assert (abs(middle.astype(int) - (90, 140, 200)).sum(axis=2) < 12).mean() > 0.01, "the thumbnail shows it"
+    ui.dialog(TITLE, "Recover")
+    assert ui.document.state.positions.tobytes() == bent.state.positions.tobytes()
+    assert [pin.id for pin in ui.pins] == [1, 2, 3]
+    assert ui.editor.modified
+    assert ui.space.title == "figure * - akap-editor"
+    assert ui.space.notice == "Recovered figure, which is not saved yet"
+    ui.space.protect()
+    wait(ui)
+    assert list(tmp_path.glob("*.akap")), "a second crash would lose it otherwise"
+    ui.space._write(tmp_path / "saved.pose", None)
+    ui.space.protect()
+    wait(ui)
+    assert os.listdir(tmp_path) == ["saved.pose"]
+
+
+def test_a_recovered_drawing_belongs_to_its_file(bent, crash, restart, tmp_path):
+    folder = tmp_path / "drawings"
+    folder.mkdir()
+    saved = save(bent, folder / "figure.akap")
+    crash(saved.with_state(bent.state))
+    ui = restart()
+    ui.dialog(TITLE, "Recover")
+    assert ui.space.title == "figure.akap * - akap-editor"
+    ui.menu("File", "Save")
+    assert not ui.editor.modified
+    assert (load(folder / "figure.akap").state.positions == bent.state.positions).all()
+
+
+def test_discarding_removes_the_copy_and_goes_to_the_next(bent, document, crash, restart, tmp_path):
+    crash(bent)
+    crash(document)
+    ui = restart()
+    assert len(ui.space.lost) == 2
+    ui.dialog(TITLE, "Discard")
+    assert len(ui.space.lost) == 1
+    assert len(list(tmp_path.glob("*.akap"))) == 1
+    ui.dialog(TITLE, "Discard")
+    assert not ui.space.lost
+    assert os.listdir(tmp_path) == []
+
+
+def test_later_means_the_next_start(bent, crash, restart, tmp_path):
+    crash(bent)
+    ui = restart()
+    before = ui.document
+    ui.dialog(TITLE, "Later")
+    assert not ui.space.lost
+    assert ui.document is before
+    assert len(restart().space.lost) == 1
+
+
+def test_recovering_one_leaves_the_others_for_the_next_start(bent, document, crash, restart):
+    crash(bent)
+    crash(document)
+    restart().dialog(TITLE, "Recover")
+    ui = restart()
+    assert len(ui.space.lost) == 1
+
+
+def test_a_damaged_copy_is_told_and_kept(bent, crash, restart, tmp_path):
+    crash(bent)
+    (path,) = tmp_path.glob("*.akap")
+    path.write_bytes(path.read_bytes()[:-100])
+    ui = restart()
+    assert ui.space.error.startswith("Unsaved work could not be recovered: ")
+    assert not ui.space.lost
+    assert path.exists()
+    ui.dialog("That did not work", "OK")
+
+
+def test_a_crash_of_the_program_itself_keeps_the_work(bent, ui, tmp_path):
+    ui.space.show(bent)
+    ui.session.mark_unsaved()
+    ui.space.autosave = Autosave(tmp_path)
+    ui.space.rescue()
+    ui.space.autosave._worker.shutdown()
+    ui.space.autosave._copy.lock.release()
+    (copy,) = Autosave(tmp_path).lost()
+    assert np.array_equal(copy.read().state.positions, bent.state.positions)
+    copy.leave()

@@ -1,0 +1,89 @@
+"""What is measured while the window runs, and that it takes no time that frames need."""
+
+import pytest
+
+from akap_editor.app.panels.measurements import KEPT, Meter
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.editor import Editor
+from akap_editor.geometry.distortion import distortion
+
+
+@pytest.fixture
+def session(drawing):
+    editor = Editor()
+    editor.open(new_document(drawing))
+    editor.add_pin((50.0, 80.0))
+    editor.add_pin((210.0, 80.0))
+    return editor.session
+
+
+def measuring(session, clock, cost):
+    calls = []
+
+    def measure():
+        clock.now += cost
+        calls.append(clock.now)
+        return distortion(session.drawing.mesh, session.state.positions)
+
+    return calls, measure
+
+
+def frames(meter, session, clock, measure, count, step=1 / 60):
+    for _ in range(count):
+        session.step()
+        session._settling = 100  # goes on moving, wherever the pins are
+        meter.look(session, measure)
+        clock.now += step
+
+
+def test_measuring_takes_a_tenth_of_the_time_at_most_while_something_moves(session, clock):
+    calls, measure = measuring(session, clock, cost=0.03)
+    meter, start = Meter(clock), clock.now
+    session.begin("Bend")
+    session.set_targets({2: (190.0, 60.0)})
+    frames(meter, session, clock, measure, 120)
+    assert len(calls) >= 3
+    assert 0.03 * len(calls) <= 0.1 * (clock.now - start) + 0.03
+
+
+def test_the_pose_at_rest_is_measured_at_once_and_only_once(session, clock):
+    calls, measure = measuring(session, clock, cost=0.03)
+    meter = Meter(clock)
+    session.begin("Bend")
+    session.set_targets({2: (190.0, 60.0)})
+    frames(meter, session, clock, measure, 3)
+    session._settling = 0
+    before = len(calls)
+    for _ in range(5):
+        meter.look(session, measure)
+    assert len(calls) == before + 1
+    expected = distortion(session.drawing.mesh, session.state.positions)
+    assert meter.distortion.area == expected.area
+    assert meter.angles[-1] == expected.angle
+
+
+def test_rates_leave_out_sleep(session, clock):
+    _, measure = measuring(session, clock, cost=0.0)
+    meter = Meter(clock)
+    assert (meter.frame_rate, meter.step_seconds) == (None, None)
+    session.begin("Bend")
+    session.set_targets({2: (190.0, 60.0)})
+    frames(meter, session, clock, measure, 10, step=0.02)
+    clock.now += 60.0
+    frames(meter, session, clock, measure, 10, step=0.02)
+    assert meter.frame_rate == pytest.approx(50)
+    assert meter.step_seconds > 0
+
+
+def test_it_forgets_what_is_old_and_begins_anew_with_a_drawing(session, clock, drawing):
+    _, measure = measuring(session, clock, cost=0.0)
+    meter = Meter(clock)
+    session.begin("Bend")
+    session.set_targets({2: (190.0, 60.0)})
+    frames(meter, session, clock, measure, KEPT + 9)
+    assert len(meter.areas) == len(meter.angles) == KEPT
+    other = Editor()
+    other.open(new_document(drawing))
+    meter.look(other.session, measure)
+    assert len(meter.areas) == 1
+    assert meter.frame_rate is None

@@ -1,0 +1,112 @@
+"""The Mesh section of the side panel."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import Meshing, make_drawing
+from akap_editor.io.mesh_files.reader import read_mesh
+from tests.support.window_driver import WindowDriver
+
+
+def slide(ui: WindowDriver, label: str, *shares: float) -> list[Meshing | None]:
+    """Drag a slider through places along it, as shares of its width; what was wanted at each."""
+    seen = []
+
+    def drag(hand):
+        rect = hand.item_info(f"//Panel/{label}").rect_full
+        middle = (rect.min.y + rect.max.y) / 2
+        for number, share in enumerate(shares):
+            x = rect.min.x + share * (rect.max.x - rect.min.x)
+            if number == 0:
+                ui.begin_drag(hand, (x, middle))
+            else:
+                hand.mouse_move_to_pos(type(rect.min)(x, middle))
+            hand.yield_(8)
+            seen.append(ui.space.remesher.meshing)
+            assert number == 0 or ui.space.remesher.active
+        hand.mouse_up(0)
+
+    ui.do(drag)
+    return seen
+
+
+@pytest.fixture
+def opened(pinned):
+    """The window with a pinned figure and the section open."""
+    pinned.space.preferences.put("sections", {"Mesh": True})
+    pinned.settle()
+    return pinned
+
+
+def test_vertices_slider_gives_another_mesh_as_one_entry(opened):
+    places, before = opened.session.pin_positions(), opened.document
+    depth = opened.session.history.depth
+    slide(opened, "##Vertices", 0.2, 0.4, 0.6)
+    assert not opened.space.remesher.active
+    drawing = opened.document.drawing
+    assert len(drawing.mesh.vertices) > 3 * len(before.drawing.mesh.vertices)
+    assert drawing.meshing.vertices == pytest.approx(len(drawing.mesh.vertices), rel=0.1)
+    assert opened.session.history.depth == depth + 1
+    assert np.abs(opened.session.pin_positions() - places).max() < 0.5
+    opened.editor.undo()
+    assert opened.document.state is before.state
+    assert opened.document.drawing is before.drawing
+
+
+def test_two_drags_are_two_entries(opened):
+    depth = opened.session.history.depth
+    slide(opened, "##Expansion", 0.1, 0.5)
+    *_, wanted = slide(opened, "##Expansion", 0.5, 0.2)
+    assert opened.session.history.depth == depth + 2
+    assert opened.document.drawing.meshing == wanted
+    assert 2.0 < wanted.expand < 6.0
+
+
+def test_a_pin_can_be_dragged_right_after(opened):
+    slide(opened, "##Vertices", 0.2, 0.5)
+    start = opened.screen(tuple(opened.pin_place(3)))
+    opened.drag(start, (start[0], start[1] - 40))
+    assert opened.session.history.undo_label == "Move pin" or opened.session.posed
+    assert opened.session.pin_error() < 0.25
+
+
+def test_nothing_left_is_a_notice_and_all_stays(opened):
+    faint = opened.document.drawing.image.copy()
+    faint[..., 3] = np.minimum(faint[..., 3], 200)
+    opened.space.show(new_document(make_drawing(faint, vertices=200)))
+    opened.settle()
+    before = opened.document
+    slide(opened, "##Edge", 0.5, 0.97)
+    assert "transparent" in opened.space.notice
+    assert not opened.space.error
+    assert opened.document.state.positions.shape == before.state.positions.shape
+
+
+def test_the_background_goes_and_comes_back(opened):
+    image = np.full((160, 240, 4), 255, np.uint8)
+    image[40:120, 60:180, :3] = (200, 60, 30)
+    opened.space.show(new_document(make_drawing(image, vertices=200, name="scan")))
+    opened.settle()
+    area = 160 * 240
+    assert opened.document.drawing.mesh.rest_areas.sum() == pytest.approx(area)
+    opened.panel("Remove background")
+    assert opened.document.drawing.mesh.rest_areas.sum() == pytest.approx(84 * 124, rel=0.02)
+    *_, wanted = slide(opened, "##Background", 0.2, 0.5)
+    assert opened.document.drawing.meshing == wanted
+    assert 0.2 < wanted.background < 0.4
+    opened.panel("Keep the background")
+    assert opened.document.drawing.image.tolist() == image.tolist()
+    assert opened.session.history.depth == 3
+
+
+def test_a_mesh_from_a_file_that_is_not_on_its_picture_says_so(opened, tmp_path):
+    Image.fromarray(opened.document.drawing.image).save(tmp_path / "a.png")
+    (tmp_path / "a.obj").write_text(
+        "v 0 0 0\nv 90 0 0\nv 70 80 0\nv 0 60 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
+    )
+    opened.space.show(new_document(read_mesh(tmp_path / "a.obj")))
+    opened.settle()
+    slide(opened, "##Expansion", 0.1, 0.5)
+    assert "cannot be made anew" in opened.space.notice

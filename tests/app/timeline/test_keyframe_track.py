@@ -1,0 +1,281 @@
+"""Keyframes on the timeline, by mouse and keys."""
+
+import numpy as np
+import pytest
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from akap_editor.editor.session.replay import replay
+from akap_editor.io.akap.project import load, save
+
+
+@pytest.fixture
+def keyed(pinned):
+    """Keyframes of the rest pose at 0, of a bent one at 1 second; one looks at the first."""
+    space = pinned.space
+    space.show_timeline, space.timeline = True, "keyframes"
+    pinned.settle()
+    pinned.key(imgui.Key.k)
+    start = pinned.screen(pinned.pin_place(3))
+    pinned.drag(start, (start[0] - 20, start[1] - 100))
+    space.key_player.put(1.0)
+    space.key_player.scrub(0.0)
+    pinned.settle()
+    return pinned
+
+
+def times(ui):
+    return ui.session.present.animation.times
+
+
+def on_track(ui, time, y=28):
+    """A place on the track of keyframes, y points below its top."""
+    found = {}
+    ui.do(lambda hand: found.setdefault("rect", hand.item_info("//Timeline/##keys").rect_full))
+    rect, player = found["rect"], ui.space.key_player
+    left, width = rect.min.x + 8, rect.max.x - rect.min.x - 16
+    view = player.view
+    return round(left + width * (time - view.start) / view.seconds), round(rect.min.y + y)
+
+
+def at_time(ui, time, share):
+    """What is seen is the pose at a time, the share of the way from rest to the bent pose."""
+    first, last = (ui.session.present.animation.keys[number].positions for number in (0, -1))
+    seen = ui.session.state.positions
+    assert ui.space.key_player.at == pytest.approx(time)
+    far = np.abs(last - first).max()
+    return np.abs(seen - first).max() == pytest.approx(share * far, abs=0.06 * far)
+
+
+def test_a_drag_on_the_ruler_moves_along_and_edits_nothing(keyed):
+    depth, events = keyed.session.history.depth, len(keyed.session.recording.events)
+    keyed.drag(on_track(keyed, 0.1, y=8), on_track(keyed, 0.5, y=8))
+    assert at_time(keyed, 0.5, 0.5)
+    assert keyed.session.visiting
+    keyed.drag(on_track(keyed, 0.5, y=8), on_track(keyed, 1.7, y=8))
+    assert at_time(keyed, 1.7, 1.0)
+    assert (keyed.session.history.depth, len(keyed.session.recording.events)) == (depth, events)
+
+
+def test_a_drag_on_the_canvas_takes_what_is_seen_and_k_keeps_it(keyed):
+    keyed.space.key_player.scrub(0.5)
+    keyed.settle()
+    seen, depth = keyed.session.state.positions, keyed.session.history.depth
+    before = keyed.session.present
+    start = keyed.screen(keyed.pin_place(3))
+    keyed.click(start)
+    assert keyed.session.present is before, "a click takes nothing"
+    keyed.drag(start, (start[0] + 20, start[1] + 30))
+    assert not keyed.session.visiting
+    assert keyed.session.history.depth == depth + 1
+    assert np.abs(keyed.session.state.positions - seen).max() < 60, "it went on from there"
+    keyed.key(imgui.Key.k)
+    assert times(keyed) == (0.0, 0.5, 1.0)
+    assert keyed.session.present.animation.keys[1].positions is keyed.session.state.positions
+    keyed.editor.undo()
+    keyed.editor.undo()
+    assert keyed.session.present is before
+    *_, last = replay(keyed.session.recording, keyed.session.drawing)
+    np.testing.assert_array_equal(last.state.positions, keyed.session.present.positions)
+
+
+def test_keyframes_are_dragged_copied_and_stretched(keyed):
+    keyed.drag(on_track(keyed, 1.0), on_track(keyed, 1.3))
+    assert times(keyed) == pytest.approx((0.0, 1.3))
+    keyed.drag(on_track(keyed, 1.3), on_track(keyed, 0.6), held=imgui.Key.mod_ctrl)
+    assert times(keyed) == pytest.approx((0.0, 0.6, 1.3))
+    keyed.drag(on_track(keyed, 1.3), on_track(keyed, 1.95), held=imgui.Key.mod_alt)
+    assert times(keyed) == pytest.approx((0.0, 0.9, 1.95))
+    assert keyed.session.history.labels[-3:] == [
+        "Move keyframe",
+        "Duplicate keyframe",
+        "Move 3 keyframes",
+    ]
+    for expected in ((0.0, 0.6, 1.3), (0.0, 1.3), (0.0, 1.0)):
+        keyed.editor.undo()
+        assert times(keyed) == pytest.approx(expected)
+
+
+def test_several_are_chosen_with_shift_and_moved_together(keyed):
+    keyed.space.key_player.put(0.5)
+    keyed.click(on_track(keyed, 0.5))
+    keyed.click(on_track(keyed, 1.0), shift=True)
+    keyed.drag(on_track(keyed, 0.5), on_track(keyed, 0.7))
+    assert times(keyed) == pytest.approx((0.0, 0.7, 1.2))
+    keyed.key(imgui.Key.mod_shift | imgui.Key.k)
+    assert times(keyed) == (0.0,)
+
+
+def test_escape_takes_a_drag_of_keyframes_back(keyed):
+    before, start, end = keyed.session.present, on_track(keyed, 1.0), on_track(keyed, 1.5)
+
+    def drag(hand):
+        keyed.begin_drag(hand, start)
+        hand.mouse_move_to_pos(imgui.ImVec2(*end))
+        assert keyed.space.key_player.held
+        hand.key_press(imgui.Key.escape)
+        hand.mouse_move_to_pos(imgui.ImVec2(*start))
+        hand.mouse_up(0)
+
+    keyed.do(drag)
+    assert keyed.session.present is before
+
+
+def test_a_double_click_adds_and_delete_is_for_keyframes_where_no_pin_is_selected(keyed):
+    def click_twice(hand):
+        hand.mouse_move_to_pos(imgui.ImVec2(*place))
+        hand.mouse_double_click(0)
+
+    place = on_track(keyed, 0.5)
+    keyed.do(click_twice)
+    assert times(keyed) == (0.0, 0.5, 1.0)
+    assert not keyed.editor.selection
+    keyed.key(imgui.Key.delete)
+    assert times(keyed) == (0.0, 1.0)
+    assert len(keyed.pins) == 3
+
+
+def test_the_range_is_cut_by_its_marks(keyed):
+    keyed.drag(on_track(keyed, 1.0, y=44), on_track(keyed, 0.8, y=44))
+    assert keyed.space.key_player.range == pytest.approx((0.0, 0.8))
+
+
+def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
+    def choose(hand):
+        hand.mouse_move_to_pos(imgui.ImVec2(*place))
+        hand.mouse_click(1)
+        hand.item_click("//$FOCUSED/Hold, then jump")
+
+    place = on_track(keyed, 0.0)
+    keyed.do(choose)
+    assert keyed.session.present.animation.keys[0].ease == "hold"
+    keyed.space.key_player.scrub(0.9)
+    keyed.settle()
+    np.testing.assert_array_equal(
+        keyed.session.state.positions, keyed.session.present.animation.keys[0].positions
+    )
+
+
+def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
+    for name in ("Up", "Down"):
+        keyed.editor.keep_pose(name)
+
+    keyed.space.key_player.set_time(1.0, 0.5)
+    keyed.settle()
+    keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Up", "//Timeline/##keys"))
+    assert times(keyed) == (0.0, 0.5, 1.0)
+    kept = keyed.session.present.poses[0].positions
+    np.testing.assert_array_equal(keyed.session.present.animation.keys[-1].positions, kept)
+    keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Down", "//Panel/pose Up"))
+    assert [pose.name for pose in keyed.session.present.poses] == ["Down", "Up"]
+
+
+def test_a_pose_is_renamed_with_f2(keyed):
+    keyed.editor.keep_pose("Up")
+    keyed.settle()
+
+    def rename(hand):
+        hand.mouse_move("//Panel/pose Up")
+        hand.key_press(imgui.Key.f2)
+        hand.key_chars_replace_enter("Wave")
+
+    keyed.do(rename)
+    assert [pose.name for pose in keyed.session.present.poses] == ["Wave"]
+    assert keyed.session.history.labels[-1] == "Rename Up"
+
+
+def test_a_pose_is_renamed_with_a_double_click(keyed):
+    keyed.editor.keep_pose("Up")
+    keyed.settle()
+
+    def rename(hand):
+        hand.mouse_move("//Panel/pose Up")
+        picture = hand.item_info("//Panel/pose Up").rect_full
+        hand.mouse_move_to_pos(imgui.ImVec2(picture.min.x + 8, picture.max.y + 12))
+        hand.mouse_double_click(0)
+        hand.yield_(5)
+        hand.key_chars_replace_enter("Wave")
+
+    keyed.do(rename)
+    assert [pose.name for pose in keyed.session.present.poses] == ["Wave"]
+    assert keyed.space.renaming is None
+
+
+def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):
+    player = keyed.space.key_player
+    player.scrub(0.5)
+    plain = keyed.screenshot().astype(int)
+    player.onion.shown = True
+    skinned = keyed.screenshot().astype(int)
+    left, top, right, bottom = (round(each) for each in keyed.editor.canvas)
+    differs = (skinned - plain)[top:bottom, left:right]
+    redder = differs[..., 0] - differs[..., 2]
+    assert (redder > 20).sum() > 200, "orange, after"
+    assert (redder < -20).sum() > 200, "blue, before"
+    player.scrub(0.0)
+    assert [len(each) for each in player.neighbors()] == [0, 1]
+    player.onion.of, player.onion.count = "frames", 3
+    assert [len(each) for each in player.neighbors()] == [0, 3]
+    player.play()
+    assert player.neighbors() == ([], [])
+
+
+def test_playing_moves_on_with_the_clock_and_loops(keyed, monkeypatch):
+    player, now = keyed.space.key_player, [100.0]
+    monkeypatch.setattr(player, "_clock", lambda: now[0])
+    player.play()
+    for moment in (0.25, 0.5, 0.75):
+        now[0] += 0.25
+        keyed.frame()
+        assert player.at == pytest.approx(moment)
+    now[0] += 0.5
+    keyed.frame()
+    assert player.at == pytest.approx(0.25)
+    player.play()
+    assert not player.playing
+
+
+def test_keyframes_are_saved_and_opened(keyed, tmp_path):
+    keyed.space.key_player.scrub(0.3)
+    keyed.settle()
+    keyed.space._write(tmp_path / "a.akap", None)
+    assert not keyed.space.error
+    again = load(tmp_path / "a.akap")
+    assert [key.time for key in again.state.animation.keys] == [0.0, 1.0]
+    assert save(again, tmp_path / "b.akap").path is not None
+    assert (tmp_path / "a.akap").read_bytes() == (tmp_path / "b.akap").read_bytes()
+    np.testing.assert_array_equal(again.state.positions, keyed.session.present.positions)
+    keyed.space.show_in_timeline("session")
+    keyed.space.show_timeline = False
+    keyed.space.show(again)
+    assert keyed.space.timeline == "keyframes"
+    assert keyed.space.show_timeline
+
+
+def test_the_wheel_zooms_in_on_a_time_and_keyframes_are_taken_there(keyed):
+    player = keyed.space.key_player
+    place = on_track(keyed, 1.0)
+    keyed.wheel(place, 4)
+    assert 0 < player.view.start < 1.0 < player.view.start + player.view.seconds < 2.0
+    assert np.abs(np.subtract(on_track(keyed, 1.0), place)).max() <= 1
+    keyed.drag(place, on_track(keyed, 0.85))
+    assert times(keyed) == (0.0, 0.85)
+    keyed.wheel(place, -20)
+    assert (player.view.start, player.view.seconds) == (0.0, 2.0)
+
+
+def test_looping_is_a_step_of_undo(keyed):
+    keyed.do(lambda hand: hand.item_click(f"//Timeline/{icons.ICON_FA_REPEAT}##loop"))
+    assert not keyed.session.present.animation.loop
+    keyed.editor.undo()
+    assert keyed.space.key_player.loop
+
+
+def test_without_the_timeline_the_present_is_seen(keyed):
+    keyed.space.key_player.scrub(0.5)
+    keyed.settle()
+    assert keyed.session.visiting
+    keyed.key(imgui.Key.mod_shift | imgui.Key.t)
+    assert not keyed.session.visiting
+    keyed.key(imgui.Key.mod_shift | imgui.Key.t)
+    assert not keyed.session.visiting

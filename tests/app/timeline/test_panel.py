@@ -1,0 +1,125 @@
+"""The timeline and the poses, by mouse."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from imgui_bundle import imgui
+from PIL import Image
+
+from akap_editor.app.dialogs import animating
+from akap_editor.editor.session.replay import replay
+
+
+@pytest.fixture
+def bent(pinned):
+    """The timeline is shown, and a drag was made."""
+    pinned.space.show_timeline = True
+    pinned.settle()
+    start = pinned.screen(pinned.pin_place(3))
+    pinned.drag(start, (start[0] - 20, start[1] - 100))
+    return pinned
+
+
+def on_track(ui, share, down=0.5):
+    """A place on the track of the time line, so far down from its top."""
+    places = {}
+
+    def find(hand):
+        info = hand.item_info("//Timeline/##track")
+        places["rect"] = info.rect_full
+
+    ui.do(find)
+    rect = places["rect"]
+    return round(rect.min.x + share * (rect.max.x - rect.min.x)), round(
+        rect.min.y + down * (rect.max.y - rect.min.y)
+    )
+
+
+def test_a_drag_on_the_track_goes_back_and_forth(bent):
+    now = bent.session.state
+    rest = bent.session.drawing.mesh.vertices
+    bent.drag(on_track(bent, 0.99), on_track(bent, 0.02))
+    np.testing.assert_array_equal(bent.session.state.positions, rest)
+    assert bent.session.visiting
+    bent.drag(on_track(bent, 0.5), on_track(bent, 1.0))
+    assert bent.session.state is now
+
+
+def test_the_head_is_taken_at_the_end_and_the_mark_below_it(bent):
+    player = bent.space.player
+    bent.drag(on_track(bent, 0.99), on_track(bent, 0.5))
+    assert player.at == pytest.approx(0.5 * player.duration, abs=0.05)
+    assert player.cut is None
+    bent.drag(on_track(bent, 0.995, 0.85), on_track(bent, 0.7, 0.85))
+    assert player.range == pytest.approx((0.0, 0.7 * player.duration), abs=0.05)
+
+
+def test_the_wheel_shows_a_part_of_the_time_where_the_head_goes_slower(bent):
+    player = bent.space.player
+    player.shots = [replace(shot, time=float(number)) for number, shot in enumerate(player.shots)]
+    bent.wheel(on_track(bent, 0.5), 5)
+    start, seconds = player.view.start, player.view.seconds
+    assert 0 < start < start + seconds < player.duration
+    bent.drag(on_track(bent, 0.5), on_track(bent, 0.4))
+    assert start < player.at < start + seconds
+    assert player.at == pytest.approx(start + 0.4 * seconds, abs=0.02 * seconds)
+    player.scrub(0.0)
+    assert player.view.start == 0.0
+    bent.wheel(on_track(bent, 0.5), -40)
+    assert not player.view.zoomed
+
+
+def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(bent):
+    player = bent.space.player
+    player.scrub(0.5 * player.duration)
+    bent.settle()
+    here = player.shot(player.at).time
+    start = bent.screen(bent.pin_place(3))
+    bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
+    assert bent.session.history.labels[-2:] == ["Go back in time", "Bend"]
+    assert player.cut is not None
+    assert player.cut[0] == pytest.approx(here)
+    assert player.cut[0] < player.cut[1] <= player.duration
+
+
+def test_a_drag_on_the_canvas_goes_on_from_there(bent):
+    bent.space.player.scrub(0.0)
+    bent.settle()
+    start = bent.screen(bent.pin_place(3))
+    bent.drag(start, (start[0] - 20, start[1] + 60))
+    assert not bent.session.visiting
+    *_, last = replay(bent.session.recording, bent.session.drawing)
+    np.testing.assert_array_equal(last.state.positions, bent.session.state.positions)
+    assert bent.session.history.labels[-2:] == ["Go back in time", "Bend"]
+
+
+def test_control_and_drag_records_that_gesture_only(bent):
+    before = bent.space.player.duration
+    start = bent.screen(bent.pin_place(3))
+    bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
+    assert bent.space.player.cut is not None
+    start, end = bent.space.player.cut
+    assert before <= start < end <= bent.space.player.duration
+    assert bent.space.player.taking is None
+
+
+def test_the_range_is_exported(bent, tmp_path):
+    player = bent.space.player
+    player.cut_to(0.0, min(0.5, player.duration))
+    animating.export(bent.space, tmp_path / "wave.webp")
+    bent.settle()
+    assert bent.space.error == ""
+    with Image.open(tmp_path / "wave.webp") as opened:
+        assert opened.n_frames >= 1
+    animating.export(bent.space, tmp_path / "wave.avi")
+    bent.settle()
+    assert ".avi" in bent.space.error
+
+
+def test_poses_are_kept_and_applied_with_a_click(bent):
+    bent.editor.keep_pose("Up")
+    bent.editor.reset_pose()
+    bent.panel("pose Up")
+    np.testing.assert_array_equal(bent.session.state.positions, bent.session.state.poses[0].positions)
+    assert bent.session.history.labels[-1] == "Apply Up"

@@ -1,0 +1,279 @@
+"""The paper's deformer as a whole: one step against the equations, and what many steps come to."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from akap_editor.deform.akap.deformer import AkapDeformer
+from akap_editor.errors import InputError, SolverError
+from akap_editor.geometry.distortion import distortion
+from akap_editor.geometry.mesh import MeshPoints, TriMesh
+from akap_editor.geometry.operators import killing_energy
+from akap_editor.meshing.outline import outlines
+from akap_editor.meshing.triangulate import triangulate
+from akap_editor.resources import bundled_drawings
+
+DRAWINGS = {path.stem: path for path in bundled_drawings()}
+WHOLE = float("inf")  # max_step: one field for the whole way
+
+
+def deformer_with(mesh, points, **settings):
+    deformer = AkapDeformer(mesh, **settings)
+    deformer.set_pins(points)
+    return deformer
+
+
+def bent(mesh):
+    x, y = mesh.vertices.T
+    return np.stack([x + 8 * np.sin(y / 40), 1.1 * y - 6 * np.cos(x / 50)], axis=1)
+
+
+@pytest.mark.parametrize("trajectory", ["spiral", "linear"])
+@pytest.mark.parametrize("dirichlet", [True, False])
+def test_step_without_memory_is_that_of_the_paper(mesh, shapes, dense, dirichlet, trajectory):
+    points, pose = shapes.random_pins(mesh, 1), bent(mesh)
+    velocities = np.random.default_rng(1).normal(
+        scale=1e-3, size=(len(points), 2)
+    )  # too slow to be corrected
+    settings = {"dirichlet": dirichlet, "trajectory": trajectory, "max_step": WHOLE, "exact": True}
+    deformer = deformer_with(mesh, points, **settings)
+    result = deformer.step(pose, mesh.evaluate(points, pose) + velocities)
+    field = dense.smooth_field(mesh, pose, points, velocities, 100.0)
+    if dirichlet:
+        field = dense.dirichlet_field(mesh, pose, field)
+    moved = dense.spiral_flow(mesh, pose, field) if trajectory == "spiral" else pose + field
+    assert (result.report.substeps, result.report.blocked) == (1, False)
+    assert np.abs(result.field - field).max() < 1e-8 * np.abs(field).max()
+    assert np.abs(result.positions - moved).max() < 1e-8 * np.abs(field).max()
+    assert np.abs(deformer.vector_field(pose, velocities) - field).max() < 1e-8 * np.abs(field).max()
+
+
+def test_long_way_is_cut_into_equal_substeps(mesh, shapes):
+    points = shapes.random_pins(mesh, 2)
+    start = mesh.evaluate(points, mesh.vertices)
+    goals = start + np.array([7.0, -3.0])
+    length = np.hypot(7.0, 3.0) / 3.5 / np.sqrt(mesh.rest_areas.sum())
+    result = deformer_with(mesh, points, max_step=length).step(mesh.vertices, goals)
+    assert result.report.substeps == 4
+    single, pose = deformer_with(mesh, points, max_step=WHOLE), mesh.vertices
+    for index in range(1, 5):
+        pose = single.step(pose, start + index / 4 * (goals - start)).positions
+    assert np.abs(result.positions - pose).max() < 1e-9
+
+
+def test_report(mesh, shapes):
+    points = shapes.random_pins(mesh, 3)
+    offsets = 0.1 * np.random.default_rng(3).normal(size=(len(points), 2))
+    goals = mesh.evaluate(points, mesh.vertices) + offsets
+    result = deformer_with(mesh, points).step(mesh.vertices, goals)
+    off = mesh.evaluate(points, result.positions) - goals
+    report = result.report
+    assert report.pin_error == pytest.approx(np.hypot(*off.T).max(), rel=1e-9)
+    assert report.flipped == distortion(mesh, result.positions).flipped
+    assert report.substeps == 1
+    assert report.energy == pytest.approx(killing_energy(mesh.vertices, mesh.faces, result.field), abs=1e-9)
+    assert report.seconds > 0
+
+
+def turned(points, angle):
+    center = points.mean(axis=0)
+    cos, sin = np.cos(angle), np.sin(angle)
+    return (points - center) @ [[cos, sin], [-sin, cos]] + center
+
+
+@pytest.mark.parametrize("memory", [0.0, 1.0])
+def test_pins_turned_together_turn_the_drawing(shapes, memory):
+    """By targets, not velocities: exact only in the limit of small steps."""
+    mesh = shapes.SHAPES["bar"]
+    points = shapes.random_pins(mesh, 4, 3)
+    deformer, pose = deformer_with(mesh, points, memory=memory), mesh.vertices
+    for angle in np.linspace(0, np.pi / 2, 46)[1:]:
+        pose = deformer.step(pose, turned(mesh.evaluate(points, mesh.vertices), angle)).positions
+    quality = distortion(mesh, pose)
+    assert quality.area == pytest.approx(2, abs=1e-3)
+    assert quality.angle == pytest.approx(2, abs=1e-3)
+
+
+def settle(deformer, pose, goals, steps=40):
+    """Step until nothing moves by more than a thousandth of a pixel."""
+    for _ in range(steps):
+        result = deformer.step(pose, goals)
+        still = np.abs(result.positions - pose).max() < 1e-3
+        pose = result.positions
+        if still:
+            break
+    return result
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("dirichlet", [True, False])
+def test_pins_arrive(mesh, shapes, memory, dirichlet):
+    points = shapes.random_pins(mesh, 5)
+    goals = mesh.evaluate(points, bent(mesh)) + np.array([12.0, -20.0])
+    result = settle(deformer_with(mesh, points, memory=memory, dirichlet=dirichlet), mesh.vertices, goals)
+    assert result.report.pin_error < 0.25
+    assert result.report.flipped == 0
+
+
+def bar_ends(mesh, shapes):
+    """Pins on the vertices of both ends of the bar; those of the right end come last."""
+    x = mesh.vertices[:, 0]
+    left, right = np.flatnonzero(x == x.min()), np.flatnonzero(x == x.max())
+    return shapes.vertex_pins(mesh, np.concatenate([left, right])), len(right)
+
+
+def bend_and_back(mesh, shapes, memory):
+    """The bar after its right end was turned by 90° about its middle, and after it was turned back."""
+    points, count = bar_ends(mesh, shapes)
+    deformer = deformer_with(mesh, points, memory=memory)
+    rest = mesh.evaluate(points, mesh.vertices)
+    center = mesh.vertices.mean(axis=0)
+    poses, pose = [], mesh.vertices
+    angles = np.linspace(0, np.pi / 2, 31)
+    for way in (angles[1:], angles[-2::-1]):
+        for angle in way:
+            goals = rest.copy()
+            turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+            goals[-count:] = (rest[-count:] - center) @ turn + center
+            pose = deformer.step(pose, goals).positions
+        pose = settle(deformer, pose, goals, 300).positions
+        poses.append(pose)
+    return poses
+
+
+def test_memory_brings_the_bar_back_to_rest(shapes):
+    mesh = shapes.SHAPES["bar"]
+    there, back = bend_and_back(mesh, shapes, 1.0)
+    assert distortion(mesh, there).flipped == 0
+    assert np.abs(there - mesh.vertices).max() > 100
+    assert np.abs(back - mesh.vertices).max() < 0.01
+
+
+def test_without_memory_the_way_leaves_a_trace(shapes):
+    """Section 3.2 says so; memory leaves less than a tenth of it."""
+    mesh = shapes.SHAPES["bar"]
+    _, back = bend_and_back(mesh, shapes, 0.0)
+    assert np.abs(back - mesh.vertices).max() > 0.1
+
+
+def test_memory_lowers_distortion(shapes):
+    mesh = shapes.SHAPES["bar"]
+    plain, kept = (distortion(mesh, bend_and_back(mesh, shapes, memory)[0]) for memory in (0.0, 1.0))
+    assert kept.area < plain.area
+    assert kept.angle < plain.angle
+
+
+def wild_drag(mesh, points, memory, seed, moves=2):
+    """Targets thrown about by the drawing's own size."""
+    rng = np.random.default_rng(seed)
+    size = np.sqrt(mesh.rest_areas.sum())
+    deformer, pose = deformer_with(mesh, points, memory=memory, max_step=0.05), mesh.vertices
+    for _ in range(moves):
+        goals = mesh.evaluate(points, mesh.vertices) + rng.normal(scale=size, size=(len(points), 2))
+        result = deformer.step(pose, goals)
+        pose = result.positions
+        assert np.isfinite(pose).all()
+        assert result.report.flipped == 0
+        assert distortion(mesh, pose).flipped == 0
+
+
+@pytest.mark.parametrize("memory", [0.0, 1.0])
+def test_no_face_flips_however_wild_the_drag(mesh, shapes, memory):
+    wild_drag(mesh, shapes.random_pins(mesh, 2), memory, 2)
+
+
+@pytest.mark.parametrize("memory", [0.0, 1.0])
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_no_face_of_a_bundled_drawing_flips(shapes, name, memory):
+    mesh = triangulate(outlines(np.array(Image.open(DRAWINGS[name]).convert("RGBA"))[..., 3]), 500)
+    wild_drag(mesh, shapes.random_pins(mesh, 1), memory, 1, moves=1)
+
+
+@pytest.mark.parametrize("memory", [0.0, 1.0])
+def test_pins_brought_to_one_place_stay_there(shapes, memory):
+    """The bar becomes a ring; about the place where its pins meet, it could turn freely."""
+    mesh = shapes.SHAPES["bar"]
+    middles = [np.argmin(np.abs(mesh.vertices - end).sum(axis=1)) for end in ([0, 30], [300, 30])]
+    deformer = deformer_with(mesh, shapes.vertex_pins(mesh, np.array(middles)), memory=memory)
+    goals = np.array([[150.0, 100.0]] * 2)
+    pose = deformer.step(mesh.vertices, goals).positions
+    for _ in range(60):
+        result = deformer.step(pose, goals)
+        change, pose = np.abs(result.positions - pose).max(), result.positions
+    assert change < 1e-3
+    assert result.report.pin_error < 0.01
+    apart = deformer.step(pose, goals + np.array([[-100.0, 0.0], [100.0, 0.0]]))
+    assert apart.report.pin_error < 0.25
+
+
+def test_pose_that_is_flipped_already_can_be_dragged(shapes):
+    """Another method, or a file, may leave such a pose."""
+    mesh = shapes.SHAPES["square"]
+    inner = int(np.setdiff1d(np.arange(len(mesh.vertices)), mesh.boundary_vertices)[5])
+    pose = mesh.vertices.copy()
+    pose[inner] += [45.0, 0.0]
+    assert distortion(mesh, pose).flipped
+    points = shapes.random_pins(mesh, 1)
+    goals = mesh.evaluate(points, pose) + np.array([30.0, 10.0])
+    for memory in (0.0, 1.0):
+        assert deformer_with(mesh, points, memory=memory).step(pose, goals).report.pin_error < 0.25
+
+
+def test_single_vertex_of_an_interior_pin_gets_no_singularity(shapes):
+    """Fig. 3: the first field alone dents the drawing at the pin, the second solve does not."""
+    mesh = shapes.SHAPES["disc 2"]
+    inner = np.setdiff1d(np.arange(len(mesh.vertices)), mesh.boundary_vertices)[[3, 60]]
+    points = shapes.vertex_pins(mesh, inner)
+    velocities = [[4.0, 0.0], [-4.0, 0.0]]
+    fields = deformer_with(mesh, points).vector_fields(mesh.vertices, velocities)
+    worst = [distortion(mesh, mesh.vertices + field).face_angle.max() for field in fields]
+    assert worst[0] < worst[1]
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"),
+    [
+        ("memory", -0.1),
+        ("memory", 1.1),
+        ("memory", float("nan")),
+        ("memory", "all"),
+        ("memory", None),
+        ("trajectory", "cubic"),
+        ("trajectory", None),
+        ("pin_weight", 0.0),
+        ("pin_weight", -1.0),
+        ("pin_weight", float("inf")),
+        ("pin_weight", "strong"),
+        ("max_step", 0.0),
+        ("max_step", float("nan")),
+        ("max_step", [1]),
+    ],
+)
+def test_settings_out_of_range_are_refused(shapes, setting, value):
+    with pytest.raises(InputError, match=f"^{setting}: expected .*, got "):
+        AkapDeformer(shapes.SHAPES["triangle"], **{setting: value})
+
+
+def test_collapsed_pose_is_a_solver_error(mesh, shapes):
+    points = shapes.random_pins(mesh, 1)
+    with pytest.raises(SolverError), np.errstate(all="ignore"):
+        deformer_with(mesh, points).step(np.zeros_like(mesh.vertices), np.zeros((len(points), 2)) + 1.0)
+
+
+def test_velocities_of_another_number_of_pins_are_refused(mesh, shapes):
+    deformer = deformer_with(mesh, MeshPoints([0], [[1.0, 0.0, 0.0]]))
+    with pytest.raises(InputError, match=r"velocities: expected shape \(1, 2\), got \(2, 2\)"):
+        deformer.vector_field(mesh.vertices, [[0.0, 0.0], [1.0, 1.0]])
+
+
+def test_denser_mesh_moves_nearly_alike(shapes):
+    """Energies are weighted by area, so that λ means the same on a finer mesh."""
+    coarse = shapes.SHAPES["bar"]
+    fine = TriMesh(*shapes.cut_in_four(coarse.vertices, coarse.faces))
+    where = np.array([[5.0, 30.0], [155.0, 20.0], [290.0, 35.0]])
+    goals = where + np.array([[0.0, 0.0], [0.0, 15.0], [0.0, 0.0]])
+    poses = []
+    for mesh in (coarse, fine):
+        pose = deformer_with(mesh, mesh.locate(where)).step(mesh.vertices, goals).positions
+        poses.append(mesh.evaluate(mesh.locate(coarse.vertices), pose))
+    assert np.abs(poses[0] - poses[1]).max() < 1.0

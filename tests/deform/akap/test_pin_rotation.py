@@ -1,0 +1,202 @@
+"""Pins that hold an angle, and parts that bend less."""
+
+import numpy as np
+import pytest
+
+from akap_editor.deform.akap.deformer import AkapDeformer
+from akap_editor.deform.akap.pin_rotation import Turning
+from akap_editor.errors import InputError
+from akap_editor.geometry.distortion import distortion
+from akap_editor.geometry.killing_matrix import KillingMatrix
+from akap_editor.geometry.mesh import MeshPoints
+from akap_editor.geometry.operators import to_complex, to_points
+
+FREE = np.nan
+MEMORIES = pytest.mark.parametrize("memory", [0.0, 1.0])
+
+
+def deformer_with(mesh, points, **settings):
+    deformer = AkapDeformer(mesh, **settings)
+    deformer.set_pins(points)
+    return deformer
+
+
+def turning_of(mesh, points):
+    return Turning(mesh, points, np.ones(len(points), dtype=bool))
+
+
+# -- the terms -----------------------------------------------------------------------------------------------
+
+
+def test_turning_fields_cost_what_the_matrix_says(mesh, shapes):
+    turning = turning_of(mesh, shapes.random_pins(mesh, 1, 2))
+    pose = mesh.vertices @ [[1.1, 0.2], [-0.1, 0.9]]
+    turning.place(pose)
+    killing = KillingMatrix(mesh)
+    there = to_complex(pose)
+    difference = killing.nonzeros(there, spin=turning.spin) - killing.nonzeros(there)
+    matrix = np.zeros((2 * len(pose),) * 2)
+    matrix[killing.blocks.rows, killing.blocks.columns] = difference
+    matrix += np.tril(matrix, -1).T
+    field = np.random.default_rng(1).normal(size=pose.shape)
+    assert turning.energy(to_complex(field)) == pytest.approx(
+        field.ravel() @ matrix @ field.ravel(), rel=1e-9
+    )
+
+
+def test_rates_of_a_rotation(mesh, shapes):
+    """A field that turns by ω costs c A ω², and pulls on what turns as it does."""
+    turning = turning_of(mesh, shapes.random_pins(mesh, 1, 2))
+    field = 0.3j * (to_complex(mesh.vertices) - 7.0)
+    turning.place(mesh.vertices)
+    area = mesh.rest_areas[turning.faces].sum()
+    assert turning.energy(field) == pytest.approx(1e4 * area * 0.09, rel=1e-9)
+    pull = turning.pull(np.full(len(turning.faces), 0.5))
+    assert np.vdot(pull, field).real == pytest.approx(1e4 * area * 0.3 * 0.5, rel=1e-9)
+
+
+def test_misfit_and_its_gradient(mesh, shapes):
+    turning = turning_of(mesh, shapes.random_pins(mesh, 2, 2))
+    pose = to_complex(mesh.vertices @ [[1.1, 0.2], [-0.1, 0.9]])
+    goal = np.exp(0.4j)
+    gradient = 2 * turning.misfit_gradient(turning.turns(pose) - goal)
+    change = to_complex(np.random.default_rng(3).normal(size=mesh.vertices.shape))
+    ahead, behind = (turning.misfit(turning.turns(pose + s * change) - goal) for s in (1e-4, -1e-4))
+    assert np.vdot(gradient, change).real == pytest.approx((ahead - behind) / 2e-4, rel=1e-6)
+
+
+@pytest.mark.parametrize("angle", [-3.0, -0.5, 0.0, 1.0, 3.1])
+def test_angles_are_those_of_the_surroundings(mesh, shapes, angle):
+    points = shapes.random_pins(mesh, 1, 2)
+    pose = to_points(np.exp(1j * angle) * to_complex(mesh.vertices))
+    assert deformer_with(mesh, points).angles(pose) == pytest.approx(np.full(len(points), angle))
+
+
+# -- steps ---------------------------------------------------------------------------------------------------
+
+
+@MEMORIES
+@pytest.mark.parametrize("dirichlet", [True, False])
+def test_part_with_one_pin_turns_with_it_as_a_whole(mesh, memory, dirichlet):
+    points = MeshPoints([len(mesh.faces) // 2], [[0.2, 0.3, 0.5]])
+    own = mesh.component == mesh.component[mesh.faces[points.faces[0], 0]]
+    deformer, pose = deformer_with(mesh, points, memory=memory, dirichlet=dirichlet), mesh.vertices
+    place = mesh.evaluate(points, pose)
+    for angle in np.linspace(0, 4.0, 30)[1:]:
+        pose = deformer.step(pose, place, [angle]).positions
+    center = to_complex(place)[0]
+    expected = center + np.exp(4j) * (to_complex(mesh.vertices) - center)
+    assert np.abs(to_complex(pose) - expected)[own].max() < 1e-6
+    assert pose[~own].tolist() == mesh.vertices[~own].tolist()
+
+
+@MEMORIES
+def test_pin_turns_to_its_angle_and_others_hold_still(shapes, memory):
+    mesh = shapes.SHAPES["bar"]
+    points = mesh.locate([[10.0, 30.0], [150.0, 30.0], [290.0, 30.0]])
+    places = mesh.evaluate(points, mesh.vertices)
+    deformer, pose = deformer_with(mesh, points, memory=memory), mesh.vertices
+    for angle in np.linspace(0, 0.8, 20)[1:].tolist() + [0.8] * 10:
+        result = deformer.step(pose, places, [FREE, angle, FREE])
+        pose = result.positions
+    assert deformer.angles(pose)[1] == pytest.approx(0.8, abs=0.02)
+    assert result.report.pin_error < 0.25
+    assert distortion(mesh, pose).flipped == 0
+    middle = mesh.evaluate(mesh.locate([[150.0, 24.0], [150.0, 36.0]]), pose)
+    slope = np.arctan2(*(middle[1] - middle[0])[::-1]) - np.pi / 2
+    assert slope == pytest.approx(0.8, abs=0.1)
+
+
+def test_pin_holds_its_angle_while_another_is_dragged(shapes):
+    """Without it the end of the bar would turn."""
+    mesh = shapes.SHAPES["bar"]
+    points = mesh.locate([[10.0, 30.0], [290.0, 30.0]])
+    places = mesh.evaluate(points, mesh.vertices)
+    ends = []
+    for held in (FREE, 0.0):
+        deformer, pose = deformer_with(mesh, points, memory=1.0), mesh.vertices
+        for y in np.linspace(0, 80, 30)[1:].tolist() + [80.0] * 20:
+            pose = deformer.step(pose, places + np.array([[0.0, 0.0], [-y / 4, y]]), [held, FREE]).positions
+        ends.append(abs(deformer.angles(pose)[0]))
+    assert ends[0] > 0.2
+    assert ends[1] < 0.05
+
+
+def test_angle_where_a_pin_is_moves_nothing(mesh, shapes):
+    points = shapes.random_pins(mesh, 3)
+    places = mesh.evaluate(points, mesh.vertices)
+    for memory in (0.0, 1.0):
+        result = deformer_with(mesh, points, memory=memory).step(mesh.vertices, places, np.zeros(len(points)))
+        assert np.abs(result.positions - mesh.vertices).max() < 1e-6
+
+
+def test_large_turn_is_cut_into_substeps(shapes):
+    mesh = shapes.SHAPES["square"]
+    points = mesh.locate([mesh.vertices.mean(axis=0)])
+    result = deformer_with(mesh, points).step(mesh.vertices, mesh.evaluate(points, mesh.vertices), [1.0])
+    assert result.report.substeps == 10
+    assert deformer_with(mesh, points).angles(result.positions)[0] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_all_free_is_no_angle_at_all(mesh, shapes):
+    points = shapes.random_pins(mesh, 3)
+    goals = mesh.evaluate(points, mesh.vertices) + 3.0
+    expected = deformer_with(mesh, points).step(mesh.vertices, goals).positions
+    used = deformer_with(mesh, points)
+    used.step(mesh.vertices, goals, np.zeros(len(points)))  # angles of an earlier step leave no trace
+    found = used.step(mesh.vertices, goals, np.full(len(points), FREE)).positions
+    assert np.abs(found - expected).max() < 1e-5 * np.sqrt(mesh.rest_areas.sum())
+
+
+@pytest.mark.parametrize("angles", [[0.0, 1.0], [np.inf], ["left"], 1.0])
+def test_bad_angles_are_refused(shapes, angles):
+    mesh = shapes.SHAPES["triangle"]
+    deformer = deformer_with(mesh, MeshPoints([0], [[1.0, 0.0, 0.0]]))
+    with pytest.raises(InputError, match=r"^angles: expected 1 "):
+        deformer.step(mesh.vertices, [[0.0, 0.0]], angles)
+
+
+# -- stiffness -----------------------------------------------------------------------------------------------
+
+
+@MEMORIES
+def test_stiff_parts_bend_less(shapes, memory):
+    mesh = shapes.SHAPES["bar"]
+    points = mesh.locate([[10.0, 30.0], [290.0, 30.0]])
+    places = mesh.evaluate(points, mesh.vertices)
+    stiff = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] < 150
+    goals = places + np.array([[100.0, 0.0], [-100.0, 60.0]])
+    worst = []
+    for factor in (1.0, 1000.0):
+        deformer = deformer_with(mesh, points, memory=memory, stiffness=np.where(stiff, factor, 1.0))
+        pose = mesh.vertices
+        for share in np.linspace(0, 1, 30)[1:]:
+            pose = deformer.step(pose, places + share * (goals - places)).positions
+        quality = distortion(mesh, pose)
+        worst.append((quality.face_area + quality.face_angle - 4)[stiff].max())
+        assert quality.flipped == 0
+    assert worst[1] < 0.05 * worst[0]
+
+
+@MEMORIES
+def test_equal_stiffness_everywhere_changes_little(mesh, shapes, memory):
+    """Only against the pins, which are stiff themselves."""
+    points = shapes.random_pins(mesh, 2)
+    goals = mesh.evaluate(points, mesh.vertices) + np.random.default_rng(2).normal(
+        scale=2, size=(len(points), 2)
+    )
+    one, two = (
+        deformer_with(mesh, points, memory=memory, stiffness=np.full(len(mesh.faces), factor))
+        .step(mesh.vertices, goals)
+        .positions
+        for factor in (1.0, 2.0)
+    )
+    none = deformer_with(mesh, points, memory=memory).step(mesh.vertices, goals).positions
+    assert np.abs(one - none).max() < 1e-9
+    assert np.abs(two - none).max() < 0.2
+
+
+@pytest.mark.parametrize("stiffness", [[1.0, 1.0], [0.0], [-1.0], [np.nan], [1e9], "hard"])
+def test_bad_stiffness_is_refused(shapes, stiffness):
+    with pytest.raises(InputError, match=r"^stiffness: expected 1 numbers"):
+        AkapDeformer(shapes.SHAPES["triangle"], stiffness=stiffness)

@@ -1,0 +1,171 @@
+import numpy as np
+import pytest
+from scipy.sparse import coo_array
+
+from akap_editor.deform.akap import preconditioned_cholesky as reuse
+from akap_editor.deform.akap.deformer import AkapDeformer
+from akap_editor.deform.akap.preconditioned_cholesky import ReusedCholesky
+from akap_editor.deform.cholesky import SymmetricPattern
+from akap_editor.geometry.distortion import distortion
+from akap_editor.geometry.killing_matrix import KillingMatrix
+from akap_editor.geometry.operators import to_complex, to_points
+
+TOLERANCE = 1e-6
+
+
+class System:
+    """K + I of a mesh, which is positive definite without pins."""
+
+    def __init__(self, mesh):
+        self.mesh, self.size = mesh, 2 * len(mesh.vertices)
+        self.killing = KillingMatrix(mesh)
+        self.pattern = SymmetricPattern(self.killing.blocks.rows, self.killing.blocks.columns, self.size)
+
+    def nonzeros(self, positions):
+        return self.killing.nonzeros(to_complex(positions)) + (self.pattern.rows == self.pattern.columns)
+
+    def matrix(self, positions):
+        rows, columns = self.pattern.rows, self.pattern.columns
+        lower = coo_array((self.nonzeros(positions), (rows, columns)), shape=(self.size, self.size)).toarray()
+        return lower + lower.T - np.diag(lower.diagonal())
+
+
+def bent(mesh, angle):
+    """The mesh bent to an arc, and how far each vertex is turned by that."""
+    x, y = mesh.vertices.T
+    share = (x - x.min()) / np.ptp(x)
+    radius = np.ptp(x) / angle - (y - y.mean())
+    turn = angle * share
+    return np.stack([radius * np.sin(turn), -radius * np.cos(turn)], axis=1), np.exp(1j * turn)
+
+
+@pytest.fixture(scope="module")
+def system(shapes):
+    return System(shapes.SHAPES["bar"])
+
+
+def right_side(system, seed):
+    generator = np.random.default_rng(seed)
+    return to_complex(generator.normal(size=(system.size // 2, 2)))
+
+
+def solved(system, positions, right):
+    """By a dense matrix."""
+    return to_complex(np.linalg.solve(system.matrix(positions), to_points(right).ravel()).reshape(-1, 2))
+
+
+def prepared(system, exact=False):
+    """A solver with the factorization of the rest pose."""
+    solver = ReusedCholesky(system.pattern, exact)
+    ones = np.ones(system.size // 2, dtype=complex)
+    solver.prepare(system.nonzeros(system.mesh.vertices), ones)
+    return solver
+
+
+@pytest.mark.parametrize("like", ["", "a name"])
+@pytest.mark.parametrize("tolerance", [1e-3, TOLERANCE])
+def test_solutions_at_later_poses_are_as_near_as_asked_for(system, like, tolerance):
+    solver = prepared(system)
+    for seed, angle in enumerate([0.05, 0.1, 0.2, 0.4, 0.8]):
+        positions, frame = bent(system.mesh, angle)
+        solver.prepare(system.nonzeros(positions), frame)
+        right = right_side(system, seed)
+        off = solver.solve(right, tolerance, like) - solved(system, positions, right)
+        assert np.abs(off).max() < tolerance
+    assert solver.iterations > 5
+
+
+def test_a_turned_drawing_costs_one_iteration(system):
+    solver = prepared(system)
+    turn = np.exp(1.3j)
+    positions = to_points(turn * to_complex(system.mesh.vertices))
+    solver.prepare(system.nonzeros(positions), np.full(system.size // 2, turn))
+    solver.solve(right_side(system, 1), TOLERANCE)
+    assert solver.factorizations == 1
+    assert solver.iterations <= 2  # the second one finds that nothing is left
+
+
+def test_solutions_like_earlier_ones_cost_fewer_iterations(system, monkeypatch):
+    """Of a pull that turns with the drawing and changes its size, with the first factors throughout."""
+    monkeypatch.setattr(reuse, "_AFFORDED", 1000)
+    counts = []
+    for like in ("", "pull"):
+        solver = prepared(system)
+        for angle in np.linspace(0.1, 0.3, 11):
+            positions, frame = bent(system.mesh, angle)
+            solver.prepare(system.nonzeros(positions), frame)
+            right = (1 + angle) * frame * right_side(system, 3)
+            found = solver.solve(right, TOLERANCE, like)
+            assert np.abs(found - solved(system, positions, right)).max() < TOLERANCE
+        counts.append(solver.iterations)
+    assert counts[1] < 0.7 * counts[0]
+
+
+def test_a_pose_too_far_away_is_factorized(system):
+    solver = prepared(system)
+    positions = system.mesh.vertices * [1.0, 0.01]
+    solver.prepare(system.nonzeros(positions), np.ones(system.size // 2, dtype=complex))
+    right = right_side(system, 2)
+    found = solver.solve(right, TOLERANCE)
+    assert solver.factorizations == 2
+    assert np.abs(found - solved(system, positions, right)).max() < 1e-8
+
+
+def test_many_iterations_call_for_a_factorization(system):
+    """Not for each pose, but for one of several, and from then on there are few and no further ones."""
+    solver = prepared(system)
+    positions, frame = system.mesh.vertices * [1.3, 0.8], np.ones(system.size // 2, dtype=complex)
+    counts, factorizations = [], []
+    for seed in range(40):
+        before = solver.iterations
+        solver.prepare(system.nonzeros(positions), frame)
+        right = right_side(system, seed)
+        assert np.abs(solver.solve(right, TOLERANCE) - solved(system, positions, right)).max() < TOLERANCE
+        counts.append(solver.iterations - before)
+        factorizations.append(solver.factorizations)
+    assert factorizations[1] == 1
+    assert factorizations[-1] == 2
+    assert counts[0] > 5
+    assert max(counts[-10:]) <= 2
+
+
+def test_what_is_forgotten_is_factorized_again(system):
+    solver = prepared(system)
+    solver.forget()
+    solver.prepare(system.nonzeros(system.mesh.vertices), np.ones(system.size // 2, dtype=complex))
+    assert solver.factorizations == 2
+
+
+def test_exact_factorizes_every_matrix(system):
+    solver = prepared(system, exact=True)
+    for angle in (0.1, 0.2, 0.3):
+        positions, frame = bent(system.mesh, angle)
+        solver.prepare(system.nonzeros(positions), frame)
+        right = right_side(system, 4)
+        found, expected = solver.solve(right, 0.0), solved(system, positions, right)
+        assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+    assert solver.factorizations == 4
+
+
+@pytest.mark.parametrize("memory", [0.0, 1.0])
+def test_a_bend_is_the_same_with_few_factorizations_as_with_many(shapes, memory):
+    """Each step within a hundredth of a pixel of the exact one on a drawing of a million square pixels."""
+    mesh = shapes.SHAPES["bar"]
+    points = shapes.random_pins(mesh, 4, 3)
+    start = mesh.evaluate(points, mesh.vertices)
+    exact, reusing = (AkapDeformer(mesh, memory=memory, exact=on) for on in (True, False))
+    exact.set_pins(points)
+    reusing.set_pins(points)
+    visible = 0.01 * np.sqrt(mesh.rest_areas.sum()) / 1000
+    goal = start.copy()
+    pose = other = mesh.vertices
+    for share in np.linspace(0, 1, 31)[1:]:
+        goal[-1] = start[-1] + share * np.array([-0.2, 0.3]) * np.ptp(mesh.vertices, axis=0).max()
+        found = reusing.step(pose, goal).positions
+        assert np.abs(found - exact.step(pose, goal).positions).max() < visible
+        pose, other = found, exact.step(other, goal).positions
+    for _ in range(40):
+        pose, other = reusing.step(pose, goal).positions, exact.step(other, goal).positions
+    ours, theirs = distortion(mesh, pose), distortion(mesh, other)
+    assert ours.area == pytest.approx(theirs.area, abs=5e-5)
+    assert ours.angle == pytest.approx(theirs.angle, abs=5e-5)

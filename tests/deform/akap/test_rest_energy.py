@@ -1,0 +1,179 @@
+"""The energy that remembers the rest shape, and the descent on it."""
+
+import numpy as np
+import pytest
+from scipy.sparse import coo_array
+
+from akap_editor.deform.akap.rest_energy import SymmetricDirichlet, descend
+from akap_editor.geometry.killing_matrix import KillingMatrix, VertexBlocks
+from akap_editor.geometry.mesh import signed_areas
+from akap_editor.geometry.operators import to_complex, to_points
+
+
+class Energy:
+    """The energy by positions of the vertices instead of columns of J."""
+
+    def __init__(self, mesh):
+        self.of = SymmetricDirichlet(mesh)
+
+    def value(self, pose):
+        return self.of.value(self.of.columns(pose))
+
+    def gradient(self, pose):
+        return self.of.gradient(self.of.columns(pose))
+
+
+def noisy(mesh, seed, size=0.03):
+    """A pose near the rest pose, without flips: vertices moved by a share of the shortest edge."""
+    i, j = mesh.edges.T
+    shortest = np.linalg.norm(mesh.vertices[i] - mesh.vertices[j], axis=1).min()
+    noise = np.random.default_rng(seed).uniform(-1, 1, mesh.vertices.shape)
+    return to_complex(mesh.vertices + size * shortest * noise)
+
+
+@pytest.mark.parametrize("turn", [0.0, 2.0])
+def test_value_is_four_areas_at_rest_and_under_rigid_motion(mesh, turn):
+    energy = Energy(mesh)
+    pose = np.exp(1j * turn) * to_complex(mesh.vertices) + 30 - 5j
+    assert energy.value(pose) == pytest.approx(4 * mesh.rest_areas.sum(), rel=1e-12)
+
+
+@pytest.mark.parametrize(("a", "b"), [(2.0, 2.0), (0.5, 3.0)])
+def test_value_of_stretches(mesh, a, b):
+    pose = to_complex(mesh.vertices * [a, b])
+    density = a**2 + b**2 + a**-2 + b**-2
+    assert Energy(mesh).value(pose) == pytest.approx(density * mesh.rest_areas.sum(), rel=1e-12)
+
+
+def test_rest_is_the_minimum(mesh):
+    energy = Energy(mesh)
+    assert np.abs(energy.gradient(to_complex(mesh.vertices))).max() < 1e-9
+    for seed in range(5):
+        assert energy.value(noisy(mesh, seed)) > 4 * mesh.rest_areas.sum()
+
+
+def test_flipped_or_collapsed_faces_are_infinitely_bad(mesh):
+    energy = Energy(mesh)
+    assert energy.value(to_complex(mesh.vertices * [-1, 1])) == np.inf
+    assert energy.value(to_complex(mesh.vertices * [0, 1])) == np.inf
+
+
+def test_gradient_is_that_of_finite_differences(mesh):
+    energy = Energy(mesh)
+    pose = noisy(mesh, 1) * (1.2 - 0.4j)
+    gradient = energy.gradient(pose)
+    rng = np.random.default_rng(2)
+    for _ in range(3):
+        direction = to_complex(rng.normal(size=mesh.vertices.shape))
+        step = 1e-5
+        slope = (energy.value(pose + step * direction) - energy.value(pose - step * direction)) / (2 * step)
+        assert slope == pytest.approx((gradient.conj() * direction).real.sum(), rel=1e-5, abs=1e-4)
+
+
+def hessian(mesh, pose, convex=False):
+    """Twice what `half_hessian` gives, as a matrix (2n, 2n)."""
+    energy, blocks, size = SymmetricDirichlet(mesh), VertexBlocks(mesh), 2 * len(mesh.vertices)
+    nonzeros = 2 * energy.half_hessian(energy.columns(pose), convex, blocks)
+    lower = coo_array((nonzeros, (blocks.rows, blocks.columns)), shape=(size, size)).toarray()
+    return lower + np.tril(lower, -1).T
+
+
+# In faces that are larger than at rest the energy is convex anyway.
+@pytest.mark.parametrize(("size", "convex"), [(1.4, True), (1.4, False), (0.7, False)])
+def test_hessian_is_that_of_finite_differences(mesh, size, convex):
+    energy, pose = Energy(mesh), size * np.exp(0.5j) * noisy(mesh, 1)
+    matrix = hessian(mesh, pose, convex)
+    rng = np.random.default_rng(3)
+    for _ in range(3):
+        change = to_complex(rng.normal(size=mesh.vertices.shape))
+        step = 1e-5
+        ahead, behind = (energy.gradient(pose + s * change) for s in (step, -step))
+        product = to_complex((matrix @ to_points(change).ravel()).reshape(-1, 2))
+        assert np.abs(product - (ahead - behind) / (2 * step)).max() < 1e-5 * np.abs(product).max()
+
+
+def test_convex_hessian_is_nowhere_negative(mesh):
+    squeezed = to_complex(to_points(noisy(mesh, 2)) * [0.3, 0.6])
+    for pose in (squeezed, 1j * squeezed, to_complex(mesh.vertices)):
+        spectrum = np.linalg.eigvalsh(hessian(mesh, pose, convex=True))
+        assert spectrum[0] > -1e-9 * spectrum[-1]
+    assert np.linalg.eigvalsh(hessian(mesh, squeezed))[0] < 0
+
+
+def test_hessian_at_rest_is_twice_the_killing_matrix(mesh):
+    for turn in (1.0, np.exp(2j)):
+        pose = turn * to_complex(mesh.vertices)
+        killing = KillingMatrix(mesh)
+        lower = np.tril(hessian(mesh, pose))[killing.blocks.rows, killing.blocks.columns]
+        nonzeros = killing.nonzeros(pose)
+        assert np.abs(lower - 2 * nonzeros).max() < 1e-9 * np.abs(nonzeros).max()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_longest_change_is_that_to_the_first_flip(mesh, seed):
+    energy, pose = SymmetricDirichlet(mesh), noisy(mesh, seed, 0.1)
+    change = to_complex(np.random.default_rng(seed).normal(size=mesh.vertices.shape))
+    far = energy.longest(energy.columns(pose), energy.columns(change))
+    if far == np.inf:  # a single face may grow for ever
+        assert signed_areas(to_points(pose + 1e6 * change), mesh.faces).min() > 0
+        return
+    areas = [signed_areas(to_points(pose + t * far * change), mesh.faces) for t in (0.2, 0.6, 0.999, 1.001)]
+    assert [bool((area > 0).all()) for area in areas] == [True, True, True, False]
+
+
+def test_change_that_flips_nothing_may_go_on_for_ever(mesh):
+    energy, rest = SymmetricDirichlet(mesh), to_complex(mesh.vertices)
+    for change in (rest, 0 * rest, np.full_like(rest, 3 - 1j)):
+        assert energy.longest(energy.columns(rest), energy.columns(change)) > 1e12
+
+
+def parabola(start, least):
+    """A function of the distance from ``start`` towards 0, and its slope there."""
+    return lambda far: (start - far - least) ** 2, -2 * (start - least)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("length", [1.0, 0.3])
+def test_descent_never_raises_the_energy(mesh, seed, length):
+    energy = Energy(mesh)
+    pose = noisy(mesh, seed, 0.1)
+    before, gradient = energy.value(pose), energy.gradient(pose)
+    rng = np.random.default_rng(seed)
+    random = to_complex(rng.normal(size=mesh.vertices.shape))
+    for direction in (-gradient, -1e-9 * gradient, -1e9 * gradient, random, gradient, 0 * gradient):
+        slope = float(np.vdot(gradient, direction).real)
+        far = descend(lambda t, along=direction: energy.value(pose + t * along), before, slope, length)
+        assert 0 <= far <= length
+        assert energy.value(pose + far * direction) <= before
+    step = -1e-3 * gradient
+    far = descend(
+        lambda t: energy.value(pose + t * step), before, float(np.vdot(gradient, step).real), length
+    )
+    assert far > 0
+    assert energy.value(pose + far * step) < before
+
+
+@pytest.mark.parametrize("length", [2.5, 3.5, 15.0, 1e6])
+def test_descent_goes_to_the_minimum_of_a_parabola(length):
+    value, slope = parabola(3.0, 0.5)
+    assert descend(value, value(0.0), slope, length) == pytest.approx(2.5, rel=1e-9)
+
+
+def test_descent_down_a_cliff_keeps_the_best_try():
+    """Next to a face that is nearly flipped, every parabola asks for half of the way."""
+    far = descend(lambda t: 1e7 / (1e-4 + t) ** 2 + t, 1e15, -2e19, 1.0)
+    assert far > 0.2
+
+
+def test_descent_goes_no_farther_than_it_may():
+    value, slope = parabola(3.0, 0.5)
+    assert descend(value, value(0.0), slope, 1.25) == 1.25
+
+
+def test_direction_upwards_goes_nowhere():
+    assert descend(lambda far: (3 + far) ** 2, 9.0, 6.0, 1.0) == 0.0
+    assert descend(lambda _: 9.0, 9.0, 0.0, 1.0) == 0.0
+
+
+def test_result_has_one_point_for_each_vertex(mesh):
+    assert to_points(Energy(mesh).gradient(to_complex(mesh.vertices))).shape == mesh.vertices.shape

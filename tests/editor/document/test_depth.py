@@ -1,0 +1,179 @@
+"""Depths of pins: what passes in front, what a click takes, and that they are kept, undone and replayed."""
+
+import numpy as np
+import pytest
+
+from akap_editor.editor.document.depth import MOST, depth_at, face_order
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.editor.document.pin import Pin
+from akap_editor.editor.editor import Editor
+from akap_editor.editor.session.recording import parse_recording
+from akap_editor.editor.session.replay import replay
+from akap_editor.errors import InputError
+from akap_editor.geometry.mesh import signed_areas
+from akap_editor.io.akap.project import load, save
+from akap_editor.io.images import read_image
+from tests.support.editor_driver import bits
+
+HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
+
+
+def pins_at(mesh, *places):
+    """Pins at (x, y, depth)."""
+    points = mesh.locate([(x, y) for x, y, _ in places])
+    return tuple(
+        Pin(index, int(face), weights, (x, y), depth)
+        for index, (face, weights, (x, y, depth)) in enumerate(
+            zip(points.faces, points.weights, places, strict=True), start=1
+        )
+    )
+
+
+def rank(order):
+    result = np.empty(len(order), dtype=int)
+    result[order] = np.arange(len(order))
+    return result
+
+
+# -- order of faces ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("depths", [(), (0,), (0, 0), (3, 3)])
+def test_without_differences_the_order_is_that_of_the_mesh(drawing, depths):
+    places = [(*at, depth) for at, depth in zip((HEAD, END), depths, strict=False)]
+    assert face_order(drawing.mesh, pins_at(drawing.mesh, *places)) is None
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_faces_near_the_higher_pin_come_last(drawing, sign):
+    mesh = drawing.mesh
+    pins = pins_at(mesh, (*HEAD, 0), (*END, sign))
+    order = face_order(mesh, pins)
+    assert sorted(order) == list(range(len(mesh.faces)))
+    at_head, at_end = (rank(order)[pin.face] for pin in pins)
+    assert (at_end > at_head) == (sign > 0)
+    x = mesh.vertices[mesh.faces].mean(axis=1)[:, 0]
+    low, high = rank(order)[x < 35], rank(order)[x > 95]
+    assert high.min() > low.max() if sign > 0 else high.max() < low.min()
+
+
+def test_faces_of_one_level_keep_the_order_of_the_mesh(drawing):
+    mesh = drawing.mesh
+    order = face_order(mesh, pins_at(mesh, (*HEAD, 0), (*END, 1)))
+    runs = np.split(order, np.flatnonzero(np.diff(order) < 0) + 1)
+    assert len(runs) <= 5, "levels of a quarter from 0 to 1"
+
+
+def test_the_order_depends_on_differences_only_and_not_on_targets(drawing):
+    mesh = drawing.mesh
+    first = pins_at(mesh, (*HEAD, 0), (*NECK, 2), (*END, -1))
+    moved = tuple(Pin(pin.id, pin.face, pin.weights, pin.target + 9, pin.depth) for pin in first)
+    shifted = tuple(Pin(pin.id, pin.face, pin.weights, pin.target, pin.depth + 5) for pin in first)
+    assert face_order(mesh, moved) is face_order(mesh, first)
+    np.testing.assert_array_equal(face_order(mesh, shifted), face_order(mesh, first))
+
+
+def test_depth_is_exact_at_pins_and_blended_between_them(drawing):
+    mesh = drawing.mesh
+    pins = pins_at(mesh, (*HEAD, -4), (*END, 4))
+    points = [mesh.locate([at]) for at in (HEAD, END, NECK)]
+    assert depth_at(mesh, pins, points[0]) == -4
+    assert depth_at(mesh, pins, points[1]) == 4
+    assert abs(depth_at(mesh, pins, points[2])) < 2
+    assert depth_at(mesh, (), points[0]) == 0
+
+
+def test_parts_without_a_pin_go_with_the_nearest_one(image):
+    two = np.zeros((80, 250, 4), dtype=np.uint8)
+    two[:, :120], two[:, 130:] = image, image
+    mesh = make_drawing(two, vertices=200).mesh
+    assert mesh.component.max() == 1
+    pins = pins_at(mesh, (*HEAD, 0), (*END, 2))
+    order = rank(face_order(mesh, pins))
+    second = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] > 130
+    assert order[second].min() > order[pins[0].face]
+
+
+# -- editing -----------------------------------------------------------------------------------------------
+
+
+def test_forward_and_back_are_one_entry_each_and_move_nothing(pinned):
+    pinned.editor.select({2, 3})
+    before, depth = bits(pinned.state), pinned.depth
+    pose = pinned.state.positions
+    pinned.editor.shift_depth(1)
+    assert [pin.depth for pin in pinned.state.pins] == [0, 1, 1]
+    pinned.editor.set_depth(3, -5)
+    assert [pin.depth for pin in pinned.state.pins] == [0, 1, -5]
+    assert pinned.state.positions is pose
+    assert pinned.session.history.labels[depth:] == ["Bring forward", "Set depth"]
+    pinned.undo()
+    pinned.undo()
+    assert bits(pinned.state) == before
+
+
+def test_a_depth_out_of_range_changes_nothing(pinned):
+    before = pinned.everything
+    with pytest.raises(InputError, match="depth of pin 2"):
+        pinned.editor.set_depth(2, MOST + 1)
+    assert pinned.everything == before
+
+
+def test_a_new_pin_takes_the_depth_of_the_place(pinned):
+    pinned.editor.set_depth(3, 4)
+    added = pinned.editor.add_pin((103.0, 45.0))
+    assert pinned.state.pin(added).depth == 4
+    added = pinned.editor.add_pin((18.0, 45.0))
+    assert pinned.state.pin(added).depth == 0
+
+
+def fold(mesh):
+    """The neck folded over the head: faces turned over are given back their side by a shear-free shift."""
+    pose = mesh.vertices.copy()
+    pose[:, 0] = np.where(pose[:, 0] > 62, pose[:, 0] - 62 + 5 + 0.2 * (pose[:, 0] - 62), pose[:, 0])
+    return pose
+
+
+def test_a_click_takes_what_is_seen_in_front(drawing):
+    mesh, pose = drawing.mesh, fold(drawing.mesh)
+    faces = mesh.faces
+    areas = signed_areas(pose, faces)
+    at_end = mesh.locate([END])
+    point = mesh.evaluate(at_end, pose)[0]
+    for depth in (5, -5):
+        order = face_order(mesh, pins_at(mesh, (*HEAD, 0), (*END, depth)))
+        hit = mesh.find(point, pose, order)
+        x = mesh.vertices[faces[hit.faces[0]]].mean(axis=0)[0]
+        assert (x > 62) == (depth > 0), (areas.min(), x)
+        np.testing.assert_allclose(mesh.evaluate(hit, pose)[0], point, atol=1e-9)
+
+
+# -- files -------------------------------------------------------------------------------------------------
+
+
+def test_depths_are_saved_recorded_and_replayed(pinned, drawing, tmp_path):
+    pinned.editor.set_depth(2, 7)
+    pinned.editor.set_depth(3, -2)
+    pinned.drag(END, (95.0, 55.0))
+    pinned.settle()
+    save(pinned.session.document, tmp_path / "deep.akap")
+    again = load(tmp_path / "deep.akap")
+    assert [pin.depth for pin in again.state.pins] == [0, 7, -2]
+    np.testing.assert_array_equal(again.order, pinned.session.document.order)
+    *_, last = replay(parse_recording(pinned.session.recording.to_text()), drawing)
+    assert bits(last.state) == bits(pinned.state)
+
+
+def test_a_cartoon_limb_changes_sides(shared_data):
+    drawing = make_drawing(read_image(shared_data / "noto" / "dancer.png"), vertices=2000)
+    editor = Editor()
+    editor.open(new_document(drawing))
+    vertices = drawing.mesh.vertices
+    low, high = vertices[np.argmin(vertices[:, 0])], vertices[np.argmax(vertices[:, 0])]
+    pins = [editor.add_pin(tuple(at)) for at in (low, high)]
+    for depth in (1, -1):
+        editor.set_depth(pins[1], depth)
+        order = rank(editor.session.document.order)
+        faces = [editor.session.state.pin(pin).face for pin in pins]
+        assert (order[faces[1]] > order[faces[0]]) == (depth > 0)

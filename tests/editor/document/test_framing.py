@@ -1,0 +1,62 @@
+"""What part of the plane a picture shows: laws of the three ways to crop."""
+
+import numpy as np
+import pytest
+
+from akap_editor.editor.document.drawing import Drawing
+from akap_editor.editor.document.framing import CROPS, MAX_SIZE, crop_box, frame_box, picture_size
+from akap_editor.errors import InputError
+from akap_editor.geometry.mesh import TriMesh
+
+
+@pytest.fixture
+def drawing() -> Drawing:
+    """A square from 10 to 20 in a picture of 40 × 30 pixels."""
+    vertices = np.array([[10.0, 10.0], [20.0, 10.0], [20.0, 20.0], [10.0, 20.0]])
+    mesh = TriMesh(vertices, np.array([[0, 1, 2], [0, 2, 3]]))
+    return Drawing(np.full((30, 40, 4), 255, dtype=np.uint8), mesh, (vertices / [40, 30]).astype(np.float32))
+
+
+def test_crop_at_rest(drawing):
+    rest = drawing.mesh.vertices
+    assert [crop_box(drawing, rest, crop) for crop in CROPS] == [
+        (0, 0, 40, 30),
+        (0, 0, 40, 30),
+        (10, 10, 20, 20),
+    ]
+
+
+def test_only_the_frame_cuts_a_pose_off(drawing):
+    pose = drawing.mesh.vertices + np.array([-15.5, 3.25])
+    assert crop_box(drawing, pose, "none") == frame_box(drawing, [pose]) == (-6, 0, 40, 30)
+    assert crop_box(drawing, pose, "frame") == (0, 0, 40, 30)
+    assert crop_box(drawing, pose, "pose") == (-6, 13, 5, 24)
+
+
+def test_rounding_noise_adds_no_row(drawing):
+    rest = drawing.mesh.vertices
+    assert (
+        crop_box(drawing, rest + 1e-9, "pose") == crop_box(drawing, rest - 1e-9, "pose") == (10, 10, 20, 20)
+    )
+
+
+def test_errors(drawing):
+    with pytest.raises(InputError, match=r"crop: expected one of none, frame, pose, got 'tight'"):
+        crop_box(drawing, drawing.mesh.vertices, "tight")
+    with pytest.raises(InputError, match=r"pose: expected shape \(4, 2\), got \(3, 2\)"):
+        crop_box(drawing, drawing.mesh.vertices[:3], "pose")
+
+
+@pytest.mark.parametrize(
+    ("box", "scale", "size"),
+    [
+        ((0, 0, 40, 30), 1.0, (40, 30)),
+        ((-6, 0, 40, 30), 0.5, (23, 15)),
+        ((-6, 0, 40, 30), 0.1, (5, 3)),
+        ((0, 0, 1, 1), 1e-9, (1, 1)),
+        ((0, 0, 50, 50), 1.1, (55, 55)),
+        ((0, 0, 1024, 1), MAX_SIZE / 1024, (MAX_SIZE, 8)),
+    ],
+)
+def test_size_in_pixels(box, scale, size):
+    assert picture_size(box, scale) == size

@@ -1,0 +1,47 @@
+"""A log gives back what was put into it, in little memory."""
+
+import tracemalloc
+
+import pytest
+
+from akap_editor.editor.session.event_log import PACKED, EventLog
+
+
+def events(count):
+    return [{"t": n / 60, "do": "targets", "targets": {"3": [0.1 * n, 1e-300 + n]}} for n in range(count)]
+
+
+@pytest.mark.parametrize("count", [0, 1, PACKED - 1, PACKED, PACKED + 1, 2 * PACKED + 7])
+def test_it_reads_like_the_list(count):
+    expected, log = events(count), EventLog()
+    for event in expected:
+        log.append(event)
+    assert len(log) == count
+    assert bool(log) == bool(expected)
+    assert list(log) == expected
+    assert log == expected
+    assert expected == log
+    assert log != [*expected, {}]
+    assert log[count // 3 : count : 401] == expected[count // 3 : count : 401]
+    for index in {0, count // 2, count - 1, -1, -count} if count else ():
+        assert log[index] == expected[index]
+    with pytest.raises(IndexError):
+        log[count]
+
+
+def test_what_was_read_or_put_in_can_be_changed_without_harm():
+    log, event = EventLog(), {"t": 0.0, "do": "pins", "pins": [1]}
+    log.append(event)
+    event["pins"].append(2)
+    log[0]["pins"].append(3)
+    assert log[0]["pins"] == [1]
+
+
+def test_a_hundred_thousand_events_take_little_memory():
+    tracemalloc.start()
+    log = EventLog()
+    for number in range(100_000):
+        log.append({"t": round(number / 60, 4), "do": "step"})
+    size, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert size < 3e6

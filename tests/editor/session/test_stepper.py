@@ -1,0 +1,215 @@
+"""Steps that are computed beside the window: what may happen meanwhile, and what waits for them."""
+
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.session.bent import STILL
+from akap_editor.editor.session.replay import replay
+from akap_editor.editor.session.worker import AT_ONCE
+from akap_editor.errors import SolverError
+from tests.support.editor_driver import Driver, bits
+
+END, AWAY, FARTHER = (105.0, 40.0), (100.0, 30.0), (95.0, 22.0)
+
+
+class Slow(Executor):
+    """Does what was submitted when it is told to."""
+
+    def __init__(self):
+        self.jobs = []
+
+    def submit(self, job, /, *args, **kwargs):
+        future = Future()
+        self.jobs.append((future, job, args, kwargs))
+        return future
+
+    def work(self):
+        jobs, self.jobs = self.jobs, []
+        for future, job, args, kwargs in jobs:
+            try:
+                future.set_result(job(*args, **kwargs))
+            except Exception as error:
+                future.set_exception(error)
+
+
+@pytest.fixture
+def slow(drawing):
+    """Three pins, the last of them dragged, and its first step under way with a slow worker."""
+    driver = Driver(new_document(drawing), worker=Slow())
+    for at in ((20.0, 40.0), (62.0, 40.0), END):
+        driver.click(at)
+    driver.before = driver.everything
+    driver.press(END)
+    driver.move(AWAY)
+    driver.advance()
+    return driver
+
+
+def kinds(driver):
+    return [event["do"] for event in driver.session.recording.events]
+
+
+def test_until_a_step_is_done_the_pose_stays_and_the_pin_may_be_dragged_on(slow):
+    rest = slow.session.drawing.mesh.vertices
+    assert slow.editor.waiting
+    assert not slow.editor.advance(0.0)
+    slow.move(FARTHER)
+    assert slow.state.positions is rest
+    np.testing.assert_allclose(slow.state.targets[2], FARTHER)
+
+    slow.editor.worker.work()
+    assert not slow.editor.waiting
+    assert slow.editor.advance(0.0)
+    assert slow.state.positions is not rest
+    while slow.editor.moving:
+        slow.advance()
+        slow.editor.worker.work()
+    np.testing.assert_allclose(slow.where(3), FARTHER, atol=0.25)
+
+
+def test_what_is_asked_during_a_step_is_recorded_after_it(slow):
+    count = len(kinds(slow))
+    slow.move(FARTHER)
+    assert len(kinds(slow)) == count
+    assert not slow.session.recorded
+    slow.editor.worker.work()
+    slow.advance()
+    assert kinds(slow)[count:] == ["step", "targets"]
+    assert slow.session.recorded
+    slow.editor.worker.work()
+    slow.release(FARTHER)
+    *_, moment = replay(slow.session.recording, slow.session.drawing)
+    assert bits(moment.state) == bits(slow.state)
+
+
+def test_a_step_that_came_to_rest_does_not_end_a_drag_that_went_on(slow):
+    before = slow.session.last_step
+    while True:
+        slow.editor.worker.work()
+        step = slow.session._under_way.result.result()
+        if np.abs(step.positions - slow.state.positions).max() < STILL:
+            break
+        slow.advance()
+        slow.advance()
+    assert slow.session.last_step is not before
+    slow.move((100.2, 30.0))  # so near that no pin counts as being on its way
+    slow.advance()
+    assert slow.editor.moving
+
+
+def test_escape_during_a_step_restores_to_the_last_bit(slow):
+    slow.move(FARTHER)
+    slow.editor.worker.work()
+    slow.key("escape")
+    assert slow.everything == slow.before
+    assert not slow.session.stepping
+    assert not slow.editor.moving
+    *_, moment = replay(slow.session.recording, slow.session.drawing)
+    assert bits(moment.state) == bits(slow.state)
+
+
+def failing(driver, monkeypatch):
+    def fail(*_):
+        raise SolverError("the linear system is singular")
+
+    monkeypatch.setattr(driver.session._bending.deformer, "step", fail)
+    driver.editor.worker.work()
+
+
+def test_a_step_that_fails_in_the_worker_takes_the_gesture_back(slow, monkeypatch):
+    failing(slow, monkeypatch)
+    with pytest.raises(SolverError, match="singular"):
+        slow.editor.advance(0.0)
+    assert slow.everything == slow.before
+    assert slow.tool == "Idle"
+
+
+def test_escape_wins_over_a_step_that_fails(slow, monkeypatch):
+    failing(slow, monkeypatch)
+    slow.key("escape")
+    assert slow.everything == slow.before
+
+
+def test_a_release_does_not_wait_for_the_step(slow):
+    count = len(kinds(slow))
+    slow.move(FARTHER)
+    slow.release(FARTHER)
+    assert slow.tool == "Idle"
+    assert slow.editor.waiting
+    assert slow.session.history.undo_label == "Bend"
+    slow.editor.worker.work()
+    slow.advance()
+    assert kinds(slow)[count:] == ["step", "targets", "commit"]
+    while slow.editor.moving:
+        slow.advance()
+        slow.editor.worker.work()
+    np.testing.assert_allclose(slow.where(3), FARTHER, atol=0.25)
+    *_, moment = replay(slow.session.recording, slow.session.drawing)
+    assert bits(moment.state) == bits(slow.state)
+    slow.undo()
+    assert slow.everything[0] == slow.before[0]
+
+
+def test_a_step_that_fails_after_the_release_leaves_the_pose(slow, monkeypatch):
+    pose = slow.state.positions
+    failing(slow, monkeypatch)
+    slow.release(AWAY)
+    with pytest.raises(SolverError, match="singular"):
+        slow.editor.advance(0.0)
+    assert slow.state.positions is pose
+    assert not slow.editor.moving
+
+
+EDITS = {
+    "commit": lambda session: (session.commit(), session.halt()),
+    "add_pin": lambda session: session.add_pin((45.0, 40.0)),
+    "remove_pins": lambda session: session.remove_pins({1}),
+    "set_depths": lambda session: session.set_depths({1: 2}),
+    "hold_angles": lambda session: session.hold_angles({1}),
+    "settings": lambda session: session.set_settings(session.state.settings.with_parameter("memory", 0.5)),
+    "stiffness": lambda session: session.paint_stiffness([(45.0, 40.0)], 10.0, 50.0),
+    "keep": lambda session: session.change_poses("keep", name="bent"),
+    "key": lambda session: session.animate("key", time=0.5),
+    "reset": lambda session: session.reset_pose(),
+    "bake": lambda session: session.bake_pose(),
+    "undo": lambda session: (session.commit(), session.undo(), session.redo()),
+}
+
+
+@pytest.mark.parametrize("edit", EDITS)
+def test_other_edits_wait_for_the_step_and_follow_it(slow, edit):
+    """As if the step had been done at once, in the state and in the recording."""
+    twin = Driver(new_document(slow.session.drawing), worker=AT_ONCE)
+    for at in ((20.0, 40.0), (62.0, 40.0), END):
+        twin.click(at)
+    twin.press(END)
+    twin.move(AWAY)
+    twin.advance()
+    slow.editor.worker.work()
+    for driver in (slow, twin):
+        EDITS[edit](driver.session)
+        driver.check()
+    assert bits(slow.state) == bits(twin.state)
+    assert kinds(slow) == kinds(twin)
+
+
+def test_fields_and_edits_wait_for_a_step_in_a_real_thread(drawing):
+    with ThreadPoolExecutor(1) as thread:
+        driver = Driver(new_document(drawing), worker=thread)
+        for at in ((20.0, 40.0), (62.0, 40.0), END):
+            driver.click(at)
+        driver.press(END)
+        for number in range(20):
+            driver.move((105.0 - number, 40.0 - number))
+            driver.advance()
+            thread.submit(driver.session.fields)
+        driver.settle()
+        found = thread.submit(driver.session.fields).result()
+        driver.release(driver.where(3))
+        driver.editor.add_pin((45.0, 40.0))
+    assert found is not None
+    assert found[0].shape == driver.state.positions.shape
+    assert driver.session.fields() is None, "of other pins"

@@ -1,0 +1,294 @@
+"""The pointer moved by keys: it adds, takes and cuts pins, paints, and stays in sight."""
+
+import numpy as np
+import pytest
+
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.events import KeyEvent, PointerEvent
+from akap_editor.editor.tools.keyboard_pointer import (
+    BIG_STEP,
+    MARGIN,
+    STEP,
+    Crosshair,
+    reveal,
+    select_next,
+    toggle_crosshair,
+)
+from akap_editor.errors import SolverError
+from tests.support.editor_driver import BESIDE
+
+NECK, END = (62.0, 40.0), (105.0, 40.0)
+
+
+def at(driver, place):
+    """Enter the crosshair at a place of the drawing, as if the mouse had been there last."""
+    driver.move(place)
+    driver.editor.pointer_left()
+    toggle_crosshair(driver.editor)
+    assert driver.tool == "Crosshair"
+    assert driver.editor.camera.to_drawing(driver.editor.pointer) == pytest.approx(place)
+
+
+def enter(driver):
+    driver.handle(KeyEvent("enter"))
+
+
+def middle(editor):
+    left, top, right, bottom = editor.canvas
+    return (left + right) / 2, (top + bottom) / 2
+
+
+def test_it_begins_where_the_mouse_was_last_or_in_the_middle(driver):
+    toggle_crosshair(driver.editor)
+    assert driver.editor.pointer == middle(driver.editor)
+    toggle_crosshair(driver.editor)
+    assert driver.tool == "Idle"
+    at(driver, NECK)
+    driver.key("escape")
+    assert driver.tool == "Idle"
+    driver.editor.canvas = (5000.0, 0.0, 6000.0, 500.0)
+    toggle_crosshair(driver.editor)
+    assert driver.editor.pointer == middle(driver.editor), "where the mouse was is no canvas any more"
+
+
+def test_arrows_move_it_and_no_pin(pinned):
+    toggle_crosshair(pinned.editor)
+    pinned.editor.select(pinned.ids)
+    before, (x, y) = pinned.everything, pinned.editor.pointer
+    for name in ("left", "left", "up"):
+        pinned.key(name)
+    assert pinned.editor.pointer == (x - 2 * STEP, y - STEP)
+    pinned.handle(KeyEvent("down", shift=True))
+    pinned.editor.ui_scale = 2.0
+    pinned.key("right")
+    assert pinned.editor.pointer == (x, y - STEP + BIG_STEP)
+    assert pinned.everything == before
+
+
+def test_enter_adds_a_pin_exactly_there_in_one_gesture(driver):
+    at(driver, NECK)
+    assert driver.editor.would_add_pin
+    depth = driver.depth
+    enter(driver)
+    assert driver.tool == "Crosshair"
+    assert driver.where(driver.ids[-1]) == pytest.approx(NECK, abs=0.01)
+    assert driver.editor.selection == {driver.ids[-1]}
+    assert driver.depth == depth + 1
+    enter(driver)
+    assert len(driver.ids) == 1, "the second one takes the pin that is there"
+    driver.undo()
+    assert not driver.ids
+
+
+def test_enter_beside_the_drawing_adds_nothing(driver):
+    at(driver, BESIDE)
+    assert not driver.editor.would_add_pin
+    before = driver.everything
+    enter(driver)
+    assert driver.everything == before
+    assert driver.tool == "Crosshair"
+
+
+def test_enter_selects_with_shift_several_and_alt_removes(pinned):
+    first, second = pinned.ids[:2]
+    at(pinned, pinned.where(first))
+    assert pinned.editor.hovered_pin == first
+    enter(pinned)
+    assert pinned.editor.selection == {first}
+    pinned.editor.tool.go_to_pin(second)
+    pinned.key("shift")
+    enter(pinned)
+    assert pinned.editor.selection == {first, second}
+    enter(pinned)
+    assert pinned.editor.selection == {first}
+    pinned.key("shift", False)
+    pinned.key("alt")
+    enter(pinned)
+    assert second not in pinned.ids
+
+
+def test_once_it_is_left_arrows_nudge_the_pin_that_was_taken(pinned):
+    pin = pinned.ids[-1]
+    at(pinned, pinned.where(pin))
+    enter(pinned)
+    pinned.key("escape")
+    x, y = pinned.state.pin(pin).target
+    pinned.key("up")
+    assert pinned.state.pin(pin).target == pytest.approx((x, y - 1))
+
+
+def test_the_canvas_moves_to_keep_it_in_sight(driver):
+    toggle_crosshair(driver.editor)
+    left, top, right, bottom = driver.editor.canvas
+    seen = []
+    for _ in range(40):
+        driver.handle(KeyEvent("right", shift=True))
+        seen.append(driver.editor.camera.to_drawing(driver.editor.pointer)[0])
+        assert driver.editor.pointer[0] <= right - MARGIN
+    way = BIG_STEP / driver.editor.camera.zoom
+    assert np.diff(seen) == pytest.approx(way), "it goes on over the drawing"
+    driver.editor.canvas = (left, top, right - 300, bottom)
+    assert driver.editor.pointer[0] == right - 300
+
+
+def test_at_the_edge_it_comes_in_without_a_move_of_the_canvas(driver):
+    left, top, _, _ = driver.editor.canvas
+    driver.handle(PointerEvent("move", (left + 5, top + 5)))
+    camera = driver.editor.camera
+    toggle_crosshair(driver.editor)
+    driver.key("right")
+    driver.key("down")
+    assert driver.editor.pointer == (left + 5 + STEP, top + 5 + STEP)
+    assert driver.editor.camera == camera
+    driver.key("left")
+    assert driver.editor.pointer == (left + 5 + STEP, top + 5 + STEP)
+    assert driver.editor.camera == camera.panned(STEP, 0.0)
+
+
+def test_nothing_is_panned_where_it_is_in_sight(driver):
+    camera = driver.editor.camera
+    assert reveal(driver.editor, middle(driver.editor)) == middle(driver.editor)
+    assert driver.editor.camera == camera
+    driver.editor.canvas = (0.0, 0.0, 40.0, 30.0)
+    assert reveal(driver.editor, (500.0, -20.0)) == pytest.approx((20.0, 15.0)), "no room for a margin"
+
+
+def test_the_mouse_takes_over_again(driver):
+    toggle_crosshair(driver.editor)
+    driver.editor.pointer_left()
+    assert driver.editor.pointer is not None, "the crosshair is no mouse that could leave"
+    driver.move(NECK)
+    assert driver.tool == "Idle"
+    assert driver.editor.camera.to_drawing(driver.editor.pointer) == pytest.approx(NECK)
+
+
+def test_it_hinders_no_edit_and_stays(pinned):
+    toggle_crosshair(pinned.editor)
+    pinned.editor.select({pinned.ids[0]})
+    pinned.editor.remove_selected()
+    pinned.undo()
+    pinned.editor.cancel()
+    assert len(pinned.ids) == 3
+    assert pinned.tool == "Crosshair"
+
+
+def test_it_ends_with_the_drawing(driver):
+    toggle_crosshair(driver.editor)
+    driver.editor.open(new_document(driver.session.drawing))
+    assert driver.tool == "Idle"
+    toggle_crosshair(driver.editor)
+    driver.editor.close()
+    assert type(driver.editor.tool).__name__ == "Idle"
+    toggle_crosshair(driver.editor)
+    assert type(driver.editor.tool).__name__ == "Idle", "there is nothing to point at"
+
+
+def test_it_waits_for_the_end_of_a_gesture(pinned):
+    pinned.press(pinned.where(pinned.ids[0]))
+    toggle_crosshair(pinned.editor)
+    assert pinned.tool == "PointingPin"
+
+
+def test_zooming_holds_what_it_points_at(driver):
+    at(driver, END)
+    driver.editor.zoom(2.0)
+    assert driver.editor.camera.to_drawing(driver.editor.pointer) == pytest.approx(END)
+
+
+@pytest.mark.parametrize("erasing", [False, True])
+def test_enter_dabs_with_the_brush(driver, erasing):
+    editor = driver.editor
+    editor.chosen_tool = "brush"
+    at(driver, NECK)
+    enter(driver)
+    assert driver.session.history.undo_label == "Stiffen"
+    assert driver.state.stiffness.max() > 50
+    if erasing:
+        editor.brush = type(editor.brush)(erasing=True)
+        assert "erases" in editor.hint
+        enter(driver)
+        assert driver.state.stiffness is None or driver.state.stiffness.max() < 50
+    assert driver.tool == "Crosshair"
+
+
+def test_the_hand_is_laid_aside(driver):
+    driver.editor.chosen_tool = "hand"
+    at(driver, NECK)
+    enter(driver)
+    assert len(driver.ids) == 1
+
+
+def test_hints_say_what_enter_does(pinned):
+    at(pinned, BESIDE)
+    assert "Arrows" in pinned.editor.hint
+    pinned.editor.tool.go_to_pin(pinned.ids[0])
+    assert "selects this pin" in pinned.editor.hint
+    pinned.key("alt")
+    assert "removes" in pinned.editor.hint
+    pinned.key("alt", False)
+    pinned.key("escape")
+    at(pinned, (50.0, 45.0))
+    assert "adds a pin" in pinned.editor.hint
+
+
+def test_what_goes_wrong_on_enter_is_taken_back(driver, monkeypatch):
+    def fail(place):
+        raise SolverError("no answer")
+
+    at(driver, NECK)
+    monkeypatch.setattr(driver.session, "add_pin", fail)
+    with pytest.raises(SolverError):
+        driver.editor.handle_event(KeyEvent("enter"))
+    monkeypatch.undo()
+    driver.check()
+    assert not driver.session.history.is_open
+    assert not driver.ids
+
+
+# -- pins one after the other -------------------------------------------------------------------------------
+
+
+def test_pins_are_selected_one_after_the_other_and_around(pinned):
+    first, second, third = pinned.ids
+    pinned.editor.select(())
+    seen = []
+    for forward in (True, True, True, True, False, False):
+        select_next(pinned.editor, forward)
+        seen.append(*pinned.editor.selection)
+    assert seen == [first, second, third, first, third, second]
+    pinned.editor.select(())
+    select_next(pinned.editor, False)
+    assert pinned.editor.selection == {third}
+    pinned.editor.select({first, second})
+    select_next(pinned.editor)
+    assert pinned.editor.selection == {third}
+
+
+def test_a_pin_out_of_sight_is_brought_there(pinned):
+    pinned.editor.camera = pinned.editor.camera.panned(-5000.0, 300.0)
+    pinned.editor.select(())
+    select_next(pinned.editor)
+    x, y = pinned.editor.pins_on_screen()[pinned.ids[0]]
+    left, top, right, bottom = pinned.editor.canvas
+    assert left < x < right
+    assert top < y < bottom
+
+
+def test_the_crosshair_goes_along(pinned):
+    toggle_crosshair(pinned.editor)
+    select_next(pinned.editor)
+    assert isinstance(pinned.editor.tool, Crosshair)
+    assert pinned.editor.hovered_pin == pinned.ids[0]
+
+
+def test_without_pins_there_is_none_to_go_to(driver):
+    select_next(driver.editor)
+    assert not driver.editor.selection
+
+
+def test_a_click_of_the_mouse_where_it_stands_ends_it(driver):
+    toggle_crosshair(driver.editor)
+    driver.handle(PointerEvent("press", driver.editor.camera.to_screen(NECK)))
+    driver.handle(PointerEvent("release", driver.editor.camera.to_screen(NECK)))
+    assert driver.tool == "Idle"
+    assert len(driver.ids) == 1

@@ -1,0 +1,202 @@
+"""The brush that paints stiffness, and what becomes of what it has painted."""
+
+import numpy as np
+import pytest
+
+from akap_editor.editor.document.remesh import carried_over
+from akap_editor.editor.document.rest_pose import baked_state
+from akap_editor.editor.document.settings import Settings
+from akap_editor.editor.document.stiffness import as_stiffness, coverage, painted
+from akap_editor.editor.events import PointerEvent
+from akap_editor.editor.session.replay import replay
+from akap_editor.editor.tools.stiffness_brush import LARGEST, SMALLEST, Brush, shown_stiffness
+from akap_editor.errors import InputError
+from akap_editor.geometry.distortion import distortion
+from tests.support.editor_driver import Driver, bits
+
+NECK, HEAD = (80.0, 40.0), (30.0, 40.0)
+
+
+def stroke(
+    d: Driver, *places: tuple[float, float], button: str = "left", release: bool = True, radius: float = 12.0
+) -> None:
+    """Paint through places of the drawing."""
+    d.editor.chosen_tool = "brush"
+    d.editor.brush = Brush(radius * d.editor.camera.zoom, d.editor.brush.factor, d.editor.brush.erasing)
+    on_screen = [d.editor.camera.to_screen(place) for place in places]
+    d.handle(PointerEvent("press", on_screen[0], button))  # type: ignore[arg-type]
+    for at in on_screen[1:]:
+        d.handle(PointerEvent("move", at, button))  # type: ignore[arg-type]
+    if release:
+        d.handle(PointerEvent("release", on_screen[-1], button))  # type: ignore[arg-type]
+
+
+def at(d: Driver, place: tuple[float, float]) -> float:
+    """The factor of the face at a place of the rest pose."""
+    stiffness = d.state.stiffness
+    found = d.session.drawing.mesh.find(place)
+    return 1.0 if stiffness is None else float(stiffness[found.faces[0]])
+
+
+def test_a_stroke_stiffens_what_it_covers_and_is_one_entry(pinned):
+    before, pose = bits(pinned.state), pinned.state.positions
+    stroke(pinned, (70.0, 40.0), (95.0, 40.0))
+    assert [at(pinned, (x, 40.0)) for x in (72.0, 82.0, 94.0)] == [100.0] * 3
+    assert at(pinned, HEAD) == 1.0
+    assert pinned.state.positions is pose
+    assert not pinned.state.stiffness.flags.writeable
+    assert pinned.session.history.undo_label == "Stiffen"
+    pinned.undo()
+    assert pinned.state.stiffness is None
+    assert bits(pinned.state) == before
+    pinned.redo()
+    assert at(pinned, NECK) == 100.0
+
+
+def test_what_is_stiff_bends_less(new_driver):
+    bent = []
+    for stiff in (False, True):
+        d = new_driver()
+        for place in ((20.0, 40.0), (105.0, 40.0)):
+            d.click(place)
+        if stiff:
+            stroke(d, (62.0, 40.0), (88.0, 40.0))
+            d.editor.chosen_tool = "pins"
+        d.drag((105.0, 40.0), (70.0, 70.0))
+        d.settle()
+        faces = coverage(d.session.drawing.mesh, [(x, 40.0) for x in range(62, 89, 2)], 12.0) == 1.0
+        found = distortion(d.session.drawing.mesh, d.state.positions)
+        bent.append(float((found.face_angle[faces] - 2.0).mean()))
+    assert bent[1] < 0.2 * bent[0]
+
+
+def test_the_eraser_and_the_right_button_take_it_away(pinned):
+    stroke(pinned, NECK)
+    stroke(pinned, NECK, button="right")
+    assert at(pinned, NECK) == 1.0
+    stroke(pinned, NECK)
+    pinned.editor.brush = Brush(pinned.editor.brush.radius, erasing=True)
+    stroke(pinned, (70.0, 40.0), (80.0, 40.0), (90.0, 40.0), radius=30.0)
+    assert pinned.state.stiffness is None, "where all is erased nothing is left"
+    assert pinned.session.history.labels == ["Add pin"] * 3 + ["Stiffen", "Erase stiffness"] * 2
+
+
+def test_escape_takes_the_stroke_back_and_shows_what_was_before(pinned):
+    before = pinned.everything
+    stroke(pinned, NECK, release=False)
+    assert shown_stiffness(pinned.editor).max() == 100.0
+    assert pinned.state.stiffness is None, "the deformer is made anew at the end only"
+    pinned.key("escape")
+    assert pinned.everything == before
+    assert shown_stiffness(pinned.editor) is None
+
+
+def test_a_stroke_beside_the_drawing_is_no_step(pinned):
+    before = pinned.everything
+    stroke(pinned, (2.0, 2.0), (5.0, 2.0))
+    assert pinned.everything == before
+
+
+def test_a_fast_stroke_has_no_gaps(pinned):
+    stroke(pinned, (15.0, 40.0), (105.0, 40.0))
+    assert min(at(pinned, (float(x), 40.0)) for x in range(15, 106)) == 100.0
+
+
+def test_a_stroke_on_a_bent_drawing_is_where_the_pointer_was(pinned):
+    pinned.drag(pinned.where(3), (90.0, 60.0))
+    pinned.settle()
+    stroke(pinned, pinned.where(3))
+    assert at(pinned, (105.0, 40.0)) == 100.0
+    assert at(pinned, (62.0, 40.0)) == 1.0
+
+
+def test_with_the_brush_a_click_on_a_pin_paints(pinned):
+    stroke(pinned, pinned.where(2))
+    assert len(pinned.ids) == 3
+    assert not pinned.editor.selection
+    assert at(pinned, (62.0, 40.0)) == 100.0
+    assert not pinned.editor.would_add_pin
+    assert pinned.editor.hovered_pin is None
+
+
+def test_brushes_have_limits():
+    small = large = Brush()
+    for _ in range(30):
+        small, large = small.resized(False), large.resized(True)
+    assert (small.radius, large.radius) == (SMALLEST, LARGEST)
+
+
+def test_coverage_falls_softly_to_the_rim(drawing):
+    covered = coverage(drawing.mesh, [NECK], 25.0)
+    away = np.hypot(*(drawing.mesh.vertices[drawing.mesh.faces].mean(axis=1) - NECK).T)
+    assert (covered[away < 12.0] == 1.0).all()
+    assert (covered[away > 25.0] == 0.0).all()
+    order = np.argsort(away)
+    assert (np.diff(covered[order]) <= 1e-12).all()
+    assert ((covered > 0.1) & (covered < 0.9)).any()
+
+
+def test_the_smallest_brush_reaches_the_face_that_it_is_on(drawing):
+    rng = np.random.default_rng(5)
+    for face in rng.integers(0, len(drawing.mesh.faces), 40):
+        inside = rng.dirichlet([3.0, 3.0, 3.0]) @ drawing.mesh.vertices[drawing.mesh.faces[face]]
+        assert coverage(drawing.mesh, [inside], 0.0)[face] > 0
+
+
+def test_painting_twice_is_painting_once_and_half_covered_is_the_root(drawing):
+    m = len(drawing.mesh.faces)
+    covered = np.linspace(0, 1, m)
+    once = painted(None, covered, 400.0)
+    assert once[-1] == 400.0
+    assert once[m // 2] == pytest.approx(20.0, rel=0.05)
+    assert painted(painted(None, np.ones(m), 9.0), np.ones(m), 9.0).tolist() == [9.0] * m
+    assert painted(once, np.ones(m), 1.0) is None
+
+
+@pytest.mark.parametrize("bad", [[2.0], [0.5] * 3, [np.nan] * 3, [2000.0] * 3, "soft", [[1.0]] * 3])
+def test_bad_factors(bad):
+    with pytest.raises(InputError, match="stiffness: expected"):
+        as_stiffness(bad, 3)
+
+
+def test_stiffness_is_carried_over_to_another_mesh_and_baked(pinned, finer_drawing):
+    stroke(pinned, NECK)
+    state = carried_over(pinned.state, pinned.session.drawing.mesh, finer_drawing)
+    centers = finer_drawing.mesh.vertices[finer_drawing.mesh.faces].mean(axis=1)
+    away = np.hypot(*(centers - NECK).T)
+    assert state.stiffness.shape == (len(finer_drawing.mesh.faces),)
+    assert (state.stiffness[away < 3.0] == 100.0).all()
+    assert (state.stiffness[away > 20.0] == 1.0).all()
+    assert baked_state(pinned.state, pinned.session.drawing).stiffness is pinned.state.stiffness
+
+
+def test_other_methods_keep_it_and_bend_without(pinned):
+    stroke(pinned, NECK)
+    factors = pinned.state.stiffness
+    pinned.editor.chosen_tool = "pins"
+    pinned.editor.set_settings(Settings("arap", ()))
+    pinned.drag(pinned.where(3), (90.0, 60.0))
+    pinned.settle()
+    assert pinned.state.stiffness is factors
+
+
+def test_a_replay_paints_the_same_on_the_same_mesh_and_the_same_place_on_another(
+    pinned, drawing, finer_drawing
+):
+    stroke(pinned, NECK)
+    pinned.editor.chosen_tool = "pins"
+    pinned.drag(pinned.where(3), (90.0, 60.0))
+    pinned.settle()
+    *_, last = replay(pinned.session.recording, drawing)
+    assert bits(last.state) == bits(pinned.state)
+    *_, other = replay(pinned.session.recording, finer_drawing)
+    found = finer_drawing.mesh.find(NECK)
+    assert other.state.stiffness[found.faces[0]] == 100.0
+
+
+def test_a_drawing_that_is_opened_stiff_is_recorded_so(pinned, drawing):
+    stroke(pinned, NECK)
+    again = Driver(pinned.session.document)
+    stroke(again, HEAD)
+    *_, last = replay(again.session.recording, drawing)
+    assert last.state.stiffness.tobytes() == again.state.stiffness.tobytes()

@@ -1,0 +1,296 @@
+"""Copies of unsaved work: when they are written, who may have them, and that they outlive the program."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import akap_editor
+from akap_editor.errors import InputError
+from akap_editor.io.akap import autosave as module
+from akap_editor.io.akap.autosave import GESTURES, SECONDS, Autosave
+from akap_editor.io.akap.project import encode, load
+from tests.io.akap.test_project import assert_equal
+
+
+class Watch:
+    """An autosave with a clock that is set by hand."""
+
+    def __init__(self, folder):
+        self.now = 0.0
+        self.autosave = Autosave(folder, clock=lambda: self.now)
+
+    def see(self, document, modified=True, gesture=None):
+        """Tell of a document, and wait until the worker has done its work."""
+        self.autosave.watch(document, modified, gesture)
+        self.autosave._worker.submit(int).result()
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return tmp_path / "state"
+
+
+@pytest.fixture
+def watch(folder):
+    watch = Watch(folder)
+    yield watch
+    watch.autosave._worker.shutdown()
+
+
+def moved(document, way):
+    return document.with_state(replace(document.state, positions=document.state.positions + way))
+
+
+def copies(folder):
+    return sorted(folder.glob("*.akap"))
+
+
+def test_a_minute_after_the_first_change_there_is_a_copy(watch, folder, document):
+    watch.see(document)
+    watch.now = SECONDS - 0.1
+    watch.see(moved(document, 1))
+    assert copies(folder) == []
+    watch.now = SECONDS
+    last = moved(document, 2)
+    watch.see(last)
+    (path,) = copies(folder)
+    assert_equal(load(path), last)
+    watch.now += SECONDS
+    watch.see(last)
+    assert_equal(load(path), last)
+    later = moved(document, 3)
+    watch.see(later)
+    assert_equal(load(path), last), "the next minute begins with the next change"
+    watch.now += SECONDS
+    watch.see(later)
+    assert_equal(load(path), later)
+    assert copies(folder) == [path]
+
+
+def test_every_tenth_gesture_is_copied(watch, folder, document):
+    for count in range(1, 2 * GESTURES):
+        document = moved(document, 1)
+        watch.see(document, gesture=object())
+        assert bool(copies(folder)) == (count >= GESTURES)
+        if count == GESTURES:
+            tenth = document
+    (path,) = copies(folder)
+    assert_equal(load(path), tenth)
+    document = moved(document, 1)
+    watch.see(document, gesture=object())
+    assert_equal(load(path), document)
+
+
+@pytest.mark.parametrize("end", ["saved", "closed", "nothing open"])
+def test_no_copy_is_left_of_what_is_saved_or_not_wanted(watch, folder, document, end):
+    watch.see(document)
+    watch.now = SECONDS
+    watch.see(document)
+    assert len(copies(folder)) == 1
+    if end == "closed":
+        watch.autosave.close()
+    else:
+        watch.see(None if end == "nothing open" else document, modified=False)
+    assert os.listdir(folder) == []
+
+
+def test_what_is_saved_while_a_copy_is_being_written_leaves_none(watch, folder, document, monkeypatch):
+    go_on = threading.Event()
+    monkeypatch.setattr(module, "write_atomic", lambda path, data: (go_on.wait(), path.write_bytes(data)))
+    watch.autosave.watch(document, True)
+    watch.now = SECONDS
+    watch.autosave.watch(document, True)
+    watch.autosave.watch(document, False)
+    go_on.set()
+    watch.see(document, modified=False)
+    assert os.listdir(folder) == []
+
+
+def test_watching_never_waits_for_the_writer(watch, folder, document, monkeypatch):
+    go_on = threading.Event()
+    monkeypatch.setattr(module, "write_atomic", lambda path, data: (go_on.wait(), path.write_bytes(data)))
+    for _ in range(50):  # a second copy is due, but the first one is not done
+        document = moved(document, 1)
+        watch.autosave.watch(document, True, object())
+        watch.now += SECONDS
+    assert copies(folder) == []
+    go_on.set()
+    watch.see(document)
+    watch.see(document)
+    assert_equal(load(copies(folder)[0]), document)
+
+
+def test_failure_is_told_once_and_tried_again_a_minute_later(watch, folder, document, monkeypatch):
+    def fail(*_):
+        raise InputError("cannot write: no space left on device")
+
+    watch.see(document)
+    watch.now = SECONDS
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "write_atomic", fail)
+        watch.see(document)
+        with pytest.raises(InputError, match=r"^unsaved work is not protected against a crash: cannot"):
+            watch.see(document)
+        watch.see(document)
+    watch.now += SECONDS - 1
+    watch.see(document)
+    assert copies(folder) == []
+    watch.now += 1
+    watch.see(document)
+    assert_equal(load(copies(folder)[0]), document)
+
+
+def test_a_file_in_place_of_the_folder_is_told(tmp_path, document):
+    (tmp_path / "state").write_text("not a folder")
+    watch = Watch(tmp_path / "state")
+    watch.see(document)
+    watch.now = SECONDS
+    watch.see(document)
+    with pytest.raises(InputError, match="unsaved work is not protected"):
+        watch.see(document)
+    assert watch.autosave.lost() == []
+
+
+# -- several programs, and those that died ------------------------------------------------------------------
+
+EDIT = """
+import sys
+from dataclasses import replace
+from pathlib import Path
+from akap_editor.editor.editor import Editor
+from akap_editor.editor.events import PointerEvent
+from akap_editor.io.autosave import Autosave
+from akap_editor.io.project_file import load
+
+editor, autosave = Editor(), Autosave(Path(sys.argv[2]))
+editor.open(load(sys.argv[1]))
+
+def frame():
+    editor.advance()
+    autosave.watch(editor.session.document, editor.modified, editor.session.history.last)
+
+def act(kind, at):
+    editor.handle_event(PointerEvent(kind, editor.camera.to_screen(at)))
+    frame()
+
+for index in range(10):
+    editor.add_pin((20.0 + 18 * index, 80.0))
+    frame()
+at = editor.session.state.pins[3].target
+act("press", at)
+x = 0
+while True:  # and never let go
+    x += 1
+    act("move", (at[0], at[1] + 20 + x % 20))
+    if x == 30:
+        autosave._worker.submit(int).result()
+        print("dragging", flush=True)
+"""
+
+
+@pytest.fixture
+def figure(tmp_path):
+    """A saved drawing, 240 x 160, that can be dragged."""
+    y, x = np.mgrid[0:160, 0:240]
+    image = np.full((160, 240, 4), 200, np.uint8)
+    image[..., 3] = 255 * (np.hypot((x - 120) / 112, (y - 80) / 60) < 1)
+    drawing = akap_editor.make_drawing(image, vertices=150, name="figure")
+    path = tmp_path / "figure.akap"
+    akap_editor.save(akap_editor.new_document(drawing), path)
+    return path
+
+
+def start(figure, folder):
+    command = [sys.executable, "-c", EDIT, str(figure), str(folder)]
+    environment = {**os.environ, "PYTHONPATH": str(Path(akap_editor.__file__).parents[1])}
+    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE)
+
+
+def test_what_a_killed_program_had_is_found_and_what_a_running_one_has_is_not(figure, folder):
+    killed, running = start(figure, folder), start(figure, folder)
+    try:
+        for program in (killed, running):
+            assert program.stdout.readline() == b"dragging\n"
+        autosave = Autosave(folder)
+        assert len(copies(folder)) == 2
+        assert autosave.lost() == [], "both are at work"
+        killed.kill()
+        killed.wait()
+        (copy,) = autosave.lost()
+        assert Autosave(folder).lost() == [], "it is offered to one program only"
+        document = copy.read()
+        assert document.path == figure
+        assert len(document.state.pins) == 10
+        assert abs(time.time() - copy.time) < 600
+        original = load(figure)
+        assert document.drawing.mesh.vertices.tobytes() == original.drawing.mesh.vertices.tobytes()
+        assert (document.drawing.image == original.drawing.image).all()
+        copy.leave()
+        (copy,) = Autosave(folder).lost()
+        copy.discard()
+        assert autosave.lost() == []
+        assert len(copies(folder)) == 1, "the running program's"
+    finally:
+        for program in (killed, running):
+            program.send_signal(signal.SIGKILL)
+            program.communicate()
+
+
+def test_an_adopted_copy_lives_until_the_drawing_is_saved(folder, document):
+    dead = Watch(folder)
+    dead.see(document)
+    dead.now = SECONDS
+    dead.see(document)
+    dead.autosave._copy.lock.release()
+    watch = Watch(folder)
+    (copy,) = watch.autosave.lost()
+    recovered = copy.read()
+    assert recovered.path is None
+    watch.autosave.adopt(copy, recovered)
+    watch.see(recovered)
+    assert copies(folder) == [copy.path]
+    assert Autosave(folder).lost() == []
+    watch.now = SECONDS
+    changed = moved(recovered, 1)
+    watch.see(changed)
+    watch.now += SECONDS
+    watch.see(changed)
+    assert copies(folder) == [copy.path]
+    assert_equal(load(copy.path), changed)
+    watch.see(changed, modified=False)
+    assert os.listdir(folder) == []
+
+
+def test_rescue_writes_at_once(folder, document):
+    watch = Watch(folder)
+    watch.see(document)
+    watch.autosave.rescue(document)
+    assert_equal(load(copies(folder)[0]), document)
+
+
+ORIGINS = {
+    "missing": None,
+    "no JSON": b"?",
+    "another kind": json.dumps({"path": 3}).encode(),
+    "too long": json.dumps({"path": "x" * 100_000}).encode(),
+}
+
+
+@pytest.mark.parametrize("origin", ORIGINS)
+def test_a_copy_that_is_no_good_is_an_input_error(folder, document, origin):
+    folder.mkdir()
+    more = [] if ORIGINS[origin] is None else [(module.ORIGIN, ORIGINS[origin], True)]
+    (folder / "bad.akap").write_bytes(encode(document, more))
+    (copy,) = Autosave(folder).lost()
+    with pytest.raises(InputError, match=r"bad\.akap: "):
+        copy.read()
+    assert (folder / "bad.akap").exists()

@@ -1,0 +1,206 @@
+import numpy as np
+import pytest
+from PIL import Image
+
+from akap_editor.errors import InputError
+from akap_editor.io.animation import animated_images as animation
+from akap_editor.io.animation.animated_images import write_animation
+from akap_editor.io.images import read_image
+
+
+def disc(step: int, side: int = 24) -> np.ndarray:
+    """A red disc with a soft rim that moves to the right over a transparent picture."""
+    y, x = np.mgrid[:side, :side]
+    distance = np.hypot(x - 8 - step, y - 12)
+    image = np.zeros((side, side, 4), np.uint8)
+    image[..., :3] = [200, 10, 60]
+    image[..., 3] = np.clip((7 - distance) * 128, 0, 255)
+    return image
+
+
+def played(path) -> list[tuple[np.ndarray, float]]:
+    """What a player shows: frames (h, w, 4) and for how many ms."""
+    with Image.open(path) as file:
+        assert file.info["loop"] == 0
+        shown = []
+        for number in range(file.n_frames):
+            file.seek(number)
+            file.load()
+            shown.append((np.array(file.convert("RGBA")), file.info["duration"]))
+        return shown
+
+
+def thresholded(image: np.ndarray) -> np.ndarray:
+    result = image.copy()
+    result[..., 3] = np.where(image[..., 3] >= 128, 255, 0)
+    return result
+
+
+def assert_same_looks(came: np.ndarray, expected: np.ndarray) -> None:
+    assert (came[..., 3] == expected[..., 3]).all()
+    visible = expected[..., 3] > 0
+    assert (came[visible] == expected[visible]).all()
+
+
+@pytest.mark.parametrize("suffix", [".webp", ".WebP", ".png", ".apng", ".gif"])
+def test_animation_shows_the_frames(tmp_path, suffix):
+    frames = [disc(step) for step in range(6)]
+    write_animation(tmp_path / f"a{suffix}", iter(frames), fps=25)
+    shown = played(tmp_path / f"a{suffix}")
+    assert [duration for _, duration in shown] == [40] * 6
+    for (came, _), frame in zip(shown, frames, strict=True):
+        assert_same_looks(came, thresholded(frame) if suffix == ".gif" else frame)
+
+
+def test_frames_may_share_one_array(tmp_path):
+    def reuse():
+        canvas = np.empty((24, 24, 4), np.uint8)
+        for step in range(3):
+            canvas[...] = disc(step)
+            yield canvas
+
+    write_animation(tmp_path / "a.webp", reuse(), fps=10)
+    for step, (came, _) in enumerate(played(tmp_path / "a.webp")):
+        assert_same_looks(came, disc(step))
+
+
+@pytest.mark.parametrize("suffix", [".webp", ".png", ".gif"])
+def test_one_frame_is_a_picture(tmp_path, suffix):
+    write_animation(tmp_path / f"a{suffix}", [disc(0)], fps=25)
+    assert_same_looks(
+        read_image(tmp_path / f"a{suffix}"), thresholded(disc(0)) if suffix == ".gif" else disc(0)
+    )
+
+
+def test_frame_rates():
+    assert animation._durations(4, 60, unit=1) == [17, 16, 17, 17]
+    assert animation._durations(6, 30, unit=10) == [30, 40, 30, 30, 40, 30]
+    for fps in (0.1, 7, 23.976, 29.97, 47, 50):
+        durations = animation._durations(300, fps, unit=10)
+        assert min(durations) >= 20
+        assert abs(sum(durations) - 300_000 / fps) <= 5
+
+
+def test_gif_of_sixty_fps_leaves_out_each_sixth_frame(tmp_path):
+    frames = [disc(step, side=40) for step in range(24)]
+    write_animation(tmp_path / "a.gif", frames, fps=60)
+    shown = played(tmp_path / "a.gif")
+    assert [duration for _, duration in shown] == [20] * 20
+    kept = [frame for number, frame in enumerate(frames) if number % 6 != 1]
+    for (came, _), frame in zip(shown, kept, strict=True):
+        assert_same_looks(came, thresholded(frame))
+
+
+def test_gif_colours_do_not_flicker(tmp_path):
+    """A part that stands still keeps its colours while all else changes, with far too many colours."""
+    rng = np.random.default_rng(0)
+    still = rng.integers(0, 256, (32, 32, 4), dtype=np.uint8)
+    still[..., 3] = 255
+    frames = [still.copy() for _ in range(5)]
+    for frame in frames:
+        frame[16:, :, :3] = rng.integers(0, 256, (16, 32, 3))
+    write_animation(tmp_path / "a.gif", frames, fps=10)
+    first, *others = [came for came, _ in played(tmp_path / "a.gif")]
+    assert len(others) == 4
+    for other in others:
+        assert (other[:16] == first[:16]).all()
+        assert (other[16:] != first[16:]).any()
+    error = np.abs(first[..., :3].astype(int) - still[..., :3])[:16]
+    assert error.mean() < 25  # 255 colours for a cube of 256**3: cells with a side of about 40
+
+
+def test_gif_black_is_not_transparent(tmp_path):
+    frame = np.zeros((4, 4, 4), np.uint8)
+    frame[:2, :, 3] = 255
+    write_animation(tmp_path / "a.gif", [frame, frame[::-1]], fps=10)
+    (first, _), (second, _) = played(tmp_path / "a.gif")
+    assert_same_looks(first, frame)
+    assert_same_looks(second, frame[::-1])
+
+
+def test_gif_of_nothing_is_transparent(tmp_path):
+    write_animation(tmp_path / "a.gif", [np.zeros((4, 4, 4), np.uint8)], fps=10)
+    assert (read_image(tmp_path / "a.gif")[..., 3] == 0).all()
+
+
+def test_still_frames_keep_their_time(tmp_path):
+    for suffix in (".gif", ".webp", ".png"):
+        write_animation(tmp_path / f"a{suffix}", [disc(0), disc(0), disc(3)], fps=10)
+        durations = [duration for _, duration in played(tmp_path / f"a{suffix}")]
+        assert durations in ([200, 100], [100, 100, 100])
+
+
+@pytest.mark.parametrize(
+    ("name", "frames", "fps", "message"),
+    [
+        (
+            "a.avi",
+            [disc(0)],
+            10,
+            r"a\.avi: expected a name that ends in \.gif, .* or \.webm, got \.avi",
+        ),
+        ("a", [disc(0)], 10, "expected a name that ends in .*, got none"),
+        ("a.gif", [], 10, "frames: expected at least one frame, got none"),
+        ("a.gif", [disc(0), disc(0, 25)], 10, "frame 1: expected 24 x 24 pixels as in frame 0, got 25 x 25"),
+        ("a.gif", [disc(0)[..., :3]], 10, r"frame 0: expected shape \(h, w, 4\) uint8, got \(24, 24, 3\)"),
+        ("a.gif", [disc(0)], 0, "fps: expected a number from 0.1 to 1000, got 0"),
+        ("a.gif", [disc(0)], float("nan"), "fps: expected a number from 0.1 to 1000, got nan"),
+        ("a.gif", [disc(0)], 1001, "fps: expected"),
+        (
+            "a.webp",
+            [np.zeros((1, 16384, 4), np.uint8)],
+            10,
+            "webp: expected at most 16383 pixels a side, got 16384 x 1",
+        ),
+        ("missing/a.gif", [disc(0)], 10, "cannot write .*: no such file or directory"),
+    ],
+)
+def test_bad_animations_give_one_sentence(tmp_path, name, frames, fps, message):
+    with pytest.raises(InputError, match=message):
+        write_animation(tmp_path / name, frames, fps)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_animation_too_large_for_memory_is_refused_while_it_comes(tmp_path, monkeypatch):
+    monkeypatch.setattr(animation, "MAX_ANIMATION_PIXELS", 3 * 24 * 24)
+    drawn = []
+
+    def endless():
+        while True:
+            drawn.append(disc(len(drawn)))
+            yield drawn[-1]
+
+    with pytest.raises(InputError, match="frames: expected at most 3 frames of 24 x 24 pixels, got more"):
+        write_animation(tmp_path / "a.gif", endless(), fps=10)
+    assert len(drawn) == 4
+
+
+def test_failure_of_a_frame_keeps_the_old_animation(tmp_path):
+    def broken():
+        yield disc(0)
+        raise RuntimeError("no graphics card")
+
+    (tmp_path / "a.gif").write_bytes(b"old")
+    with pytest.raises(RuntimeError, match="no graphics card"):
+        write_animation(tmp_path / "a.gif", broken(), fps=10)
+    assert (tmp_path / "a.gif").read_bytes() == b"old"
+
+
+def test_still_for_longer_than_a_gif_can_say(tmp_path):
+    with pytest.raises(InputError, match=r"cannot write .*a\.gif: the encoder says"):
+        write_animation(tmp_path / "a.gif", [disc(0)] * 70 + [disc(1)], fps=0.1)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("plays", "gif"), [(0, 0), (1, None), (2, 1), (5, 4)])
+def test_how_often_it_is_shown(tmp_path, plays, gif):
+    """A GIF counts how often it is shown again, the others how often it is shown."""
+    for suffix, count in ((".gif", gif), (".webp", plays), (".png", plays)):
+        write_animation(tmp_path / f"a{suffix}", [disc(0), disc(5)], 10, plays)
+        with Image.open(tmp_path / f"a{suffix}") as opened:
+            assert opened.info.get("loop") == count
+
+
+def test_a_number_of_plays_out_of_range_is_refused(tmp_path):
+    with pytest.raises(InputError, match="plays: expected a number from 0 to 65535, got -1"):
+        write_animation(tmp_path / "a.gif", [disc(0)], 10, plays=-1)

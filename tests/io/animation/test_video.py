@@ -1,0 +1,85 @@
+import numpy as np
+import pytest
+
+from akap_editor.errors import InputError
+from akap_editor.io.animation import video
+from akap_editor.io.animation.animated_images import write_animation
+from akap_editor.io.animation.video import write_video
+
+av = pytest.importorskip("av", reason="the extra [video] is not installed")
+
+
+def disc(step, height=48, width=64):
+    """A red disc with a hard rim that moves to the right; nothing elsewhere."""
+    y, x = np.mgrid[0:height, 0:width] + 0.5
+    image = np.zeros((height, width, 4), dtype=np.uint8)
+    image[np.hypot(x - 20 - 4 * step, y - height / 2) < 12] = (220, 40, 30, 255)
+    return image
+
+
+def decoded(path, codec=None):
+    """All frames as (h, w, 4), and the stream's rate."""
+    with av.open(str(path)) as container:
+        stream = container.streams.video[0]
+        rate = float(stream.average_rate)
+        if codec is None:
+            return [frame.to_ndarray(format="rgba") for frame in container.decode(stream)], rate
+        decoder = av.CodecContext.create(codec, "r")
+        frames = [frame for packet in container.demux(stream) for frame in decoder.decode(packet)]
+        return [frame.to_ndarray(format="rgba") for frame in frames], rate
+
+
+def error(a, b):
+    return abs(a.astype(int) - b.astype(int)).mean()
+
+
+@pytest.mark.parametrize("fps", [24.0, 29.97, 60.0])
+def test_mp4_shows_the_frames_on_white(tmp_path, fps):
+    frames = [disc(step) for step in range(6)]
+    write_video(tmp_path / "a.mp4", iter(frames), fps)
+    came, rate = decoded(tmp_path / "a.mp4")
+    assert rate == pytest.approx(fps, rel=1e-3)
+    assert len(came) == 6
+    for frame, image in zip(came, frames, strict=True):
+        white = np.where(image[..., 3:] > 0, image, 255)
+        assert error(frame[..., :3], white[..., :3]) < 4
+        assert error(frame[22:26, 0:4, :3], white[22:26, 0:4, :3]) < 4
+
+
+def test_webm_keeps_transparency_and_the_colour_at_the_rim(tmp_path):
+    frames = [disc(step) for step in range(6)]
+    write_animation(tmp_path / "a.webm", frames, 30)
+    came, rate = decoded(tmp_path / "a.webm", "libvpx-vp9")
+    assert (rate, len(came)) == (30.0, 6)
+    for frame, image in zip(came, frames, strict=True):
+        assert error(frame[..., 3], image[..., 3]) < 3
+        inside = image[..., 3] == 255
+        assert np.abs(frame[inside][:, :3].astype(int) - (220, 40, 30)).max() < 40, "also at the rim"
+
+
+def test_odd_sizes_get_one_more_row_and_column(tmp_path):
+    write_video(tmp_path / "a.mp4", [disc(0, 47, 63)], 10)
+    came, _ = decoded(tmp_path / "a.mp4")
+    assert came[0].shape == (48, 64, 4)
+
+
+@pytest.mark.parametrize(
+    ("name", "frames", "message"),
+    [
+        ("a.avi", [disc(0)], "expected a name that ends in .mp4 or .webm, got .avi"),
+        ("a.mp4", [], "at least one frame"),
+        ("a.mp4", [disc(0), disc(0, 48, 60)], "frame 1: expected 64 x 48 pixels as in frame 0, got 60 x 48"),
+        ("a.webm", [disc(0)[..., :3]], "frame 0: expected shape"),
+        ("no/such/folder/a.mp4", [disc(0)], "cannot write"),
+    ],
+)
+def test_bad_videos_give_one_sentence(tmp_path, name, frames, message):
+    with pytest.raises(InputError, match=message):
+        write_video(tmp_path / name, frames, 10)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_the_extra_its_name_is_told(tmp_path, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "av", None)
+    with pytest.raises(InputError, match=r"akap-editor\[video\]"):
+        video.write_video(tmp_path / "a.mp4", [disc(0)], 10)

@@ -1,0 +1,161 @@
+"""Drives an editor as a hand would, and checks after every event what must always hold."""
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from typing import Any
+
+import numpy as np
+
+from akap_editor.editor.document.document import Document, EditState
+from akap_editor.editor.editor import Editor
+from akap_editor.editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
+from akap_editor.editor.session.session import Session
+from akap_editor.editor.session.worker import AT_ONCE
+from akap_editor.geometry.mesh import signed_areas
+
+Point = tuple[float, float]
+BESIDE = (2.0, 2.0)  # a corner of the picture that the drawing leaves free
+
+
+class Ticks:
+    """A clock that moves on a millisecond at each look."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        self.now += 0.001
+        return self.now
+
+
+def bits(state: EditState) -> tuple[Any, ...]:
+    """A state as a value to compare, equal only if equal to the last bit."""
+    pins = [
+        (pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes(), pin.depth, pin.angle)
+        for pin in state.pins
+    ]
+    stiffness = None if state.stiffness is None else state.stiffness.tobytes()
+    poses = [(pose.name, pose.positions.tobytes()) for pose in state.poses]
+    keys = [(key.time, key.positions.tobytes(), key.ease) for key in state.animation.keys]
+    lists = tuple(poses), state.animation.ease, state.animation.loop, tuple(keys)
+    return state.positions.tobytes(), tuple(pins), state.settings, stiffness, lists
+
+
+class Driver:
+    """An editor with one drawing open; places are in drawing pixels."""
+
+    def __init__(
+        self, document: Document, clock: Callable[[], float] | None = None, worker: Executor = AT_ONCE
+    ) -> None:
+        self.editor = Editor(clock or Ticks(), worker)
+        self.editor.open(document)
+        self._revision = 0
+        self.check()
+
+    @property
+    def session(self) -> Session:
+        assert self.editor.session is not None
+        return self.editor.session
+
+    @property
+    def state(self) -> EditState:
+        return self.session.state
+
+    @property
+    def tool(self) -> str:
+        return type(self.editor.tool).__name__
+
+    @property
+    def depth(self) -> int:
+        return self.session.history.depth
+
+    @property
+    def ids(self) -> list[int]:
+        return [pin.id for pin in self.state.pins]
+
+    @property
+    def everything(self) -> tuple[Any, ...]:
+        """All that a cancelled gesture must leave as it was."""
+        history, editor = self.session.history, self.editor
+        labels = history.undo_label, history.redo_label
+        return bits(self.state), editor.selection, history.depth, labels, editor.camera
+
+    def where(self, pin: int) -> Point:
+        """Where a pin is now."""
+        x, y = self.session.pin_positions()[self.ids.index(pin)].tolist()
+        return x, y
+
+    # -- what a hand does ----------------------------------------------------------------------------------
+
+    def press(self, at: Point, button: Button = "left", shift: bool = False) -> None:
+        self._pointer("press", at, button, shift)
+
+    def move(self, at: Point, button: Button = "left") -> None:
+        self._pointer("move", at, button, False)
+
+    def release(self, at: Point, button: Button = "left", shift: bool = False) -> None:
+        self._pointer("release", at, button, shift)
+
+    def click(self, at: Point, shift: bool = False) -> None:
+        self.press(at, shift=shift)
+        self.release(at, shift=shift)
+
+    def drag(self, start: Point, end: Point, steps: int = 4, button: Button = "left") -> None:
+        """Press, move, advance one step at each move, and release; not settled."""
+        path = np.linspace(self.editor.camera.to_screen(start), self.editor.camera.to_screen(end), steps + 1)
+        self.press(start, button)
+        for x, y in path[1:].tolist():  # points of the screen, so that a canvas may move meanwhile
+            self.handle(PointerEvent("move", (x, y), button))
+            self.advance()
+        self.handle(PointerEvent("release", (x, y), button))
+
+    def key(self, name: str, pressed: bool = True) -> None:
+        self.handle(KeyEvent(name, pressed))
+
+    def scroll(self, at: Point, amount: float) -> None:
+        self.handle(ScrollEvent(self.editor.camera.to_screen(at), amount))
+
+    def advance(self) -> None:
+        """One step, if anything moves; a worker's is taken over later."""
+        self.editor.advance(budget=0.0)
+        self.check()
+
+    def settle(self) -> None:
+        """Frames until the program would sleep."""
+        while self.editor.moving:
+            self.advance()
+
+    def undo(self) -> None:
+        self.editor.undo()
+        self.check()
+
+    def redo(self) -> None:
+        self.editor.redo()
+        self.check()
+
+    def handle(self, event: KeyEvent | PointerEvent | ScrollEvent) -> None:
+        self.editor.handle_event(event)
+        self.check()
+
+    def _pointer(self, kind: Any, at: Point, button: Button, shift: bool) -> None:
+        self.handle(PointerEvent(kind, self.editor.camera.to_screen(at), button, shift))
+
+    # -- what always holds ---------------------------------------------------------------------------------
+
+    def check(self) -> None:
+        """Raises AssertionError where the session has become something that it must never be."""
+        state, mesh = self.state, self.session.drawing.mesh
+        assert np.isfinite(state.positions).all()
+        assert (signed_areas(state.positions, mesh.faces) > 0).all()
+        assert not state.positions.flags.writeable
+        for pin in state.pins:
+            assert not pin.weights.flags.writeable
+            assert not pin.target.flags.writeable
+            assert np.isfinite(pin.target).all()
+            assert abs(pin.weights.sum() - 1) < 1e-9
+            assert 0 <= pin.face < len(mesh.faces)
+        assert len(set(self.ids)) == len(self.ids)
+        assert self.editor.selection <= set(self.ids)
+        assert self.editor.busy or not self.session.history.is_open
+        assert self.session.document.revision >= self._revision
+        self._revision = self.session.document.revision

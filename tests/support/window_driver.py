@@ -1,0 +1,281 @@
+"""Drives the whole window by labels, mouse and keys, through Dear ImGui's Test Engine."""
+
+# imgui_bundle first: its import makes pyGLFW load the libglfw that imgui's backend is linked to.
+from imgui_bundle import imgui  # isort: skip
+import ctypes
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import glfw
+import imgui_bundle._imgui_bundle as native
+import numpy as np
+from numpy.typing import NDArray
+
+from akap_editor.app.app_state import Workspace
+from akap_editor.app.commands.command import Command
+from akap_editor.app.jobs.task import Task
+from akap_editor.app.window import Window
+from akap_editor.editor.document.document import Document
+from akap_editor.editor.document.pin import Pin
+from akap_editor.editor.editor import Editor
+from akap_editor.editor.session.session import Session
+
+te = imgui.test_engine
+Point = tuple[float, float]
+MOST_FRAMES = 2000
+
+# The Test Engine waits in this for a thread that runs Python. Its binding keeps the interpreter locked, so
+# the two would wait for one another for ever; a call through ctypes unlocks it.
+render_unlocked = ctypes.CDLL(native.__file__)._ZN5ImGui6RenderEv
+render_unlocked.restype, render_unlocked.argtypes = None, []
+
+
+class WindowDriver:
+    """A window with an artificial hand. Places on the screen are whole points, as Test Engine rounds down."""
+
+    def __init__(self, window: Window) -> None:
+        self.window = window
+        self._engine = te.create_context()
+        io = te.get_io(self._engine)
+        io.config_run_speed = te.TestRunSpeed.fast
+        io.config_saved_settings = False
+        io.config_mouse_draw_cursor = False
+        io.config_fixed_delta_time = 1 / 60
+        te.start(self._engine, imgui.get_current_context())
+        self._count = 0
+        self._between: list[Callable[[], None]] = []
+
+    def close(self) -> None:
+        te.stop(self._engine)
+        self.window.close()
+        te.destroy_context(self._engine)  # only after ImGui's context
+
+    def reset(self, document: Document) -> None:
+        """As just started with this document, whatever was open before."""
+        if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
+            imgui.internal.close_popup_to_level(0, False)
+        self.window.space = Workspace(exporter=self.window.space.exporter)
+        self.editor.ui_scale = self.window.scale
+        self.space.show(document)
+        self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.beside)))
+        assert not self.space.error
+
+    # -- what is there -------------------------------------------------------------------------------------
+
+    @property
+    def space(self) -> Workspace:
+        return self.window.space
+
+    @property
+    def editor(self) -> Editor:
+        return self.space.editor
+
+    @property
+    def session(self) -> Session:
+        assert self.editor.session is not None
+        return self.editor.session
+
+    @property
+    def document(self) -> Document:
+        return self.session.document
+
+    @property
+    def pins(self) -> tuple[Pin, ...]:
+        return self.session.state.pins
+
+    @property
+    def tool(self) -> str:
+        return type(self.editor.tool).__name__
+
+    @property
+    def beside(self) -> Point:
+        """A place on the canvas where no drawing is."""
+        left, top, _, _ = self.editor.canvas
+        return left + 8, top + 8
+
+    def screen(self, place: Point) -> Point:
+        """The whole point of the screen that is nearest to a place in the drawing."""
+        x, y = self.editor.camera.to_screen(place)
+        return float(round(x)), float(round(y))
+
+    def place(self, at: Point) -> Point:
+        """The place in the drawing that is seen at a point of the screen."""
+        return self.editor.camera.to_drawing(at)
+
+    def pin_place(self, pin: int) -> NDArray[np.float64]:
+        """(2,): where a pin is now, in the drawing."""
+        ids = [each.id for each in self.pins]
+        return self.session.pin_positions()[ids.index(pin)]
+
+    # -- frames --------------------------------------------------------------------------------------------
+
+    def frame(self) -> None:
+        glfw.poll_events()
+        self.window.frame()
+        te.post_swap(self._engine)
+
+    def settle(self) -> None:
+        """Frames until the window would sleep."""
+        self.window.wake()
+        for _ in range(MOST_FRAMES):
+            if not self.window._busy:
+                return
+            self.window._awake -= 1
+            self.frame()
+        raise AssertionError(f"still busy after {MOST_FRAMES} frames")
+
+    def screenshot(self) -> NDArray[np.uint8]:
+        """(h, w, 3) of the settled window."""
+        shots: list[NDArray[np.uint8]] = []
+        self.settle()
+        self.window.after_draw.append(lambda: shots.append(self.window.screenshot()))
+        self.frame()
+        self.window.after_draw.clear()
+        return shots[0]
+
+    # -- what a hand does ----------------------------------------------------------------------------------
+
+    def do(self, actions: Callable[[Any], None], settle: bool = True) -> None:
+        """Run ``actions(hand)``, a Test Engine context, frame by frame; raises what it raises.
+
+        It runs on another thread, where OpenGL and GLFW must not be called; `on_main_thread` is for that.
+        """
+        failures: list[BaseException] = []
+
+        def guarded(hand: Any) -> None:
+            try:
+                actions(hand)
+            except BaseException as error:
+                failures.append(error)
+
+        self._count += 1
+        test = te.register_test(self._engine, "window", str(self._count))
+        test.test_func = guarded
+        te.queue_test(self._engine, test)
+        try:
+            self._run_queue()
+        except BaseException:
+            te.abort_current_test(self._engine)
+            with suppress(Exception):
+                self._run_queue()
+            raise
+        log = test.output.log.get_text()
+        assert te.is_test_queue_empty(self._engine), f"not done after {MOST_FRAMES} frames: {log}"
+        if failures:
+            raise failures[0]
+        assert test.output.status == te.TestStatus.success, log
+        if settle:
+            self.settle()
+
+    def _run_queue(self) -> None:
+        for _ in range(MOST_FRAMES):
+            if te.is_test_queue_empty(self._engine):
+                return
+            while self._between:
+                self._between.pop(0)()
+            self.frame()
+
+    def on_main_thread(self, hand: Any, action: Callable[[], None], frames: int = 2) -> None:
+        """From inside ``actions``: run something between two frames."""
+        self._between.append(action)
+        hand.yield_(frames)
+
+    def menu(self, *path: str) -> None:
+        """Choose a menu item by its labels."""
+        self.do(lambda hand: self._menu(hand, path))
+
+    @staticmethod
+    def _menu(hand: Any, path: tuple[str, ...]) -> None:
+        hand.set_ref("##MainMenuBar")
+        hand.menu_click("/".join(path))
+
+    def tool_button(self, command: Command) -> None:
+        """Click a command's button in the tool bar."""
+        self.do(lambda hand: hand.item_click(f"//Tools/{command.icon}##{command.label}"))
+
+    def panel(self, label: str) -> None:
+        """Click an item of the side panel."""
+        self.do(lambda hand: hand.item_click(f"//Panel/{label}"))
+
+    def dialog(self, title: str, *labels: str) -> None:
+        """Click items of a dialog, one after the other."""
+
+        def click(hand: Any) -> None:
+            for label in labels:
+                hand.item_click(f"//{title}###dialog {title}/{label}")
+
+        self.do(click)
+
+    def type_name(self, title: str, text: str, enter: bool = True) -> None:
+        """Replace the name in a file dialog."""
+
+        def type_(hand: Any) -> None:
+            hand.item_input(f"//{title}###dialog {title}/##name")
+            (hand.key_chars_replace_enter if enter else hand.key_chars_replace)(text)
+
+        self.do(type_)
+
+    def key(self, *chords: int) -> None:
+        """Press and release keys."""
+
+        def press(hand: Any) -> None:
+            for chord in chords:
+                hand.key_press(int(chord))
+
+        self.do(press)
+
+    def click(self, at: Point, shift: bool = False) -> None:
+        """Click a point of the screen."""
+
+        def click(hand: Any) -> None:
+            hand.mouse_move_to_pos(imgui.ImVec2(*at))
+            if shift:
+                hand.key_down(imgui.Key.mod_shift)
+            hand.mouse_click(0)
+            if shift:
+                hand.key_up(imgui.Key.mod_shift)
+
+        self.do(click)
+
+    def drag(self, *path: Point, button: int = 0, held: int | None = None) -> None:
+        """Press at the first point, move through the others, release at the last; held: a key meanwhile."""
+
+        def drag(hand: Any) -> None:
+            self.begin_drag(hand, path[0], button, held)
+            for at in path[1:]:
+                hand.mouse_move_to_pos(imgui.ImVec2(*at))
+            hand.mouse_up(button)
+            if held is not None:
+                hand.key_up(held)
+
+        self.do(drag)
+
+    @staticmethod
+    def begin_drag(hand: Any, start: Point, button: int = 0, held: int | None = None) -> None:
+        hand.mouse_move_to_pos(imgui.ImVec2(*start))
+        if held is not None:
+            hand.key_down(held)
+        hand.mouse_down(button)
+
+    def wheel(self, at: Point, notches: float) -> None:
+        def turn(hand: Any) -> None:
+            hand.mouse_move_to_pos(imgui.ImVec2(*at))
+            hand.mouse_wheel_y(notches)
+
+        self.do(turn)
+
+    def drop(self, *paths: Path) -> None:
+        """As GLFW tells of files dropped on the window."""
+        self.window._on_drop(None, [str(path) for path in paths])
+        self.settle()
+
+
+def one_step(task: Task) -> bool:
+    """In place of `Task.advance`, so that there is a frame after each step of a task."""
+    try:
+        task.progress = next(task.steps)
+    except StopIteration:
+        return True
+    return False
