@@ -43,7 +43,7 @@ class Hand:
     """Drags the trunk there and back in so many seconds."""
 
     def __init__(self, window: Window, seconds: float) -> None:
-        self._editor, self._seconds = window.space.editor, seconds
+        self._editor, self._seconds = window.state.editor, seconds
         self._to_screen = self._editor.camera.to_screen
         self._editor.handle_event(PointerEvent("press", self._to_screen(GRIP)))
         self._started = time.perf_counter()
@@ -96,8 +96,8 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
     clock = Clock(PARTS)
     image = read_image(resource("assets", "drawings", f"{name}.png"))
     with Window(null=True) as window:
-        window.space.show(new_document(make_drawing(image, vertices=vertices, name=name)))
-        editor = window.space.editor
+        window.state.show(new_document(make_drawing(image, vertices=vertices, name=name)))
+        editor = window.state.editor
         for pin in PINS:
             editor.add_pin(pin)
         for _ in range(20):  # panels find their places, and the drawing is fitted between them

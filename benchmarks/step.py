@@ -22,7 +22,7 @@ from timing import Clock
 
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.akap.killing_field import KillingSystem
-from akap_editor.deform.akap.preconditioned_cholesky import ReusedCholesky
+from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
 from akap_editor.deform.cholesky import SparseCholesky
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.geometry.distortion import distortion
@@ -137,7 +137,7 @@ def instrument() -> Clock:
     clock = Clock(PARTS)
     clock.wrap(KillingMatrix, "nonzeros", "assemble")
     clock.wrap(SparseCholesky, "factorize", "factor")
-    clock.wrap(ReusedCholesky, "solve", "solve")
+    clock.wrap(PreconditionedCholesky, "solve", "solve")
     clock.wrap(KillingSystem, "field", "solve")
     clock.wrap(AkapDeformer, "_move", "spirals")
     clock.wrap(AkapDeformer, "_remember", "memory")

@@ -19,7 +19,7 @@ WINDOW = frozenset({"glfw", "imgui_bundle"})
 OPENGL = WINDOW | {"moderngl"}
 
 BASE = frozenset({"errors", "resources"})
-EDITOR = BASE | {"geometry", "deform", "editor"}
+EDITOR = BASE | {"geometry", "meshing", "deform", "editor"}
 ALL = EDITOR | {"io", "render", "compare", "app", "cli", "__init__"}
 
 
@@ -37,8 +37,9 @@ RULES = {
     "errors": Rule(frozenset(), never=OPENGL),
     "resources": Rule(frozenset({"errors"}), never=OPENGL),
     "geometry": Rule(frozenset({"errors"}), never=OPENGL),
+    "meshing": Rule(frozenset({"errors", "geometry"}), never=OPENGL),
     "deform": Rule(BASE | {"geometry"}, never=OPENGL),
-    "editor": Rule(BASE | {"geometry", "deform"}, never=OPENGL),
+    "editor": Rule(BASE | {"geometry", "meshing", "deform"}, never=OPENGL),
     "io": Rule(EDITOR),
     "render": Rule(EDITOR, never=WINDOW),
     "compare": Rule(EDITOR | {"io", "render", "__init__"}, never=OPENGL),
@@ -50,7 +51,7 @@ RULES = {
 
 # Libraries that one place wraps for all others.
 WRAPPED = {
-    "triangle": {"geometry/triangulate.py", "geometry/triangle_worker.py"},
+    "triangle": {"meshing/triangulate.py", "meshing/triangle_worker.py"},
     "cvxopt": {"deform/cholesky.py"},
     "numba": {"geometry/jit.py"},
 }
@@ -121,7 +122,7 @@ def test_no_module_imports_what_its_layer_must_not() -> None:
         ("resources.py", "from .geometry import mesh"),
         ("geometry/mesh.py", "from ..deform import akap"),
         ("geometry/mesh.py", "from .. import deform"),
-        ("geometry/mesh.py", "import akap_editor.deform.akap"),
+        ("geometry/mesh.py", "import akap_editor.deform.akap.deformer"),
         ("geometry/mesh.py", "from akap_editor.resources import resource"),
         ("geometry/mesh.py", "from akap_editor import make_drawing"),
         ("geometry/mesh.py", "import akap_editor"),
@@ -165,10 +166,10 @@ def test_forbidden_import_is_found(path: str, source: str) -> None:
     [
         (
             "geometry/mesh.py",
-            "from ..errors import InputError\nfrom . import checks\nfrom .checks import as_points",
+            "from ..errors import InputError\nfrom . import validation\nfrom .validation import as_points",
         ),
         ("geometry/__init__.py", "from .mesh import TriMesh\nimport akap_editor.geometry.mesh"),
-        ("geometry/triangle_worker.py", "import triangle"),
+        ("meshing/triangle_worker.py", "import triangle"),
         ("deform/cholesky.py", "import cvxopt.cholmod"),
         ("deform/akap.py", "from .. import errors, geometry\nfrom ..geometry.mesh import TriMesh"),
         ("editor/editor.py", "from ..deform.deformer import Deformer\nfrom ..resources import resource"),
@@ -212,7 +213,7 @@ def load_without_opengl(modules: list[str]) -> subprocess.CompletedProcess[str]:
 
 def modules_without_opengl() -> list[str]:
     """The package itself, cli, and every module of the layers that a script may use without a display."""
-    layers = ("geometry", "deform", "editor", "io")
+    layers = ("geometry", "meshing", "deform", "editor", "io")
     files = [file for layer in layers for file in sorted((PACKAGE / layer).rglob("*.py"))]
     dotted = [".".join(file.relative_to(ROOT).with_suffix("").parts) for file in files]
     return ["akap_editor", *(name.removesuffix(".__init__") for name in dotted), "akap_editor.cli"]

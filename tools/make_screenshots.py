@@ -15,14 +15,14 @@ from pathlib import Path
 
 import numpy as np
 
-from akap_editor.app.app_state import Palette, Workspace
+from akap_editor.app.app_state import AppState, Palette
 from akap_editor.app.preferences import Preferences
 from akap_editor.app.window import SIZE, Window
 from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.tools.keyboard_pointer import toggle_crosshair
+from akap_editor.editor.tools.keyboard_pointer import toggle_keyboard_pointer
 from akap_editor.editor.tools.rotate import RING
 from akap_editor.io.akap.recording import read_recording
 from akap_editor.io.images import read_image, write_png
@@ -57,7 +57,7 @@ def posed_elephant() -> Document:
 
 def rest(window: Window) -> None:
     """The elephant without pins instead."""
-    window.space.show(new_document(posed_elephant().drawing))
+    window.state.show(new_document(posed_elephant().drawing))
 
 
 @shot("editor")
@@ -68,59 +68,59 @@ def editor(window: Window) -> None:
 @shot("mesh")
 def mesh(window: Window) -> None:
     """The mesh over the drawing."""
-    window.space.show_mesh = True
+    window.state.show_mesh = True
 
 
 @shot("start")
 def start(window: Window) -> None:
     """The start page, with recent files."""
-    window.space.editor.close()
+    window.state.editor.close()
     home = Path("/home/ada/Pictures")
     for name in reversed(RECENT):
-        window.space.preferences.opened(home / name)
+        window.state.preferences.opened(home / name)
 
 
 @shot("first-steps")
 def first_steps(window: Window) -> None:
     """What a newcomer sees."""
     rest(window)
-    window.space.first_steps = True
+    window.state.first_steps = True
 
 
 @shot("palette")
 def palette(window: Window) -> None:
     """The command palette while something is searched."""
-    window.space.palette = Palette("sho")
+    window.state.palette = Palette("sho")
 
 
 @shot("keys")
 def keys(window: Window) -> None:
     """The page of keys."""
-    window.space.keys = True
+    window.state.keys = True
 
 
 @shot("pins")
 def pins(window: Window) -> None:
     """Two pins selected, and the values of one of them."""
-    space = window.space
+    state = window.state
     chosen = [pin.id for pin in posed_elephant().state.pins][-2:]
-    space.editor.select(chosen)
-    space.editor.request = PinRequest("values", chosen[-1])
+    state.editor.select(chosen)
+    state.editor.request = PinRequest("values", chosen[-1])
 
 
 @shot("crosshair")
 def crosshair(window: Window) -> None:
     """The pointer that is moved by keys, where a pin may be added."""
-    editor = window.space.editor
+    editor = window.state.editor
     width, height = posed_elephant().drawing.size
     editor.last_pointer = editor.camera.to_screen((0.42 * width, 0.5 * height))
-    toggle_crosshair(editor)
+    toggle_keyboard_pointer(editor)
 
 
 @shot("ring")
 def ring(window: Window) -> None:
     """The drawing while it is turned around a pin, and another pin that holds its angle."""
-    editor = window.space.editor
+    editor = window.state.editor
     pins = [pin.id for pin in posed_elephant().state.pins]
     editor.edit("Hold angle", lambda session: session.hold_angles(pins[:1]))
     x, y = editor.pins_on_screen()[pins[-1]]
@@ -137,7 +137,7 @@ def ring(window: Window) -> None:
 def brush(window: Window) -> None:
     """The back and a tusk of the elephant made stiff, and the brush."""
     rest(window)
-    editor = window.space.editor
+    editor = window.state.editor
     editor.chosen_tool = "brush"
     width, height = posed_elephant().drawing.size
     for factor, places in (
@@ -152,57 +152,57 @@ def brush(window: Window) -> None:
 @shot("field")
 def field(window: Window) -> None:
     """The vector fields in the middle of a drag."""
-    space, camera = window.space, window.space.editor.camera
-    space.view.vectors = True
+    state, camera = window.state, window.state.editor.camera
+    state.view.vectors = True
     pin = posed_elephant().state.pins[-1]
     x, y = camera.to_screen((pin.target[0], pin.target[1]))
-    space.editor.handle_event(PointerEvent("press", (x, y)))
+    state.editor.handle_event(PointerEvent("press", (x, y)))
     for way in (10.0, 40.0):
-        space.editor.handle_event(PointerEvent("move", (x - way, y)))
+        state.editor.handle_event(PointerEvent("move", (x - way, y)))
 
 
 @shot("heat")
 def heat(window: Window) -> None:
     """The map of distortion, with its scale."""
-    window.space.view.heat = "angle"
-    window.space.show_pins = False
+    window.state.view.heat = "angle"
+    window.state.show_pins = False
 
 
 @shot("ghost")
 def ghost(window: Window) -> None:
     """The rest pose behind the pose."""
-    window.space.view.ghost = True
+    window.state.view.ghost = True
 
 
 @shot("split")
 def split(window: Window) -> None:
     """Two methods side by side."""
-    window.space.split = True
+    window.state.split = True
 
 
 @shot("export")
 def export(window: Window) -> None:
     """The export dialog."""
-    window.space.ask_export()
+    window.state.ask_export()
 
 
 def animated(window: Window) -> None:
     """Three keyframes of the elephant's trunk on the timeline, looked at between the first two."""
-    space, editor = window.space, window.space.editor
-    space.show_timeline, space.timeline = True, "keyframes"
+    state, editor = window.state, window.state.editor
+    state.show_timeline, state.timeline = True, "keyframes"
     window.frame()
     pin = posed_elephant().state.pins[-1]
     x, y = pin.target.tolist()
     rest = posed_elephant().drawing.mesh.vertices
-    space.key_player.put(0.0, rest)
-    space.key_player.put(0.8, posed_elephant().state.positions)
+    state.keyframe_playback.put(0.0, rest)
+    state.keyframe_playback.put(0.8, posed_elephant().state.positions)
     editor.place_pin(pin.id, (x - 120.0, y + 260.0))
     editor.session.settle()
-    space.key_player.put(1.6)
+    state.keyframe_playback.put(1.6)
     for time, name in ((0.0, "Rest"), (0.8, "Trunk up"), (1.6, "Reach")):
-        space.key_player.scrub(time)
+        state.keyframe_playback.scrub(time)
         editor.keep_pose(name)
-    space.key_player.scrub(0.45)
+    state.keyframe_playback.scrub(0.45)
     editor.select(())
 
 
@@ -210,27 +210,27 @@ def animated(window: Window) -> None:
 def keyframes(window: Window) -> None:
     """Keyframes on the timeline, with onion skin."""
     animated(window)
-    window.space.show_pins = False
-    window.space.key_player.onion.shown = True
-    window.space.key_player.chosen = frozenset({0.8})
+    window.state.show_pins = False
+    window.state.keyframe_playback.onion.shown = True
+    window.state.keyframe_playback.chosen = frozenset({0.8})
 
 
 @shot("timeline")
 def timeline(window: Window) -> None:
     """A recording that was opened, looked at in its middle."""
-    window.space.open_path(resource("assets", "recordings", "elephant.akaprec"))
-    while window.space.waiting:
+    window.state.open_path(resource("assets", "recordings", "elephant.akaprec"))
+    while window.state.waiting:
         window.frame()
-    window.space.player.cut_to(1.5, 6.0)
-    window.space.player.scrub(4.0)
-    window.space.notice = ""
+    window.state.session_playback.cut_to(1.5, 6.0)
+    window.state.session_playback.scrub(4.0)
+    window.state.notice = ""
 
 
 @shot("animation")
 def animation(window: Window) -> None:
     """The dialog for exports of the timeline."""
     animated(window)
-    window.space.animating = True
+    window.state.animating = True
 
 
 def take(window: Window, name: str, folder: Path) -> None:
@@ -239,10 +239,10 @@ def take(window: Window, name: str, folder: Path) -> None:
         imgui.internal.close_popup_to_level(0, False)
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
-    space = window.space = Workspace(exporter=window.space.exporter, preferences=Preferences())
-    space.editor.ui_scale = window.scale
-    space.show(posed_elephant())
-    space.editor.mark_saved(Path("elephant.akap"))
+    state = window.state = AppState(exporter=window.state.exporter, preferences=Preferences())
+    state.editor.ui_scale = window.scale
+    state.show(posed_elephant())
+    state.editor.mark_saved(Path("elephant.akap"))
     window.frame()
     SHOTS[name](window)
     for _ in range(SETTLE):
@@ -251,7 +251,7 @@ def take(window: Window, name: str, folder: Path) -> None:
     window.after_draw.append(lambda: shots.append(window.screenshot()))
     window.frame()
     window.after_draw.clear()
-    assert not space.error, space.error
+    assert not state.error, state.error
     write_png(folder / f"{name}.png", np.dstack([shots[0], np.full(shots[0].shape[:2], 255, np.uint8)]))
     print(folder / f"{name}.png")
 

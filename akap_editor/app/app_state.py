@@ -7,12 +7,12 @@ from functools import partial
 from pathlib import Path
 from typing import Literal
 
-from ..editor.animation.keyframe_playback import KeyPlayer
-from ..editor.animation.playback import Transport
-from ..editor.animation.pose_blend import Mixer
-from ..editor.animation.session_playback import Player
-from ..editor.background_remesh import Remesher
-from ..editor.comparison import Beside
+from ..editor.animation.keyframe_playback import KeyframePlayback
+from ..editor.animation.playback import Playback
+from ..editor.animation.pose_blend import PoseBlend
+from ..editor.animation.session_playback import SessionPlayback
+from ..editor.background_remesh import BackgroundRemesh
+from ..editor.comparison import MethodComparison
 from ..editor.document.document import Document
 from ..editor.document.settings import Settings
 from ..editor.editor import Editor
@@ -22,28 +22,28 @@ from ..errors import AkapError, InputError
 from ..geometry.distortion import Distortion, distortion
 from ..geometry.validation import Floats
 from ..io.akap import project as project_file
-from ..io.akap.autosave import Autosave, Copy
+from ..io.akap.autosave import Autosave, RecoveryCopy
 from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.images import has_transparency, is_animation
 from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, PROJECT_SUFFIX, open_document
 from ..render.offscreen import OffscreenRenderer
 from ..render.overlays import Overlays
 from ..resources import bundled_drawings
-from .canvas.view_options import ViewState, skins
-from .dialogs.exporting import ExportChoice
-from .dialogs.file_dialog import FileRequest, Palette, Question
+from .canvas.view_options import ViewOptions, skins
+from .dialogs.exporting import PoseExportOptions
+from .dialogs.file_dialog import FileRequest, Palette, UnsavedChangesQuestion
 from .jobs.open_recording import reenacting
-from .jobs.pose_export import Writer
+from .jobs.pose_export import PoseExportQueue
 from .jobs.task import Task
-from .panels.measurements import Meter
-from .pending_values import Drafts
+from .panels.measurements import Measurements
+from .pending_values import PendingValues
 from .preferences import Preferences
 
 SWITCHES = ("show_mesh", "checker", "show_timeline")  # fields that are remembered between runs
 
 
 @dataclass
-class Workspace:
+class AppState:
     """The state of the window; panels show it and commands change it.
 
     notice: a sentence for the status bar that goes with the next edit; error: one that must be read first.
@@ -53,9 +53,9 @@ class Workspace:
     show_mesh: bool = False
     show_pins: bool = True
     show_timeline: bool = False
-    player: Player = field(default_factory=Player)
-    mixer: Mixer = field(default_factory=Mixer)
-    key_player: KeyPlayer = field(init=False)
+    session_playback: SessionPlayback = field(default_factory=SessionPlayback)
+    pose_blend: PoseBlend = field(default_factory=PoseBlend)
+    keyframe_playback: KeyframePlayback = field(init=False)
     timeline: Literal["session", "keyframes"] = "session"  # which of the two the timeline shows
     grip: Literal["start", "end", "head", "keys", "none"] = "head"  # what the pointer holds of the timeline
     held_key: float = 0.0  # the time of the keyframe that it holds
@@ -66,40 +66,40 @@ class Workspace:
     new_name: str = ""
     checker: bool = True
     split: bool = False
-    beside: Beside = field(default_factory=Beside)
+    comparison: MethodComparison = field(default_factory=MethodComparison)
     notice: str = ""
     error: str = ""
     about: bool = False
     keys: bool = False
     closing: bool = False
-    question: Question | None = None
+    question: UnsavedChangesQuestion | None = None
     request: FileRequest | None = None
-    export: ExportChoice = field(default_factory=ExportChoice)
+    export: PoseExportOptions = field(default_factory=PoseExportOptions)
     palette: Palette | None = None
     folder: Path = field(default_factory=Path.cwd)
     exporter: OffscreenRenderer = field(default_factory=OffscreenRenderer)
-    writer: Writer = field(default_factory=Writer)
+    writer: PoseExportQueue = field(default_factory=PoseExportQueue)
     preferences: Preferences = field(default_factory=Preferences)
     autosave: Autosave | None = None
-    lost: list[Copy] = field(default_factory=list)  # unsaved work of programs that crashed
-    drafts: Drafts = field(default_factory=Drafts)
-    view: ViewState = field(default_factory=ViewState)
-    meter: Meter = field(default_factory=Meter)
+    lost: list[RecoveryCopy] = field(default_factory=list)  # unsaved work of programs that crashed
+    pending_values: PendingValues = field(default_factory=PendingValues)
+    view: ViewOptions = field(default_factory=ViewOptions)
+    measurements: Measurements = field(default_factory=Measurements)
     first_steps: bool = False  # whether newcomers are shown how to begin
     steps_taken: int = 0  # of these
-    remesher: Remesher = field(init=False)
+    remesher: BackgroundRemesh = field(init=False)
     _jobs: list[Callable[[], None]] = field(default_factory=list)
     _due: list[Callable[[], None]] = field(default_factory=list)
     _measured: tuple[Floats, Distortion] | None = None
 
     def __post_init__(self) -> None:
-        self.remesher = Remesher(self.editor)
-        self.key_player = KeyPlayer(self.editor)
+        self.remesher = BackgroundRemesh(self.editor)
+        self.keyframe_playback = KeyframePlayback(self.editor)
 
     @property
-    def transport(self) -> Transport:
+    def playback(self) -> Playback:
         """What the timeline plays."""
-        return self.key_player if self.timeline == "keyframes" else self.player
+        return self.keyframe_playback if self.timeline == "keyframes" else self.session_playback
 
     def show_in_timeline(self, timeline: Literal["session", "keyframes"]) -> None:
         """Look at the other one; of what was shown nothing is seen any more."""
@@ -109,28 +109,28 @@ class Workspace:
 
     def show_present(self) -> None:
         """Of what the timeline shows nothing is seen any more."""
-        if self.player.at is not None:
-            self.player.now()
-        if self.key_player.following:
-            self.key_player.leave()
+        if self.session_playback.at is not None:
+            self.session_playback.now()
+        if self.keyframe_playback.following:
+            self.keyframe_playback.leave()
 
     # -- between runs ----------------------------------------------------------------------------------------
 
     @classmethod
-    def remembering(cls, preferences: Preferences) -> "Workspace":
+    def remembering(cls, preferences: Preferences) -> "AppState":
         """As it was left the last time."""
-        space = cls(preferences=preferences, notice=preferences.problem)
-        space.first_steps = preferences.is_kept and not preferences.get("first steps done", False)
+        state = cls(preferences=preferences, notice=preferences.problem)
+        state.first_steps = preferences.is_kept and not preferences.get("first steps done", False)
         for name in SWITCHES:
-            setattr(space, name, preferences.get(name, getattr(space, name)))
-        space.view.recall(preferences.get("overlays", {}))
-        if space.view.reference_path is not None:
-            space.later(space.view.read_reference_again)
+            setattr(state, name, preferences.get(name, getattr(state, name)))
+        state.view.recall(preferences.get("overlays", {}))
+        if state.view.reference_path is not None:
+            state.later(state.view.read_reference_again)
         brush: list[object] = preferences.get("brush", [])
         match brush:
             case [int() | float() as factor, int() | float() as radius]:
-                space.editor.brush = Brush.of(radius, factor)
-        return space
+                state.editor.brush = Brush.of(radius, factor)
+        return state
 
     def remember(self) -> None:
         """Write what has changed to the preferences; if that fails, a notice says so once."""
@@ -254,13 +254,13 @@ class Workspace:
 
         self.unless_unsaved(lambda: self.later(read, f"Opening {path.name} ..."))
 
-    def _go_on_with(self, path: Path, session: Session, player: Player) -> None:
+    def _go_on_with(self, path: Path, session: Session, playback: SessionPlayback) -> None:
         """Show a recording that was done again; the timeline holds all of it."""
         session.mark_saved(None)
         self.editor.take_over(session)
-        self.player, self.timeline, self.show_timeline = player, "session", True
+        self.session_playback, self.timeline, self.show_timeline = playback, "session", True
         self.used(path)
-        self.notice = f"Opened {path.name}: {player.duration:.0f} seconds are on the timeline"
+        self.notice = f"Opened {path.name}: {playback.duration:.0f} seconds are on the timeline"
 
     def used(self, path: Path) -> None:
         """A file was opened or saved: the next dialog begins there, and it can be found again."""
@@ -271,7 +271,7 @@ class Workspace:
     def unless_unsaved(self, go_on: Callable[[], None]) -> None:
         """Go on at once, or after the user has said what to do with unsaved changes."""
         if self.editor.modified:
-            self.question = Question(go_on)
+            self.question = UnsavedChangesQuestion(go_on)
         else:
             go_on()
 
@@ -356,8 +356,8 @@ class Workspace:
     @property
     def _motions(self) -> tuple[tuple[bool, bool], ...]:
         """Of all that may move: whether it does, and whether it only waits for its thread."""
-        parts = (self.editor, self.beside, self.view, self.writer)
-        return *((part.moving, part.waiting) for part in parts), (self.transport.playing, False)
+        parts = (self.editor, self.comparison, self.view, self.writer)
+        return *((part.moving, part.waiting) for part in parts), (self.playback.playing, False)
 
     @property
     def moving(self) -> bool:
@@ -376,7 +376,7 @@ class Workspace:
         overlays = self.view.overlays(self.editor, distortion, mesh, scale)
         if self.timeline == "session" or not self.show_timeline:
             return overlays
-        return replace(overlays, skins=skins(*self.key_player.neighbors()))
+        return replace(overlays, skins=skins(*self.keyframe_playback.neighbors()))
 
     def measure(self) -> Distortion | None:
         """The distortion of the current pose, computed once for each pose."""

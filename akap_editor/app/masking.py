@@ -4,34 +4,34 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..editor.document.document import Document, new_document
-from ..editor.document.drawing import drawing_from, masked
+from ..editor.document.drawing import masked, remove_background_and_mesh
 from ..errors import InputError
 from ..io.images import read_mask
 from ..io.open_document import PICTURE_SUFFIXES
-from .app_state import Workspace
+from .app_state import AppState
 from .dialogs.file_dialog import FileRequest
 
 
-def can_mask(space: Workspace) -> bool:
+def can_mask(state: AppState) -> bool:
     """Whether the mesh was made of the picture, as those from mesh files are not."""
-    return space.document is not None and space.document.drawing.meshing is not None
+    return state.document is not None and state.document.drawing.meshing is not None
 
 
-def ask_mask(space: Workspace) -> None:
+def ask_mask(state: AppState) -> None:
     """Ask for a mask, and about unsaved changes, as the drawing begins anew; then cut it out."""
 
     def use(path: Path) -> None:
-        document = space.document
+        document = state.document
         if document is None:
             return
 
         def cut() -> None:
-            space.show(cut_out(document, path))
-            space.notice = f"Cut out with {path.name}"
+            state.show(cut_out(document, path))
+            state.notice = f"Cut out with {path.name}"
 
-        space.unless_unsaved(lambda: space.later(cut, f"Cutting out with {path.name} ..."))
+        state.unless_unsaved(lambda: state.later(cut, f"Cutting out with {path.name} ..."))
 
-    space.request = FileRequest("Choose mask", PICTURE_SUFFIXES, space.folder, use)
+    state.request = FileRequest("Choose mask", PICTURE_SUFFIXES, state.folder, use)
 
 
 def cut_out(document: Document, mask: Path) -> Document:
@@ -46,6 +46,8 @@ def cut_out(document: Document, mask: Path) -> Document:
     shown = read_mask(mask)
     try:
         image = masked(picture, shown)
-        return new_document(drawing_from(image, replace(drawing.meshing, background=None), drawing.name))
+        return new_document(
+            remove_background_and_mesh(image, replace(drawing.meshing, background=None), drawing.name)
+        )
     except InputError as error:
         raise InputError(f"{mask}: {error}") from error

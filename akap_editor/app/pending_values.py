@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 T = TypeVar("T")
 
 
-class Drafts:
+class PendingValues:
     """Keeps what a field or slider shows until its edit ends, so that half a number moves nothing."""
 
     def __init__(self) -> None:

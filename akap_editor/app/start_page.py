@@ -10,7 +10,7 @@ from PIL import Image
 from ..io.images import read_image
 from ..resources import bundled_drawings
 from . import widgets
-from .app_state import Workspace
+from .app_state import AppState
 from .commands import registry as commands
 from .theme import ACCENT, DARK, FRAME, HOVER, PANEL, QUIET, STRONG_LINE, TEXT, packed
 
@@ -40,9 +40,9 @@ class Welcome:
             texture.release()
         self._textures.clear()
 
-    def draw(self, space: Workspace, scale: float, density: float) -> None:
+    def draw(self, state: AppState, scale: float, density: float) -> None:
         """The page over the whole canvas. scale: points per design point; density: pixels per point."""
-        left, top, right, bottom = space.editor.canvas
+        left, top, right, bottom = state.editor.canvas
         imgui.set_next_window_pos(ImVec2(left, top))
         imgui.set_next_window_size(ImVec2(right - left, bottom - top))
         column = min(_WIDTH * scale, right - left - 48 * scale)
@@ -56,14 +56,14 @@ class Welcome:
         imgui.pop_style_color()
         imgui.pop_style_var(3)
         _title()
-        _drop_zone(space, scale, column)
+        _drop_zone(state, scale, column)
         _heading("Bundled drawings")
-        self._drawings(space, scale, column, density)
+        self._drawings(state, scale, column, density)
         _heading("Recent files")
-        _recent(space, column)
+        _recent(state, column)
         imgui.end()
 
-    def _drawings(self, space: Workspace, scale: float, column: float, density: float) -> None:
+    def _drawings(self, state: AppState, scale: float, column: float, density: float) -> None:
         paths = bundled_drawings()
         gap = _GAP * scale
         side = round((column - gap * (len(paths) - 1)) / len(paths))
@@ -72,7 +72,7 @@ class Welcome:
             corner = imgui.get_cursor_screen_pos()
             name_height = imgui.get_text_line_height() + 8 * scale
             if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BY_KEYS):
-                _open(space, path)
+                _open(state, path)
             hovered = imgui.is_item_hovered() or imgui.is_item_focused()
             end = ImVec2(corner.x + side, corner.y + side)
             draw.add_rect_filled(corner, end, packed(HOVER if hovered else PANEL), 8 * scale)
@@ -102,9 +102,9 @@ class Welcome:
         return self._textures[path, pixels]
 
 
-def _open(space: Workspace, path: Path) -> None:
+def _open(state: AppState, path: Path) -> None:
     """Open a file; keys belong to the canvas then."""
-    space.open_path(path)
+    state.open_path(path)
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
 
@@ -125,10 +125,10 @@ def _heading(title: str) -> None:
     imgui.pop_font()
 
 
-def _drop_zone(space: Workspace, scale: float, column: float) -> None:
+def _drop_zone(state: AppState, scale: float, column: float) -> None:
     corner, height = imgui.get_cursor_screen_pos(), _DROP_HEIGHT * scale
     if imgui.invisible_button("Drop a picture here", ImVec2(column, height), _BY_KEYS):
-        widgets.run(space, commands.OPEN)
+        widgets.run(state, commands.OPEN)
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
     if imgui.is_item_hovered():
         imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
@@ -172,8 +172,8 @@ def _dashed_frame(draw: imgui.ImDrawList, low: ImVec2, high: ImVec2, scale: floa
             )
 
 
-def _recent(space: Workspace, column: float) -> None:
-    files = space.preferences.recent
+def _recent(state: AppState, column: float) -> None:
+    files = state.preferences.recent
     if not files:
         widgets.quiet("None yet. What you open or save is listed here.")
         return
@@ -181,7 +181,7 @@ def _recent(space: Workspace, column: float) -> None:
     for index, path in enumerate(files[: max(room, 3)]):
         name = widgets.shortened(path.name, 0.4 * column)
         if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
-            _open(space, path)
+            _open(state, path)
         widgets.explain(str(path))
         folder = widgets.shortened(str(path.parent), 0.55 * column, end=True)
         room_left = imgui.get_content_region_avail().x

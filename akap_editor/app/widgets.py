@@ -6,7 +6,7 @@ from bisect import bisect_left
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document.settings import Settings
-from .app_state import Workspace
+from .app_state import AppState
 from .commands.command import Command
 from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT, Rgba, packed
 
@@ -23,16 +23,16 @@ WALKED = imgui.ChildFlags_.nav_flattened  # of a child window: keys walk in and 
 _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
 
 
-def run(space: Workspace, command: Command) -> None:
+def run(state: AppState, command: Command) -> None:
     """Run a command; what goes wrong becomes a message."""
-    space.notice = ""
-    space.attempt(lambda: command.run(space))
+    state.notice = ""
+    state.attempt(lambda: command.run(state))
 
 
-def change(space: Workspace, settings: Settings) -> None:
+def change(state: AppState, settings: Settings) -> None:
     """Change how the drawing bends; what goes wrong becomes a message."""
-    space.notice = ""
-    space.attempt(lambda: space.change_settings(settings))
+    state.notice = ""
+    state.attempt(lambda: state.change_settings(settings))
 
 
 def switch(label: str, on: bool, tooltip: str = "") -> tuple[bool, bool]:
@@ -269,9 +269,9 @@ def enter_pressed() -> bool:
     return any(imgui.is_key_pressed(key, False) for key in keys)
 
 
-def close(space: Workspace, field: str, value: object) -> None:
+def close(state: AppState, field: str, value: object) -> None:
     """Close the dialog that a field of the workspace has asked for."""
-    setattr(space, field, value)
+    setattr(state, field, value)
     close_popup()
 
 

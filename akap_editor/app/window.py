@@ -21,10 +21,10 @@ from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from . import glfw_key_order as key_order
 from . import theme, widgets
-from .app_state import Workspace
+from .app_state import AppState
 from .canvas import split_view
 from .canvas.pointer_input import Canvas
-from .canvas.scene import Picture
+from .canvas.scene import Scene
 from .canvas.view_options import draw_legend
 from .commands import palette
 from .commands import registry as commands
@@ -45,9 +45,9 @@ STEP_SECONDS = 0.004  # between two looks whether a thread is done
 
 def _warm_up() -> None:
     """Load the engine, in a thread of its own: the window is there before."""
-    from ..deform.precompile import warm_up
+    from ..deform.precompile import precompile
 
-    warm_up()
+    precompile()
 
 
 def render_imgui() -> None:
@@ -74,25 +74,25 @@ class Window:
         preferences: Preferences | None = None,
         autosave: Autosave | None = None,
     ) -> None:
-        self.space = Workspace.remembering(preferences or Preferences())
-        self.space.autosave = autosave
+        self.state = AppState.remembering(preferences or Preferences())
+        self.state.autosave = autosave
         if autosave is not None:
-            self.space.lost = autosave.lost()
+            self.state.lost = autosave.lost()
         self.frames = 0
         self.after_draw: list[Callable[[], None]] = []
         self._scale_wanted, self._in_frame, self._focused = scale, False, False
         self._awake = SETTLE_FRAMES
         self._dropped: list[list[Path]] = []
         self._title = ""
-        self._handle = _create_window(null, hidden, size or _remembered_size(self.space.preferences))
-        place = _remembered_place(self.space.preferences, _screens())
+        self._handle = _create_window(null, hidden, size or _remembered_size(self.state.preferences))
+        place = _remembered_place(self.state.preferences, _screens())
         if place is not None:
             glfw.set_window_pos(self._handle, *place)
-        if self.space.preferences.get("maximized", False):
+        if self.state.preferences.get("maximized", False):
             glfw.maximize_window(self._handle)
         self.ctx = moderngl.create_context(require=330)
-        self._picture = Picture(self.ctx)
-        self.space.exporter = OffscreenRenderer(self.ctx)
+        self._picture = Scene(self.ctx)
+        self.state.exporter = OffscreenRenderer(self.ctx)
         # Callbacks only queue: an exception in one would come out of poll_events. ImGui calls those it needs.
         glfw.set_key_callback(self._handle, key_order.on_key)
         glfw.set_drop_callback(self._handle, self._on_drop)  # type: ignore[arg-type]  # its stub is wrong
@@ -123,8 +123,8 @@ class Window:
     def close(self) -> None:
         """Free everything; what is remembered is written."""
         self._remember()
-        self.space.writer.close()
-        self.space.exporter.__exit__()
+        self.state.writer.close()
+        self.state.exporter.__exit__()
         self._welcome.release()
         self._recovery.release()
         self._picture.release()
@@ -141,20 +141,20 @@ class Window:
         """Show a document and stay until the window is closed."""
         Thread(target=_warm_up, name="warm-up", daemon=True).start()
         if document is not None:
-            self.space.show(document)
+            self.state.show(document)
         try:
-            while not self.space.closing:
+            while not self.state.closing:
                 self._turn()
         except BaseException:
-            self.space.rescue()
+            self.state.rescue()
             raise
-        if self.space.autosave is not None:
-            self.space.autosave.close()
-        self.space.writer.finish(self.space.exporter)
+        if self.state.autosave is not None:
+            self.state.autosave.close()
+        self.state.writer.finish(self.state.exporter)
 
     def _turn(self) -> None:
         """Once around the loop: sleep or draw a frame."""
-        self.space.protect()
+        self.state.protect()
         if self._due:
             glfw.poll_events()
         elif self._busy:
@@ -165,7 +165,7 @@ class Window:
         # ImGui takes some events one per frame and fades, and panels show the pose of the frame before
         context = imgui.get_current_context()
         fading = 0 < context.dim_bg_ratio < 1
-        if context.input_events_queue.size() or fading or (self.space.moving and not self.space.stalled):
+        if context.input_events_queue.size() or fading or (self.state.moving and not self.state.stalled):
             self.wake()
         if self._due:
             self._awake -= 1
@@ -175,14 +175,14 @@ class Window:
     @property
     def _due(self) -> bool:
         """Whether there may be something new to be seen."""
-        space = self.space
-        moves = space.moving and not space.stalled
-        return self._awake > 0 or moves or space.waiting or self._dialogs.waiting or bool(self._dropped)
+        state = self.state
+        moves = state.moving and not state.stalled
+        return self._awake > 0 or moves or state.waiting or self._dialogs.waiting or bool(self._dropped)
 
     @property
     def _busy(self) -> bool:
         """Whether there is, or soon will be."""
-        return self._due or self.space.stalled
+        return self._due or self.state.stalled
 
     def wake(self) -> None:
         """Draw the next few frames, whatever happens."""
@@ -192,12 +192,12 @@ class Window:
         """Write the preferences where something has changed; a moment when nothing else happens will do."""
         maximized = bool(glfw.get_window_attrib(self._handle, glfw.MAXIMIZED))
         width, height = glfw.get_window_size(self._handle)
-        preferences = self.space.preferences
+        preferences = self.state.preferences
         preferences.put("maximized", maximized)
         if not maximized and not glfw.get_window_attrib(self._handle, glfw.ICONIFIED):
             preferences.put("window", [round(width / self.scale), round(height / self.scale)])
             preferences.put("place", list(glfw.get_window_pos(self._handle)))
-        self.space.remember()
+        self.state.remember()
 
     def _rest(self) -> None:
         """Sleep until something happens, a tooltip is due or a caret blinks."""
@@ -243,52 +243,52 @@ class Window:
         except Exception as error:  # a bug must not cost the user's work
             traceback.print_exc()
             self._recover(recovery, f"Something went wrong in the program ({type(error).__name__}: {error})")
-            self.space.editor.cancel()
+            self.state.editor.cancel()
         render_imgui()
-        self._picture.draw(self.space, framebuffer, glfw.get_window_size(self._handle), self.scale)
+        self._picture.draw(self.state, framebuffer, glfw.get_window_size(self._handle), self.scale)
         imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
         self.frames += 1
         for action in self.after_draw:
             action()
         glfw.swap_buffers(self._handle)
         self._update_title()
-        if self.space.work():
+        if self.state.work():
             self.wake()
 
     def _interface(self) -> None:
-        space = self.space
+        state = self.state
         self._watch_focus()
         while self._dropped:
-            space.open_dropped(self._dropped.pop(0))
-        give_keys_to_panels(space)
+            state.open_dropped(self._dropped.pop(0))
+        give_keys_to_panels(state)
         modal = _popup_is_open()  # before as well as after: the key that closes one must not do more
-        space.editor.canvas = split_view.draw(space, panels.draw(space, self.scale), self.scale)
-        if space.document is None:
-            self._welcome.draw(space, self.scale, self._density)
-        palette.draw(space, self.scale)
-        self._dialogs.draw(space, self.scale)
-        self._canvas.draw_popup(space, self.scale)
+        state.editor.canvas = split_view.draw(state, panels.draw(state, self.scale), self.scale)
+        if state.document is None:
+            self._welcome.draw(state, self.scale, self._density)
+        palette.draw(state, self.scale)
+        self._dialogs.draw(state, self.scale)
+        self._canvas.draw_popup(state, self.scale)
         modal = modal or _popup_is_open()
         if not imgui.get_io().want_text_input and not modal:
-            commands.run_pressed(space)
+            commands.run_pressed(state)
         if modal:
-            self._canvas.let_go(space)
+            self._canvas.let_go(state)
         else:
-            self._canvas.read_input(space)
-            self._canvas.choose_cursor(space)
-        space.editor.advance()
-        space.player.watch(space.editor.session)
-        space.editor.go_on()
-        self._canvas.draw_overlay(space, self.scale)
-        draw_legend(space.view, space.editor, self.scale)
+            self._canvas.read_input(state)
+            self._canvas.choose_cursor(state)
+        state.editor.advance()
+        state.session_playback.watch(state.editor.session)
+        state.editor.go_on()
+        self._canvas.draw_overlay(state, self.scale)
+        draw_legend(state.view, state.editor, self.scale)
 
-    def _recover(self, state: Any, message: str) -> None:
+    def _recover(self, recovery: Any, message: str) -> None:
         """Repair ImGui's stacks after an exception; the next frame would fail otherwise."""
         io = imgui.get_io()
         io.config_error_recovery_enable_assert = False
-        imgui.internal.error_recovery_try_to_recover_state(state)
+        imgui.internal.error_recovery_try_to_recover_state(recovery)
         io.config_error_recovery_enable_assert = True
-        self.space.error = message
+        self.state.error = message
         self.wake()
 
     # -- the window ------------------------------------------------------------------------------------------
@@ -315,18 +315,18 @@ class Window:
     def _apply_scale(self) -> None:
         if imgui.get_current_context() is not None:
             theme.apply(self.scale)
-            self.space.editor.ui_scale = self.scale
+            self.state.editor.ui_scale = self.scale
             self.wake()
 
     def _update_title(self) -> None:
-        if self._title != self.space.title:
-            self._title = self.space.title
+        if self._title != self.state.title:
+            self._title = self.state.title
             glfw.set_window_title(self._handle, self._title)
 
     def _watch_focus(self) -> None:
         focused = bool(glfw.get_window_attrib(self._handle, glfw.FOCUSED))
         if self._focused and not focused:
-            self._canvas.let_go(self.space)
+            self._canvas.let_go(self.state)
         self._focused = focused
 
     def _on_drop(self, _: Any, paths: list[str]) -> None:
@@ -335,7 +335,7 @@ class Window:
 
     def _on_close(self, _: Any) -> None:
         glfw.set_window_should_close(self._handle, False)
-        self.space.later(self.space.quit)
+        self.state.later(self.state.quit)
 
     def _refresh(self) -> None:
         """While a window is being resized, some systems call only this."""

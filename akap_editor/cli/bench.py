@@ -25,7 +25,7 @@ FRAMES = 60
 
 
 @dataclass(frozen=True)
-class Row:
+class BenchRow:
     """One drag. Milliseconds of one step, of the worst in twenty, and of the preparation before the drag."""
 
     method: str
@@ -75,7 +75,7 @@ def bench(sizes: str, methods: tuple[str, ...], frames: int, as_json: bool) -> N
     click.echo(json.dumps([asdict(row) for row in rows], indent=2) if as_json else _table(rows))
 
 
-def measure(drawing: Drawing, name: str, method: str, settings: dict[str, Any], frames: int) -> Row:
+def measure(drawing: Drawing, name: str, method: str, settings: dict[str, Any], frames: int) -> BenchRow:
     """One drag of ``frames`` steps by one method."""
     mesh = drawing.mesh
     points = mesh.locate([*HOLDING, LED])
@@ -94,7 +94,7 @@ def measure(drawing: Drawing, name: str, method: str, settings: dict[str, Any], 
         steps.append(time.perf_counter() - started)
     spent = 1000 * np.array(steps[1:])
     measured = distortion(mesh, pose)
-    return Row(
+    return BenchRow(
         method=name,
         vertices=len(mesh.vertices),
         faces=len(mesh.faces),
@@ -119,7 +119,7 @@ def _sizes(text: str) -> list[int]:
     return sizes
 
 
-def _table(rows: list[Row]) -> str:
+def _table(rows: list[BenchRow]) -> str:
     width = max(len("method"), *(len(row.method) for row in rows))
     lines = [
         f"{'method':<{width}} {'vertices':>9} {'prepare':>9} {'median':>9} {'95 %':>9}"

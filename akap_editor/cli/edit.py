@@ -88,9 +88,9 @@ def _edit(document: Document | None, problem: str, recording: Path | None, file:
     except ImportError as error:
         raise DisplayError(f"a library that windows need is missing ({error})") from error
     with Window(preferences=Preferences(preferences_path()), autosave=Autosave()) as window:
-        window.space.error = problem
+        window.state.error = problem
         if recording is not None:
-            window.space.open_path(recording)
+            window.state.open_path(recording)
         if file is not None:
-            window.space.used(file)
+            window.state.used(file)
         window.run(document)

@@ -26,9 +26,9 @@ class Exported:
     @property
     def text(self) -> str:
         """In words."""
-        beside = ", ".join(path.name for path in self.files[:-1])
+        comparison = ", ".join(path.name for path in self.files[:-1])
         size = f": {self.size[0]} × {self.size[1]} pixels" if self.size else f": {self.label}"
-        return f"{self.files[-1]}{size}" + (f", with {beside}" if beside else "")
+        return f"{self.files[-1]}{size}" + (f", with {comparison}" if comparison else "")
 
     @property
     def facts(self) -> dict[str, object]:

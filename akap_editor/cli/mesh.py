@@ -19,14 +19,14 @@ from ..io.mesh_files.reader import write_obj
 from ..io.open_document import PICTURE_SUFFIXES
 from ..meshing.picture_mesh import mesh_picture
 from ..meshing.quality import mesh_quality
-from ..meshing.triangulate import FEWEST, MOST, warm_up
+from ..meshing.triangulate import FEWEST, MOST, start_worker
 from .options import FILE, make_folder_of
 
 MOST_EXPANSION = 1000.0  # pixels
 
 
 @dataclass(frozen=True)
-class Row:
+class MeshRow:
     """What became of one picture: see `MeshQuality`; seconds from the file to the mesh, without measuring.
 
     specks: islands left out as too small; speck_share: their share of the visible area; cut_out: whether the
@@ -88,7 +88,7 @@ def mesh(
     """
     meshing = _meshing(vertices, expand, threshold)
     if len(pictures) == 1 and not pictures[0].is_dir():
-        warm_up()
+        start_worker()
         row = measure(pictures[0], output, meshing, mask)
         click.echo(json.dumps([asdict(row)], indent=2) if as_json else _words(row))
         return
@@ -106,7 +106,7 @@ def mesh(
         raise SystemExit(1)
 
 
-def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | None = None) -> Row:
+def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | None = None) -> MeshRow:
     """Make the mesh of one picture, write it where wanted, and measure it. Raises InputError."""
     if output is not None and output.suffix.lower() != ".obj":
         raise InputError(f"{output}: expected a name that ends in .obj, got {output.suffix or 'none'}")
@@ -126,7 +126,7 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
         write_obj(output, made.mesh, (image.shape[1], image.shape[0]))
     quality = mesh_quality(made.mesh, alpha, meshing.threshold)
     visible = made.mesh.rest_areas.sum() * (1 - quality.outside) / quality.covered
-    return Row(
+    return MeshRow(
         picture=str(picture),
         specks=made.specks,
         speck_share=made.speck_area / visible,
@@ -173,8 +173,8 @@ def _outputs(paths: list[Path], folder: Path | None) -> list[Path | None]:
 
 def _measure_all(
     paths: list[Path], outputs: list[Path | None], meshing: Meshing
-) -> tuple[list[Row], list[dict[str, Any]]]:
-    warm_up()
+) -> tuple[list[MeshRow], list[dict[str, Any]]]:
+    start_worker()
     rows, errors = [], []
     with click.progressbar(zip(paths, outputs, strict=True), len(paths), "Meshing", file=sys.stderr) as bar:
         for path, output in bar:
@@ -185,7 +185,7 @@ def _measure_all(
     return rows, errors
 
 
-def _words(row: Row) -> str:
+def _words(row: MeshRow) -> str:
     lines = [
         f"{row.picture}: {_counted(row.parts, 'part')}, {_counted(row.holes, 'hole')}, "
         f"{row.vertices} vertices, {row.faces} faces",
@@ -208,7 +208,7 @@ def _counted(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
-def _table(rows: list[Row], failed: int) -> list[str]:
+def _table(rows: list[MeshRow], failed: int) -> list[str]:
     """One line for each picture, and how good they are together."""
     width = max([len("picture"), *(len(row.picture) for row in rows)])
     lines = [

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import click
 
-from ..deform.pose_interpolation import Ways
+from ..deform.pose_interpolation import InterpolationCache
 from ..editor.animation.keyframe_playback import keyed_frame
 from ..editor.animation.motion import Frame, Motion, closed, frame_times, shorten_pauses
 from ..editor.document.easing import EASINGS
-from ..editor.document.framing import frame_box, joined
+from ..editor.document.framing import frame_box, union_of_boxes
 from ..editor.document.settings import Settings
 from ..editor.session.replay import replay
 from ..errors import InputError
@@ -20,7 +20,7 @@ from ..io.open_document import PROJECT_SUFFIX, open_document
 from .options import FILE, check_png, color, make_folder_of, write_picture
 
 # What a word of --variant sets.
-VARIANTS: dict[str, tuple[str, object]] = {
+PRESETS: dict[str, tuple[str, object]] = {
     "dirichlet": ("dirichlet", True),
     "no-dirichlet": ("dirichlet", False),
     "spiral": ("trajectory", "spiral"),
@@ -30,7 +30,7 @@ VARIANTS: dict[str, tuple[str, object]] = {
     "memory": ("memory", 1.0),
     "no-memory": ("memory", 0.0),
 }
-_WORDS = ", ".join(VARIANTS)
+_WORDS = ", ".join(PRESETS)
 
 
 @click.command(
@@ -107,7 +107,7 @@ def replay_recording(
     with inside(path), click.progressbar(play(times), length=len(times), label="Bending") as bar:
         frames = list(bar)
     frames = _in_turn(frames, ping_pong, kind == "animation" and plays != 1)
-    box = joined([frame_box(frame.drawing, [frame.pose]) for frame in frames])
+    box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])
     scale = min(1.0, size / max(box[2] - box[0], box[3] - box[1]))
     make_folder_of(output)
     with OffscreenRenderer() as renderer:
@@ -147,7 +147,7 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
     """What to make of recorded settings. Raises InputError on unknown words."""
     words = [word.strip() for word in variant.split(",") if word.strip()]
     for word in words:
-        if word not in VARIANTS:
+        if word not in PRESETS:
             raise InputError(f"--variant: expected words among {_WORDS}, got {word!r}")
     if method is None and not words:
         return None
@@ -156,7 +156,7 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
     def change(settings: Settings) -> Settings:
         settings = chosen or settings
         for word in words:
-            settings = settings.with_parameter(*VARIANTS[word])
+            settings = settings.with_parameter(*PRESETS[word])
         return settings
 
     return change
@@ -193,7 +193,7 @@ def _recorded(
 
 def _keyframes(path: Path) -> tuple[float, Play]:
     """How long the keyframes of a drawing are, and what plays them."""
-    document, ways = open_document(path), Ways()
+    document, ways = open_document(path), InterpolationCache()
     animation = document.state.animation
     if not animation.keys:
         raise InputError(f"{path}: expected a drawing with keyframes, or a recording, got one without any")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import __version__
-from ..deform.methods import default_settings, parse_method, variant_of
+from ..deform.methods import default_settings, parse_method, preset_of
 from ..editor.document.framing import Box
 from ..geometry.validation import Floats
 from ..render.offscreen import OffscreenRenderer
@@ -135,7 +135,7 @@ def to_html(models: Sequence[Model], renderer: OffscreenRenderer) -> str:
 def _label(run: Run) -> str:
     """A method's name, with what it is told beyond its variant's settings."""
     method, settings = parse_method(run.spec)
-    variant = variant_of(method, settings)
+    variant = preset_of(method, settings)
     rest = [f"{key} {_word(value)}" for key, value in settings.items() if key not in variant.settings]
     return ", ".join([variant.short, *rest])
 
@@ -148,7 +148,7 @@ def _word(value: Any) -> str:
 
 def _method(run: Run) -> str:
     method, settings = parse_method(run.spec)
-    variant = variant_of(method, settings)
+    variant = preset_of(method, settings)
     escape = html.escape
     return (
         f"<dt>{escape(_label(run))} <code>{escape(run.spec)}</code></dt>"
@@ -198,7 +198,7 @@ def _printed(model: Model) -> list[tuple[float, float] | None]:
     found = []
     for run in model.runs:
         method, settings = parse_method(run.spec)
-        plain = variant_of(method, settings).spec == method and not settings.get("memory")
+        plain = preset_of(method, settings).spec == method and not settings.get("memory")
         found.append(left.pop(method, None) if plain else None)
     return found
 

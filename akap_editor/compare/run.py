@@ -67,7 +67,7 @@ class Run:
 
 
 @dataclass(frozen=True, eq=False)
-class Bent:
+class ReplayedPoses:
     """Where a recording led: times and states of its steps, what each took, and the settled pose (n, 2)."""
 
     times: list[float]
@@ -76,7 +76,7 @@ class Bent:
     pose: Floats
 
 
-def bend(recording: Recording, drawing: Drawing, spec: str) -> Bent:
+def bend(recording: Recording, drawing: Drawing, spec: str) -> ReplayedPoses:
     """Bend a drawing as recorded by the method ``spec`` (see `parse_method`), and let it settle.
 
     Raises InputError where a recording has no pins in the end, or does not fit the drawing.
@@ -91,7 +91,7 @@ def bend(recording: Recording, drawing: Drawing, spec: str) -> Bent:
     if state is None or not state.pins or not steps:
         raise InputError("recording: expected one that bends a drawing and ends with pins on it, got another")
     times, states, seconds = (list(column) for column in zip(*steps, strict=True))
-    return Bent(times, states, seconds, _settled(drawing, state))
+    return ReplayedPoses(times, states, seconds, _settled(drawing, state))
 
 
 def run(recording: Recording, drawing: Drawing, spec: str) -> Run:

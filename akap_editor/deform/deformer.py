@@ -124,7 +124,7 @@ def make_deformer(method: str, mesh: TriMesh, /, **settings: Any) -> Deformer:
 
     Of a mesh whose parts are tied, those without a pin ride with the others.
     """
-    from .islands import RidingDeformer
+    from .islands import IslandDeformer
 
     chosen = method_class(method)
     known = list(inspect.signature(chosen).parameters)[1:]
@@ -132,4 +132,4 @@ def make_deformer(method: str, mesh: TriMesh, /, **settings: Any) -> Deformer:
         if name not in known:
             raise InputError(f"method {method}: expected settings among {', '.join(known)}, got {name!r}")
     deformer: Deformer = chosen(mesh, **settings)
-    return RidingDeformer(mesh, deformer) if mesh.tied and mesh.component.any() else deformer
+    return IslandDeformer(mesh, deformer) if mesh.tied and mesh.component.any() else deformer

@@ -35,7 +35,7 @@ _FARTHEST = 3.0  # reaches: there the weight of a vertex is below 1/8000
 
 
 @dataclass(frozen=True, eq=False)
-class _Riders:
+class _Islands:
     """The vertices that ride, and the patches that they ride with.
 
     vertices: (r,); patch: (r,) of each of them; mean, arms: (g, n) sparse, p* and S of each patch from a
@@ -48,7 +48,7 @@ class _Riders:
     arms: csr_array
     smallest: Floats
 
-    def taken_along(self, before: Complexes, positions: Floats) -> Floats:
+    def carry_islands(self, before: Complexes, positions: Floats) -> Floats:
         """The pose ``positions`` with the riders where the patches take them from the pose ``before``."""
         pose = to_complex(positions).copy()
         after, first = self.arms @ pose, self.arms @ before
@@ -70,7 +70,7 @@ class _Riders:
         return to_points(result)
 
 
-class RidingDeformer:
+class IslandDeformer:
     """A `Deformer` that bends the parts with pins by another one, and takes the other parts along.
 
     mesh: the rest pose; deformer: of the same mesh, holds parts without a pin still.
@@ -102,7 +102,7 @@ class RidingDeformer:
         row, column = arms.coords
         arms.data *= (self._rest[column] - (mean @ self._rest)[row]).conj()
         smallest = _COLLAPSED * np.abs(arms @ self._rest)
-        self._riders = _Riders(riders, patch[riders], mean, arms.tocsr(), smallest)
+        self._riders = _Islands(riders, patch[riders], mean, arms.tocsr(), smallest)
 
     def step(self, positions: ArrayLike, targets: ArrayLike, angles: ArrayLike | None = None) -> StepResult:
         """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2); see `Deformer.step`.
@@ -116,9 +116,9 @@ class RidingDeformer:
         if not len(riders.vertices):
             return result
         before = to_complex(pose)
-        moved, field, flow = riders.taken_along(before, result.positions), result.field, None
+        moved, field, flow = riders.carry_islands(before, result.positions), result.field, None
         if result.flow is not None:
-            flow = _after(result.flow, lambda parts: riders.taken_along(before, parts))
+            flow = _after(result.flow, lambda parts: riders.carry_islands(before, parts))
             if field is not None:  # that of the last substep
                 start = flow(1 - 1 / max(result.report.substeps, 1))
                 field = riders.velocities(to_complex(start), field)

@@ -7,11 +7,11 @@ from typing import Any
 from ..errors import InputError
 from .deformer import method_class
 
-Settings = dict[str, Any]
+Parameters = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Variant:
+class MethodPreset:
     """One way of bending that has a name.
 
     spec: as `parse_method` reads it; label: a few words; short: for tables; note: a sentence or two; source:
@@ -30,70 +30,70 @@ class Variant:
         return self.spec.partition(":")[0]
 
     @property
-    def settings(self) -> Settings:
+    def settings(self) -> Parameters:
         """What differs from the method's defaults."""
         return parse_method(self.spec)[1]
 
 
 _PAPER = "Solomon, Ben-Chen, Butscher and Guibas 2011"
-VARIANTS = (
-    Variant(
+PRESETS = (
+    MethodPreset(
         "akap",
         "As Killing as possible",
         "AKAP",
         "The drawing flows along a vector field that is as near to a rigid motion as it can be.",
         _PAPER,
     ),
-    Variant(
+    MethodPreset(
         "akap:no-dirichlet",
         "As Killing, without second solve",
         "AKAP, one solve",
         "Spirals along the first field alone, Fig. 8 (c): dents stay around pins.",
         _PAPER,
     ),
-    Variant(
+    MethodPreset(
         "akap:trajectory=linear",
         "As Killing, straight steps",
         "AKAP, straight",
         "Both solves, but straight steps, Fig. 8 (b): what turns also grows.",
         _PAPER,
     ),
-    Variant(
+    MethodPreset(
         "akap:no-dirichlet,trajectory=linear",
         "As Killing, straight, one solve",
         "AKAP, straight, one solve",
         "Straight steps along the first field, Fig. 8 (a): dents around pins, and what turns grows.",
         _PAPER,
     ),
-    Variant(
+    MethodPreset(
         "arap",
         "As rigid as possible",
         "ARAP",
         "Each triangle keeps its shape as well as it can; found by repeated local and global steps.",
         "Liu, Zhang, Xu, Gotsman and Gortler 2008",
     ),
-    Variant(
+    MethodPreset(
         "arap:rotations=spokes-and-rims",
         "As rigid, spokes and rims",
         "ARAP, spokes and rims",
         "One rotation for each vertex and all faces around it, which makes bends smoother.",
         "Chao, Pinkall, Sanan and Schröder 2010",
     ),
-    Variant(
+    MethodPreset(
         "igarashi",
         "As rigid, in two steps",
         "Igarashi",
         "First every triangle may scale, then it gets its size back: two linear solves, no iteration.",
         "Igarashi, Moscovich and Hughes 2005",
     ),
-    Variant(
+    MethodPreset(
         "cauchy-green",
         "Cauchy-Green",
         "Cauchy–Green",
         "A conformal map: angles stay, areas may swell or shrink a lot. Holes are bent as if filled.",
         "Weber, Ben-Chen and Gotsman 2009",
     ),
-    Variant(
+    MethodPreset(
         "mls",
         "Moving least squares",
         "MLS",
@@ -103,13 +103,13 @@ VARIANTS = (
 )
 
 
-def default_settings(method: str) -> Settings:
+def default_settings(method: str) -> Parameters:
     """All settings of a method with their defaults. Raises InputError on an unknown one."""
     parameters = list(inspect.signature(method_class(method)).parameters.items())[1:]
     return {key: parameter.default for key, parameter in parameters}
 
 
-def parse_method(text: str) -> tuple[str, Settings]:
+def parse_method(text: str) -> tuple[str, Parameters]:
     """A method and its settings written as ``name``, or ``name:setting=value,switch,no-switch``.
 
     E.g. "akap:memory=1,no-dirichlet" or "arap:converge". Raises InputError where there is no such method or
@@ -117,7 +117,7 @@ def parse_method(text: str) -> tuple[str, Settings]:
     """
     name, _, rest = text.strip().partition(":")
     defaults = default_settings(name)
-    settings: Settings = {}
+    settings: Parameters = {}
     for part in filter(None, (part.strip() for part in rest.split(","))):
         key, given, value = part.partition("=")
         if not given:
@@ -128,9 +128,9 @@ def parse_method(text: str) -> tuple[str, Settings]:
     return name, settings
 
 
-def variant_of(method: str, settings: Settings) -> Variant:
+def preset_of(method: str, settings: Parameters) -> MethodPreset:
     """The variant that a method with these settings is nearest to: the one that shares most of them."""
-    same = [variant for variant in VARIANTS if variant.method == method]
+    same = [variant for variant in PRESETS if variant.method == method]
     return max(
         (variant for variant in same if variant.settings.items() <= settings.items()),
         key=lambda variant: len(variant.settings),

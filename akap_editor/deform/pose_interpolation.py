@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
-from ..geometry.area_bounds import bounded, worst_area
+from ..geometry.area_bounds import bound_face_areas, worst_area_factor
 from ..geometry.mesh import TriMesh
 from ..geometry.operators import to_complex, to_points
 from ..geometry.validation import Complexes, Floats, Ints, as_number, as_points
@@ -17,7 +17,7 @@ _STILL = 1e-3  # share of √area: vertices that move less hold a part in place 
 _FULL_TURN = 1e-6  # of a rate s: nearer to a full turn, 1 − eˢ says nothing about a center
 
 
-class Inbetween:
+class PoseInterpolation:
     """Poses on the way from one pose of a mesh to another.
 
     Of each edge the quotient of its two directions, as complex numbers, is eˢ, where s says how it grows and
@@ -59,7 +59,7 @@ class Inbetween:
         local = self._mean @ rates
         weights = 1.0 / (np.abs(b - a) ** 2 + (_STILL * self._length) ** 2)
         weights /= np.bincount(self._mesh.component, weights)[self._mesh.component]
-        most = max(worst_area(self._mesh, first), worst_area(self._mesh, last))
+        most = max(worst_area_factor(self._mesh, first), worst_area_factor(self._mesh, last))
 
         def pose(t: float) -> Floats:
             t = as_number(t, "t", 0, 1)
@@ -71,7 +71,7 @@ class Inbetween:
                 self._mesh.component, off.imag
             )
             made = to_points(fitted + shift[self._mesh.component])
-            return bounded(self._mesh, made, most) if np.isfinite(most) else made
+            return bound_face_areas(self._mesh, made, most) if np.isfinite(most) else made
 
         return pose
 
@@ -114,20 +114,20 @@ class Inbetween:
         return turns
 
 
-class Ways:
+class InterpolationCache:
     """In-betweens of many pairs of poses: what a mesh or a pair needs is prepared once, and kept a while."""
 
     def __init__(self, most: int = 64) -> None:
         self._most = most
-        self._inbetween: Inbetween | None = None
+        self._inbetween: PoseInterpolation | None = None
         self._mesh: TriMesh | None = None
         self._ways: OrderedDict[tuple[int, int], tuple[Floats, Floats, Callable[[float], Floats]]]
         self._ways = OrderedDict()
 
     def prepare(self, mesh: TriMesh, start: Floats, end: Floats) -> Callable[[float], Floats]:
-        """As `Inbetween.between`. Pairs are told apart by which arrays they are."""
+        """As `PoseInterpolation.between`. Pairs are told apart by which arrays they are."""
         if self._inbetween is None or mesh is not self._mesh:
-            self._mesh, self._inbetween = mesh, Inbetween(mesh)
+            self._mesh, self._inbetween = mesh, PoseInterpolation(mesh)
             self._ways.clear()
         pair = id(start), id(end)
         if pair not in self._ways:

@@ -9,7 +9,7 @@ _SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0], [50.
 _FACES = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
 
 
-def warm_up() -> None:
+def precompile() -> None:
     """Bend a square and let it settle: whatever is compiled (see `geometry.jit`) then is.
 
     Takes seconds once on a machine, and a fifth of a second in later runs; may run in a thread of its own.

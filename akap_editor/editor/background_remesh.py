@@ -15,7 +15,7 @@ LABEL = "Change mesh"
 
 
 @dataclass(eq=False)
-class _Series:
+class _SliderGesture:
     """Choices of one drag of a slider: each is made from the state before the first, and all are one entry.
 
     base, start: the drawing and the state then; entry: of the history, once there is one.
@@ -27,7 +27,7 @@ class _Series:
     entry: Entry | None = None
 
 
-class Remesher:
+class BackgroundRemesh:
     """Meshes are made in another thread, one at a time; of choices that come meanwhile the last counts.
 
     `advance`, called now and then, takes them over.
@@ -36,9 +36,9 @@ class Remesher:
     def __init__(self, editor: Editor) -> None:
         self._editor = editor
         self._worker = ThreadPoolExecutor(1, "mesh")
-        self._series: _Series | None = None
+        self._series: _SliderGesture | None = None
         self._wanted: Meshing | None = None
-        self._job: tuple[_Series, Meshing, Future[Made]] | None = None
+        self._job: tuple[_SliderGesture, Meshing, Future[Made]] | None = None
         self._held = False
 
     @property
@@ -66,7 +66,7 @@ class Remesher:
         if session is None:
             return
         if self._series is None or not self._held or self._series.session is not session:
-            self._series = _Series(session, session.drawing, session.state)
+            self._series = _SliderGesture(session, session.drawing, session.state)
         self._wanted, self._held = meshing, held
 
     def let_go(self) -> None:
@@ -97,14 +97,14 @@ class Remesher:
                 self._job[2].exception()
             self.advance()
 
-    def _begin(self, series: _Series, meshing: Meshing) -> None:
+    def _begin(self, series: _SliderGesture, meshing: Meshing) -> None:
         def make() -> Made:
             drawing = remeshed(series.base, meshing)
             return drawing, carried_over(series.start, series.base.mesh, drawing)
 
         self._job = series, meshing, self._worker.submit(make)
 
-    def _take_over(self, series: _Series, drawing: Drawing, state: EditState) -> bool:
+    def _take_over(self, series: _SliderGesture, drawing: Drawing, state: EditState) -> bool:
         """As one entry for the whole series: what it has made so far is taken back first."""
         session = series.session
         if series is not self._series:  # the next one began without it, and includes its choice

@@ -9,12 +9,12 @@ from .document.document import Document
 from .document.pin import Pin
 from .document.settings import Settings
 from .session.session import Session
-from .session.worker import AT_ONCE
+from .session.worker import INLINE
 
 FIRST = "arap"
 
 
-class Beside:
+class MethodComparison:
     """A second pose of a session's drawing. It follows the session's pins and targets and changes neither.
 
     spec: its method, as `parse_method` reads it.
@@ -36,7 +36,7 @@ class Beside:
         """Whether nothing moves until a worker is done with a step."""
         return self.session is not None and self.session.stepping and not self.session.step_is_ready()
 
-    def follow(self, main: Session, worker: Executor = AT_ONCE, budget: float = 0.0) -> None:
+    def follow(self, main: Session, worker: Executor = INLINE, budget: float = 0.0) -> None:
         """Once a frame: take over what was done to the pins of ``main``, and go one step.
 
         worker: computes it; budget: seconds to wait for that; a longer step is left to a later call.

@@ -12,10 +12,10 @@ from .document.document import Document
 from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
 from .gestures import Edits
 from .session.session import Session
-from .session.worker import AT_ONCE
+from .session.worker import INLINE
 from .sight import Sight
 from .tools.base import Tool, distance
-from .tools.keyboard_pointer import Crosshair
+from .tools.keyboard_pointer import KeyboardPointer
 from .tools.pins import ZOOM_STEP, Idle
 from .tools.stiffness_brush import Brush
 
@@ -31,7 +31,7 @@ class Editor(Edits):
     worker: computes the steps of `advance`, one at a time; by default they are done at once.
     """
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic, worker: Executor = AT_ONCE) -> None:
+    def __init__(self, clock: Callable[[], float] = time.monotonic, worker: Executor = INLINE) -> None:
         super().__init__(clock)
         self.worker = worker
         self.camera = Camera()
@@ -116,7 +116,7 @@ class Editor(Edits):
 
     def pointer_left(self) -> None:
         """The mouse is no longer over the canvas."""
-        if not isinstance(self.tool, Crosshair):
+        if not isinstance(self.tool, KeyboardPointer):
             self.pointer = None
 
     def enter(self, tool: Tool) -> None:
@@ -258,7 +258,7 @@ class Editor(Edits):
         left, top, right, bottom = self.canvas
         middle = (left + right) / 2, (top + bottom) / 2
         self.camera = self.camera.zoomed(
-            factor, self.tool.place if isinstance(self.tool, Crosshair) else middle
+            factor, self.tool.place if isinstance(self.tool, KeyboardPointer) else middle
         )
 
     def fit(self) -> None:

@@ -11,7 +11,7 @@ _ROUNDS = 200  # most rounds of bounding, a few are usual
 _ENOUGH = 0.003  # share of an area by which it may be beyond its bound
 
 
-def pulled(pose: Complexes, corners: Ints, missing: Floats, least: Floats) -> Complexes:
+def grow_faces(pose: Complexes, corners: Ints, missing: Floats, least: Floats) -> Complexes:
     """``pose`` (n,) with the corners (k, 3) of some faces moved, so that these come nearer to their areas.
 
     missing: (k,) by how much each area is to grow; least: (k,) what their slopes count at least, for faces
@@ -25,14 +25,14 @@ def pulled(pose: Complexes, corners: Ints, missing: Floats, least: Floats) -> Co
     return pose + _FIRMLY * total / np.maximum(np.bincount(at, minlength=n), 1)
 
 
-def worst_area(mesh: TriMesh, pose: Floats) -> float:
+def worst_area_factor(mesh: TriMesh, pose: Floats) -> float:
     """The factor, 1 or more, by which the worst face has shrunk or grown; infinite where one is flipped."""
     ratios = signed_areas(pose, mesh.faces) / mesh.rest_areas
     low = float(ratios.min())
     return max(1.0 / low, float(ratios.max())) if low > 0 else float("inf")
 
 
-def bounded(mesh: TriMesh, pose: Floats, most: float) -> Floats:
+def bound_face_areas(mesh: TriMesh, pose: Floats, most: float) -> Floats:
     """The pose (n, 2) with the few faces mended that have shrunk or grown by more than ``most``, a factor."""
     least, greatest = mesh.rest_areas / most, mesh.rest_areas * most
     areas = signed_areas(pose, mesh.faces)
@@ -45,6 +45,6 @@ def bounded(mesh: TriMesh, pose: Floats, most: float) -> Floats:
         missing = goals - areas[beyond]
         if (np.abs(missing) <= _ENOUGH * goals).all():
             break
-        places = pulled(places, mesh.faces[beyond], missing, least[beyond])
+        places = grow_faces(places, mesh.faces[beyond], missing, least[beyond])
         areas = signed_areas(to_points(places), mesh.faces)
     return to_points(places)

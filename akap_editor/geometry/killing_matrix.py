@@ -100,20 +100,20 @@ def _add_faces(
         weight, turning = stiffness[f] / twice, 0.125 * spin[f] / twice
         for k in range(3):
             xx, yy = a.imag * a.imag, a.real * a.real
-            block, beside = own[faces[f, k], 0], own[faces[f, k], 1]
+            block, comparison = own[faces[f, k], 0], own[faces[f, k], 1]
             result[block] += weight * (2 * xx + yy) + turning * yy
             result[block + 1] += (turning - weight) * a.real * a.imag
-            result[beside] += weight * (xx + 2 * yy) + turning * xx
+            result[comparison] += weight * (xx + 2 * yy) + turning * xx
             # component a of this corner with b of the next: ∂b here times ∂a there, and more where a = b
             xx, yy = a.imag * b.imag, a.real * b.real
             upper, lower = (turning - weight) * a.real * b.imag, (turning - weight) * a.imag * b.real
             if sides[f, k] & 1 == 0:  # the row is that of the next corner
                 upper, lower = lower, upper
-            block, beside = edges[sides[f, k] >> 1, 0], edges[sides[f, k] >> 1, 1]
+            block, comparison = edges[sides[f, k] >> 1, 0], edges[sides[f, k] >> 1, 1]
             result[block] += weight * (2 * xx + yy) + turning * yy
             result[block + 1] += lower
-            result[beside] += upper
-            result[beside + 1] += weight * (xx + 2 * yy) + turning * xx
+            result[comparison] += upper
+            result[comparison + 1] += weight * (xx + 2 * yy) + turning * xx
             a, b, c = b, c, a
 
 

@@ -37,7 +37,7 @@ _SUFFIXES = {
 
 
 @dataclass(frozen=True)
-class Finding:
+class Inspection:
     """kind: "picture", "drawing", "pose", "recording", "mesh" or "unknown"; facts: by name; problems:
     sentences, none where the file is sound.
     """
@@ -52,7 +52,7 @@ class Finding:
         return not self.problems
 
 
-def inspect(path: str | Path) -> Finding:
+def inspect(path: str | Path) -> Inspection:
     """What a file is and whether it is sound. Raises InputError where it cannot be read at all."""
     data = read_file(path, "a file")
     kind = _kind(data) or _SUFFIXES.get(Path(path).suffix.lower(), "unknown")
@@ -60,12 +60,12 @@ def inspect(path: str | Path) -> Finding:
         came = (
             f"expected a picture, a drawing, a recording or a mesh, got something that begins {data[:12]!r}"
         )
-        return Finding(kind, {}, [came])
+        return Inspection(kind, {}, [came])
     try:
         facts, problems = _INSPECTORS[kind](data)
     except InputError as error:
-        return Finding(kind, {}, [str(error)])
-    return Finding(kind, facts, problems)
+        return Inspection(kind, {}, [str(error)])
+    return Inspection(kind, facts, problems)
 
 
 def _kind(data: bytes) -> str | None:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..geometry.mesh import TriMesh
 from .outline import cut_out
-from .triangulate import triangulate, warm_up
+from .triangulate import start_worker, triangulate
 
 OUTLINE_SHARE = 0.35  # of the wanted vertices may be corners of the outline
 COUNT_TOLERANCE = 0.08  # share above the wanted number from which on the outline is made coarser
@@ -39,7 +39,7 @@ def mesh_picture(
     a face closes.
     Raises InputError where there is nothing to cut out, or Triangle fails.
     """
-    warm_up()  # starts while the outline is made
+    start_worker()  # starts while the outline is made
     most_points, reached = OUTLINE_SHARE * vertices, np.inf
     for _ in range(MAX_TRIES):
         cut = cut_out(alpha, threshold, expand, most_points=most_points)

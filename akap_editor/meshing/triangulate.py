@@ -209,7 +209,7 @@ class _Worker:
                 raise InputError(f"the outline cannot be triangulated: Triangle {reason}")
             return answer
 
-    def warm_up(self) -> None:
+    def start_worker(self) -> None:
         with self._lock:
             self._start()
 
@@ -238,9 +238,9 @@ class _Worker:
 _worker = _Worker()
 
 
-def warm_up() -> None:
+def start_worker() -> None:
     """Start the child process, which takes a moment, without waiting for it."""
-    _worker.warm_up()
+    _worker.start_worker()
 
 
 atexit.register(_worker.close)

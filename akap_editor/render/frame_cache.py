@@ -8,7 +8,7 @@ import moderngl
 from .shaders import load_program
 
 
-class KeptPicture:
+class FrameCache:
     """Shows the picture drawn last; draws another where it would come out differently.
 
     `release` must be called in the end.

@@ -15,7 +15,7 @@ _ROW = 1024  # faces in one row of the texture of levels
 
 
 @dataclass(frozen=True, eq=False)
-class Heat:
+class FaceColors:
     """A color for each face.
 
     levels: (m,) from 0 to 1 along the scale; below 0 or NaN is off it; colors: (c, 3) the scale, 0 to 1.
@@ -28,7 +28,7 @@ class Heat:
 
 
 @dataclass(frozen=True, eq=False)
-class Strokes:
+class LineSegments:
     """Lines of one color: segments (s, 2, 2) in drawing units; width in framebuffer pixels; RGBA 0 to 1."""
 
     segments: Floats
@@ -45,7 +45,7 @@ class Reference:
 
 
 @dataclass(frozen=True, eq=False)
-class Skin:
+class OnionPose:
     """The drawing in another pose (n, 2), behind it; tint: (r, g, b, share of it), all from 0 to 1."""
 
     positions: Floats
@@ -61,17 +61,17 @@ class Overlays:
 
     mesh_lines: bool = False
     ghost: float = 0.0
-    heat: Heat | None = None
-    strokes: tuple[Strokes, ...] = ()
+    heat: FaceColors | None = None
+    strokes: tuple[LineSegments, ...] = ()
     reference: Reference | None = None
-    skins: tuple[Skin, ...] = ()
+    skins: tuple[OnionPose, ...] = ()
 
 
 NO_OVERLAYS = Overlays()
 
 
 class StrokePainter:
-    """Draws `Strokes` with one growing buffer."""
+    """Draws `LineSegments` with one growing buffer."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
@@ -79,7 +79,7 @@ class StrokePainter:
         self._buffer: moderngl.Buffer | None = None
         self._lines: moderngl.VertexArray | None = None
 
-    def draw(self, strokes: Sequence[Strokes], size: tuple[int, int], view: View) -> None:
+    def draw(self, strokes: Sequence[LineSegments], size: tuple[int, int], view: View) -> None:
         """Draw them in their order into the current target."""
         self._program["view"] = view
         self._program["viewport"] = size
@@ -112,7 +112,7 @@ class StrokePainter:
 
 
 class HeatPainter:
-    """Draws a mesh in the colors of a `Heat`."""
+    """Draws a mesh in the colors of a `FaceColors`."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
@@ -123,7 +123,7 @@ class HeatPainter:
         self._scale: moderngl.Texture | None = None
         self._shown: tuple[Any, ...] = ()
 
-    def draw(self, mesh: moderngl.VertexArray, heat: Heat, order: Ints | None, view: View) -> None:
+    def draw(self, mesh: moderngl.VertexArray, heat: FaceColors, order: Ints | None, view: View) -> None:
         """Draw ``mesh``, made with `program`, its picture bound to texture unit 0, its faces in ``order``."""
         self._upload(heat, order)
         assert self._levels is not None
@@ -140,7 +140,7 @@ class HeatPainter:
             if item is not None:
                 item.release()
 
-    def _upload(self, heat: Heat, order: Ints | None) -> None:
+    def _upload(self, heat: FaceColors, order: Ints | None) -> None:
         """Compared by identity, as in `Renderer.show`."""
         shown = heat.levels, heat.colors, order
         if len(shown) == len(self._shown) and all(a is b for a, b in zip(shown, self._shown, strict=True)):

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 
 from akap_editor.app import window as window_module
-from akap_editor.app.canvas import scene as picture_module
+from akap_editor.app.canvas.pointer_input import scene as picture_module
 from akap_editor.editor.editor import FRAME_BUDGET
-from akap_editor.editor.session.worker import AT_ONCE
+from akap_editor.editor.session.worker import INLINE
 
 
 def one_frame(ui):
     """(h, w, 3): the picture of exactly one frame."""
-    shots, frames = [], ui.window.frames
-    ui.window.after_draw.append(lambda: shots.append(ui.window.screenshot()))
+    snapshots, frames = [], ui.window.frames
+    ui.window.after_draw.append(lambda: snapshots.append(ui.window.screenshot()))
     ui.frame()
     ui.window.after_draw.clear()
     assert ui.window.frames == frames + 1
-    return shots[0]
+    return snapshots[0]
 
 
 def canvas(ui, shot):
@@ -58,7 +58,7 @@ class Frames:
 
 
 def test_a_moved_pin_is_seen_moved_in_the_very_frame_that_sees_the_pointer_move(pinned):
-    pinned.editor.worker = AT_ONCE  # however slow the machine is at the moment
+    pinned.editor.worker = INLINE  # however slow the machine is at the moment
     frames = Frames(pinned, -32)
     before, earlier, now = (frames.seen[frames.first + i] for i in (-2, -1, 0))
     np.testing.assert_array_equal(before[1], earlier[1])
@@ -71,7 +71,7 @@ def test_a_moved_pin_is_seen_moved_in_the_very_frame_that_sees_the_pointer_move(
 
 def test_a_frame_stops_stepping_when_its_time_is_over(pinned, monkeypatch):
     """However many steps there are to go, the next frame comes when its time is over."""
-    pinned.editor.worker = AT_ONCE
+    pinned.editor.worker = INLINE
     steps, now, step = [], [0.0], pinned.session.step
 
     def slow():
@@ -116,7 +116,7 @@ def test_menus_view_and_drags_answer_while_a_step_is_computed(held):
         hand.menu_click("View")
         assert imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
         hand.key_press(imgui.Key.escape)
-        hand.mouse_move_to_pos(imgui.ImVec2(*ui.beside))
+        hand.mouse_move_to_pos(imgui.ImVec2(*ui.comparison))
         hand.mouse_wheel_y(2.0)
         hand.yield_(2)
         assert ui.editor.camera.zoom > zoom
@@ -152,15 +152,15 @@ def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, monkey
 
 @pytest.mark.parametrize("ends", ["at rest", "switched off", "closed"])
 def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkeypatch, ends):
-    pinned.space.view.vectors = True
+    pinned.state.view.vectors = True
     gate, deformer = Event(), pinned.session._bending.deformer
     fields = deformer.vector_fields
     monkeypatch.setattr(deformer, "vector_fields", lambda *way: gate.wait(60) and fields(*way))
     pinned.editor.place_pin(3, tuple(pinned.pin_place(3) - (0, 20)))
-    while not pinned.space.view.waiting:
+    while not pinned.state.view.waiting:
         pinned.frame()
     if ends == "switched off":
-        pinned.space.view.vectors = False
+        pinned.state.view.vectors = False
     elif ends == "closed":
         pinned.editor.close()
     else:
@@ -172,24 +172,24 @@ def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkey
 
 
 def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatch):
-    pinned.space.view.vectors = True
+    pinned.state.view.vectors = True
     gate, deformer = Event(), pinned.session._bending.deformer
     fields = deformer.vector_fields
     monkeypatch.setattr(deformer, "vector_fields", lambda *way: gate.wait(60) and fields(*way))
     x, y = pinned.pin_place(3)
     pinned.session.begin("Bend")
     pinned.session.set_targets({3: (x, y - 40)})
-    while not pinned.space.view.waiting:
+    while not pinned.state.view.waiting:
         pinned.frame()
     frames = pinned.window.frames
     pinned.frame()
     assert pinned.window.frames == frames + 1
-    assert not pinned.space.overlays(1.0).strokes
+    assert not pinned.state.overlays(1.0).strokes
     gate.set()
     seen = []
-    while pinned.space.moving:
+    while pinned.state.moving:
         pinned.frame()
-        seen.append(len(pinned.space.overlays(1.0).strokes))
+        seen.append(len(pinned.state.overlays(1.0).strokes))
     pinned.session.commit()
     assert max(seen) > 0
     pinned.settle()
@@ -198,7 +198,7 @@ def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatc
 @pytest.mark.parametrize("press", ["wheel", "key"])
 def test_view_changes_are_seen_in_the_very_next_frame(ui, press):
     io = imgui.get_io()
-    io.add_mouse_pos_event(*ui.beside)
+    io.add_mouse_pos_event(*ui.comparison)
     ui.settle()
     before = one_frame(ui)
     if press == "wheel":
@@ -212,10 +212,10 @@ def test_view_changes_are_seen_in_the_very_next_frame(ui, press):
 
 def test_a_key_that_closes_a_page_does_nothing_else(pinned):
     pinned.editor.select({2})
-    pinned.space.keys = True
+    pinned.state.keys = True
     pinned.settle()
     pinned.key(window_module.commands.KEYS.chords[0])
-    assert not pinned.space.keys
+    assert not pinned.state.keys
 
 
 @pytest.mark.parametrize("changed", [False, True])
@@ -236,26 +236,26 @@ def test_a_kept_picture_shows_every_change(pinned, monkeypatch):
     x, y = pinned.pin_place(3)
     changes = [
         lambda: hover(pinned.screen(pinned.pin_place(2))),
-        lambda: setattr(pinned.editor, "camera", pinned.editor.camera.zoomed(1.3, pinned.beside)),
-        lambda: setattr(pinned.space, "checker", False),
-        lambda: setattr(pinned.space, "show_mesh", True),
-        lambda: setattr(pinned.space.view, "ghost", True),
-        lambda: setattr(pinned.space.view, "trails", True),
-        lambda: setattr(pinned.space.view, "heat", "area"),
+        lambda: setattr(pinned.editor, "camera", pinned.editor.camera.zoomed(1.3, pinned.comparison)),
+        lambda: setattr(pinned.state, "checker", False),
+        lambda: setattr(pinned.state, "show_mesh", True),
+        lambda: setattr(pinned.state.view, "ghost", True),
+        lambda: setattr(pinned.state.view, "trails", True),
+        lambda: setattr(pinned.state.view, "heat", "area"),
         lambda: pinned.editor.place_pin(3, (x, y - 30)),
-        lambda: setattr(pinned.space.view, "heat_range", 0),
+        lambda: setattr(pinned.state.view, "heat_range", 0),
         lambda: pinned.editor.set_depth(3, 2),
-        lambda: setattr(pinned.space, "split", True),
-        lambda: setattr(pinned.space, "split", False),
+        lambda: setattr(pinned.state, "split", True),
+        lambda: setattr(pinned.state, "split", False),
         pinned.editor.undo,
     ]
     pictures = set()
     for number, change in enumerate(changes):
         change()
-        shots = []
+        snapshots = []
         for least in (0, 10**9):
             monkeypatch.setattr(picture_module, "KEPT_FROM", least)
-            shots.append(canvas(pinned, pinned.screenshot()).astype(np.int16))
-        np.testing.assert_allclose(*shots, rtol=0, atol=4, err_msg=f"change {number}")  # layers round
-        pictures.add(shots[0].tobytes())
+            snapshots.append(canvas(pinned, pinned.screenshot()).astype(np.int16))
+        np.testing.assert_allclose(*snapshots, rtol=0, atol=4, err_msg=f"change {number}")  # layers round
+        pictures.add(snapshots[0].tobytes())
     assert len(pictures) >= 8, "most of the changes are seen"

@@ -25,7 +25,7 @@ def bent(pinned, tmp_path):
     """Three pins, one of them dragged, not saved; dialogs begin in an empty folder."""
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0], start[1] - 120))
-    pinned.space.folder = tmp_path
+    pinned.state.folder = tmp_path
     assert pinned.editor.modified
     return pinned
 
@@ -38,7 +38,7 @@ def bits(state):
 def finish(ui):
     """Let work that was put off be done."""
     ui.settle()
-    assert not ui.space.waiting
+    assert not ui.state.waiting
 
 
 # -- saving and opening -------------------------------------------------------------------------------------
@@ -48,16 +48,16 @@ def test_save_as_and_open_again_restore_every_bit(bent, tmp_path):
     before = bits(bent.session.state)
     bent.menu("File", "Save As...")
     bent.type_name(SAVE, "posed")
-    assert bent.space.request is None
-    assert bent.space.notice == "Saved posed.akap"
+    assert bent.state.request is None
+    assert bent.state.notice == "Saved posed.akap"
     assert not bent.editor.modified
-    assert bent.space.title == "posed.akap - akap-editor"
+    assert bent.state.title == "posed.akap - akap-editor"
     bent.menu("Edit", "Reset Pose")
-    assert bent.space.title == "posed.akap * - akap-editor"
+    assert bent.state.title == "posed.akap * - akap-editor"
     bent.menu("Edit", "Undo")
     bent.menu("File", "Open...")
     bent.type_name(OPEN, "posed.akap")
-    assert bent.space.question is None, "undo has brought back what was saved"
+    assert bent.state.question is None, "undo has brought back what was saved"
     finish(bent)
     assert bent.document.path == tmp_path / "posed.akap"
     assert bits(bent.session.state) == before
@@ -78,11 +78,11 @@ def enter_at(ui, item):
 @pytest.mark.parametrize(("button", "left"), [("Discard", False), ("Cancel", True)])
 def test_enter_uses_the_button_that_the_keyboard_is_at(bent, button, left):
     bent.key(CTRL | Key.w)
-    assert bent.space.question is not None
+    assert bent.state.question is not None
     enter_at(bent, f"//{UNSAVED}###dialog {UNSAVED}/{button}")
-    assert bent.space.question is None
-    assert bent.space.request is None, "nothing is to be saved"
-    assert (bent.space.document is not None) == left
+    assert bent.state.question is None
+    assert bent.state.request is None, "nothing is to be saved"
+    assert (bent.state.document is not None) == left
 
 
 def test_enter_goes_into_the_folder_that_the_keyboard_is_at(bent, tmp_path):
@@ -91,9 +91,9 @@ def test_enter_goes_into_the_folder_that_the_keyboard_is_at(bent, tmp_path):
     save(bent.document, inner / "there.akap")
     bent.key(CTRL | Key.o)
     enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/###inner")
-    assert bent.space.request.folder == inner
+    assert bent.state.request.folder == inner
     enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/###there.akap")
-    assert bent.space.request is None
+    assert bent.state.request is None
     finish(bent)
 
 
@@ -104,7 +104,7 @@ def test_save_asks_once_and_then_writes_to_the_same_file(bent, tmp_path):
     assert bits(load(path).state) == bits(bent.session.state)
     bent.panel("Reset pose")
     bent.key(CTRL | Key.s)
-    assert bent.space.request is None
+    assert bent.state.request is None
     assert bits(load(path).state) == bits(bent.session.state)
     assert not bent.editor.modified
 
@@ -136,7 +136,7 @@ def test_the_file_dialog_goes_through_folders(bent, tmp_path):
     (tmp_path / "notes.txt").write_text("not listed")
     (tmp_path / ".hidden.png").write_bytes(b"")
     bent.menu("File", "Open...")
-    request = bent.space.request
+    request = bent.state.request
     assert request.entries() == [("inner", True), ("picture.png", False)]
 
     def open_(name):
@@ -165,12 +165,12 @@ def test_a_name_can_be_typed_at_once(bent, chord):
         hand.key_press(int(CTRL | Key.a))
         hand.key_chars("mine")
         hand.yield_(2)
-        typed.append(bent.space.request.name)
+        typed.append(bent.state.request.name)
         hand.key_press(Key.escape)
 
     bent.do(actions)
     assert typed == ["mine"]
-    assert bent.space.request is None
+    assert bent.state.request is None
 
 
 @pytest.mark.parametrize("saving", [False, True])
@@ -179,10 +179,10 @@ def test_no_name_that_can_be_typed_breaks_the_file_dialog(bent, tmp_path, saving
     state = bent.session.state
     bent.key(CTRL | SHIFT | Key.s if saving else CTRL | Key.o)
     for name in ("/", "~nobody-of-this-name/x", "..", "x" * 300, "\N{ELEPHANT}", "a/b/c", "\0"):
-        bent.space.request.name = name
+        bent.state.request.name = name
         bent.settle()
     bent.key(Key.escape)
-    assert bent.space.request is None
+    assert bent.state.request is None
     assert bent.session.state is state
     assert list(tmp_path.iterdir()) == []
 
@@ -208,18 +208,18 @@ def test_the_path_that_a_name_means(tmp_path, name, saving, expected):
 def test_a_file_that_cannot_be_written_is_told_and_stays_unsaved(bent, tmp_path):
     bent.key(CTRL | SHIFT | Key.s)
     bent.type_name(SAVE, "no-such-folder/posed")
-    assert str(tmp_path / "no-such-folder" / "posed.akap") in bent.space.error
+    assert str(tmp_path / "no-such-folder" / "posed.akap") in bent.state.error
     assert bent.editor.modified
     assert bent.document.path is None
     bent.dialog(MESSAGE, "OK")
-    assert not bent.space.error
+    assert not bent.state.error
 
 
 @pytest.mark.parametrize("path", bundled_drawings()[:1], ids=lambda path: path.stem)
 def test_bundled_drawings_open_from_the_menu(pinned, path):
     pinned.menu("File", "Open Bundled Drawing", "###0")
     finish(pinned)
-    assert not pinned.space.error
+    assert not pinned.state.error
     assert pinned.document.drawing.name == path.stem
     np.testing.assert_array_equal(pinned.document.drawing.image, read_image(path))
 
@@ -243,7 +243,7 @@ def close_window(ui, tmp_path):
 
 
 def gone_on(ui):
-    return ui.space.closing or ui.space.title.startswith("other.akap")
+    return ui.state.closing or ui.state.title.startswith("other.akap")
 
 
 ENDS = [open_other, quit_, close_window]
@@ -281,7 +281,7 @@ def test_cancel_stays(bent, tmp_path, end, answer):
         bent.dialog(UNSAVED, "Cancel")
     finish(bent)
     assert not gone_on(bent)
-    assert bent.space.question is None
+    assert bent.state.question is None
     assert bent.session.state is state
     assert bent.editor.modified
 
@@ -291,7 +291,7 @@ def test_cancel_of_the_file_dialog_after_save_stays(bent, tmp_path):
     bent.dialog(UNSAVED, "Save")
     bent.dialog(SAVE, "Cancel")
     finish(bent)
-    assert not bent.space.closing
+    assert not bent.state.closing
     assert bent.editor.modified
 
 
@@ -299,15 +299,15 @@ def test_a_failed_save_does_not_go_on(bent, tmp_path):
     quit_(bent, tmp_path)
     bent.dialog(UNSAVED, "Save")
     bent.type_name(SAVE, "no-such-folder/x")
-    assert bent.space.error
+    assert bent.state.error
     bent.dialog(MESSAGE, "OK")
     finish(bent)
-    assert not bent.space.closing
+    assert not bent.state.closing
 
 
 @pytest.mark.parametrize("end", ENDS)
 def test_nothing_is_asked_where_nothing_would_be_lost(pinned, tmp_path, end):
-    pinned.space.folder = tmp_path
+    pinned.state.folder = tmp_path
     end(pinned, tmp_path)
     finish(pinned)
     assert gone_on(pinned)
@@ -386,7 +386,7 @@ def test_a_bad_file_is_told_in_one_sentence_and_changes_nothing(bent, tmp_path, 
     bent.drop(path)
     bent.dialog(UNSAVED, "Discard")
     finish(bent)
-    error = bent.space.error
+    error = bent.state.error
     assert str(path) in error
     assert part in error.replace(str(path), "")
     assert "\n" not in error
@@ -403,14 +403,14 @@ def test_a_picture_without_alpha_opens_with_a_notice(pinned, tmp_path, image):
     Image.fromarray(image[..., :3]).save(path)
     pinned.drop(path)
     finish(pinned)
-    assert not pinned.space.error
-    assert "no transparent background" in pinned.space.notice
+    assert not pinned.state.error
+    assert "no transparent background" in pinned.state.notice
     assert pinned.document.drawing.name == "opaque"
     height, width = image.shape[:2]
     assert pinned.document.drawing.mesh.rest_areas.sum() >= 0.98 * width * height
     pinned.click(pinned.screen((width / 2, height / 2)))
     assert len(pinned.pins) == 1
-    assert not pinned.space.notice
+    assert not pinned.state.notice
 
 
 def test_a_dropped_picture_opens(pinned, tmp_path, image):
@@ -421,7 +421,7 @@ def test_a_dropped_picture_opens(pinned, tmp_path, image):
     expected = open_document(path)
     assert pinned.document.drawing.name == "dropped"
     np.testing.assert_array_equal(pinned.document.drawing.mesh.vertices, expected.drawing.mesh.vertices)
-    assert pinned.space.folder == tmp_path
+    assert pinned.state.folder == tmp_path
     assert not pinned.editor.modified
 
 
@@ -442,7 +442,7 @@ def test_a_picture_is_cut_out_with_a_mask_that_is_chosen_in_the_window(pinned, i
     pinned.menu("File", CUT_OUT)
     pinned.type_name("Choose mask", str(tmp_path / "half.png"))
     finish(pinned)
-    assert pinned.space.notice == "Cut out with half.png"
+    assert pinned.state.notice == "Cut out with half.png"
     expected = make_drawing(image, mask=np.repeat([[255] * 120 + [0] * 120], 160, axis=0).astype(np.uint8))
     np.testing.assert_array_equal(pinned.document.drawing.image, expected.image)
     assert pinned.document.drawing.mesh.vertices[:, 0].max() < 125
@@ -465,6 +465,6 @@ def test_a_mask_that_is_no_good_changes_nothing(pinned, image, tmp_path, keep, s
     pinned.menu("File", CUT_OUT)
     pinned.type_name("Choose mask", str(tmp_path / "mask.png"))
     pinned.settle()
-    assert str(tmp_path / "mask.png") in pinned.space.error
-    assert said in pinned.space.error
+    assert str(tmp_path / "mask.png") in pinned.state.error
+    assert said in pinned.state.error
     assert len(pinned.pins) == 3

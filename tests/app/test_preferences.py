@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from akap_editor.app import preferences as module
-from akap_editor.app.app_state import SWITCHES, Workspace
-from akap_editor.app.canvas.view_options import RANGES, ViewState
+from akap_editor.app.app_state import SWITCHES, AppState
+from akap_editor.app.canvas.view_options import RANGES, ViewOptions
 from akap_editor.app.preferences import MOST_RECENT, Preferences, preferences_path
 from akap_editor.app.window import SIZE, SMALLEST, _remembered_place, _remembered_size
 from akap_editor.editor.document.stiffness import SOFTEST, STIFFEST
@@ -67,7 +67,7 @@ def test_a_corrupt_file_is_told_and_replaced_at_the_next_write(path, content):
     assert str(path) in preferences.problem
     assert "\n" not in preferences.problem
     assert preferences.recent == []
-    assert Workspace.remembering(preferences).notice == preferences.problem
+    assert AppState.remembering(preferences).notice == preferences.problem
     preferences.write()
     assert path.read_bytes() == content, "nothing has changed, so nothing is written"
     preferences.put("name", 1)
@@ -174,16 +174,16 @@ def test_the_window_comes_back_to_its_place_where_there_still_is_a_screen(rememb
 def test_overlays_come_back(path, tmp_path):
     picture = tmp_path / "behind.png"
     picture.write_bytes(resource("assets", "drawings", "bar.png").read_bytes())
-    space = Workspace.remembering(Preferences(path))
-    space.view.vectors = space.view.ghost = space.view.trails = True
-    space.view.heat, space.view.heat_range = "angle", 4
-    space.view.set_reference(np.zeros((1, 1, 4), np.uint8), picture)
-    space.view.show_reference = False
-    space.editor.brush = Brush(80.0, 500.0, erasing=True)
-    space.remember()
-    again = Workspace.remembering(Preferences(path))
+    state = AppState.remembering(Preferences(path))
+    state.view.vectors = state.view.ghost = state.view.trails = True
+    state.view.heat, state.view.heat_range = "angle", 4
+    state.view.set_reference(np.zeros((1, 1, 4), np.uint8), picture)
+    state.view.show_reference = False
+    state.editor.brush = Brush(80.0, 500.0, erasing=True)
+    state.remember()
+    again = AppState.remembering(Preferences(path))
     for name in ("vectors", "ghost", "trails", "heat", "heat_range", "show_reference", "reference_path"):
-        assert getattr(again.view, name) == getattr(space.view, name), name
+        assert getattr(again.view, name) == getattr(state.view, name), name
     assert again.view.reference is None, "a start must not wait for it"
     while again.waiting:
         again.work()
@@ -194,19 +194,24 @@ def test_overlays_come_back(path, tmp_path):
 
 
 def test_a_reference_picture_that_is_gone_is_not_missed(path, tmp_path):
-    space = Workspace.remembering(Preferences(path))
-    space.view.set_reference(np.zeros((1, 1, 4), np.uint8), tmp_path / "gone.png")
-    space.remember()
-    again = Workspace.remembering(Preferences(path))
+    state = AppState.remembering(Preferences(path))
+    state.view.set_reference(np.zeros((1, 1, 4), np.uint8), tmp_path / "gone.png")
+    state.remember()
+    again = AppState.remembering(Preferences(path))
     while again.waiting:
         again.work()
     assert (again.view.reference, again.view.reference_path, again.error) == (None, None, "")
 
 
 def test_overlays_that_make_no_sense_are_passed_over():
-    view = ViewState()
+    view = ViewOptions()
     view.recall({"vectors": 1, "ghost": True, "heat": ["area"], "range": "wide", "reference": 3})
-    assert (view.vectors, view.ghost, view.heat, view.heat_range) == (False, True, None, ViewState.heat_range)
+    assert (view.vectors, view.ghost, view.heat, view.heat_range) == (
+        False,
+        True,
+        None,
+        ViewOptions.heat_range,
+    )
     assert view.reference_path is None
     view.recall({"range": RANGES[0]})
     assert view.heat_range == 0
@@ -216,7 +221,7 @@ def test_overlays_that_make_no_sense_are_passed_over():
 def test_a_remembered_brush_is_one_that_there_is(brush):
     preferences = Preferences()
     preferences.put("brush", brush)
-    found = Workspace.remembering(preferences).editor.brush
+    found = AppState.remembering(preferences).editor.brush
     assert SMALLEST_BRUSH <= found.radius <= LARGEST
     assert SOFTEST <= found.factor <= STIFFEST
 
@@ -227,7 +232,7 @@ def test_a_remembered_brush_is_one_that_there_is(brush):
 @pytest.fixture
 def keeping(ui, path):
     """The window with preferences in a file."""
-    ui.space.preferences = Preferences(path)
+    ui.state.preferences = Preferences(path)
     return ui
 
 
@@ -236,9 +241,9 @@ def test_switches_and_folded_sections_come_back(keeping, path):
     keeping.panel("###section View")
     keeping.do(lambda hand: [] if not hand.item_exists("//Panel/Mesh") else pytest.fail("View is folded"))
     keeping.window._remember()
-    again = Workspace.remembering(Preferences(path))
+    again = AppState.remembering(Preferences(path))
     assert not again.checker
-    assert [getattr(again, name) for name in SWITCHES] == [getattr(keeping.space, n) for n in SWITCHES]
+    assert [getattr(again, name) for name in SWITCHES] == [getattr(keeping.state, n) for n in SWITCHES]
     assert again.preferences.get("sections", {}) == {"View": False}
     assert again.preferences.get("window", []) == [1280, 800]
 
@@ -246,36 +251,36 @@ def test_switches_and_folded_sections_come_back(keeping, path):
 def test_unfolded_parameters_come_back(keeping, path):
     keeping.panel("Parameters")
     keeping.window._remember()
-    keeping.space.preferences = Preferences(path)
+    keeping.state.preferences = Preferences(path)
     keeping.settle()
     keeping.panel("Parameters/memory/##value")
     keeping.panel("Parameters")
-    assert keeping.space.preferences.get("sections", {}) == {"Parameters": False}
+    assert keeping.state.preferences.get("sections", {}) == {"Parameters": False}
 
 
 def test_files_that_were_opened_and_saved_are_recent_and_bundled_ones_are_not(keeping, tmp_path):
-    space = keeping.space
-    space.open_path(resource("assets", "drawings", "bar.png"))
+    state = keeping.state
+    state.open_path(resource("assets", "drawings", "bar.png"))
     keeping.settle()
-    assert space.document.drawing.name == "bar"
-    assert space.preferences.recent == []
-    space._write(tmp_path / "bar.akap", None)
-    assert space.preferences.recent == [tmp_path / "bar.akap"]
-    space.open_path(tmp_path / "bar.akap")
+    assert state.document.drawing.name == "bar"
+    assert state.preferences.recent == []
+    state._write(tmp_path / "bar.akap", None)
+    assert state.preferences.recent == [tmp_path / "bar.akap"]
+    state.open_path(tmp_path / "bar.akap")
     keeping.settle()
     (tmp_path / "bar.akap").unlink()
-    space.open_path(tmp_path / "bar.akap")
+    state.open_path(tmp_path / "bar.akap")
     keeping.settle()
-    assert "no such file" in space.error
-    assert space.preferences.recent == [], "what cannot be opened is not offered again"
+    assert "no such file" in state.error
+    assert state.preferences.recent == [], "what cannot be opened is not offered again"
 
 
 def test_preferences_that_cannot_be_written_are_a_notice_and_no_more(ui, tmp_path):
     (tmp_path / "file").write_text("")
-    ui.space.preferences = Preferences(tmp_path / "file" / "preferences.json")
+    ui.state.preferences = Preferences(tmp_path / "file" / "preferences.json")
     ui.window._remember()
-    assert "Not remembered" in ui.space.notice
-    ui.space.notice = ""
+    assert "Not remembered" in ui.state.notice
+    ui.state.notice = ""
     ui.panel("Mesh")
     ui.window._remember()
-    assert not ui.space.notice
+    assert not ui.state.notice

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from akap_editor.app import widgets
-from akap_editor.app.commands import registry as commands
-from akap_editor.app.dialogs.file_dialog import Question
+from akap_editor.app.commands.registry import registry as commands
+from akap_editor.app.dialogs.file_dialog import UnsavedChangesQuestion
 from akap_editor.app.window import SMALLEST
 from akap_editor.editor.document.document import new_document
 
@@ -20,24 +20,24 @@ def module_window(new_window):
     return new_window(size=SMALLEST)
 
 
-def ask_save(space):
-    space.save_as()
+def ask_save(state):
+    state.save_as()
 
 
-def ask_export(space):
-    space.ask_export()
+def ask_export(state):
+    state.ask_export()
 
 
-def ask_question(space):
-    space.question = Question(lambda: None)
+def ask_question(state):
+    state.question = UnsavedChangesQuestion(lambda: None)
 
 
-def show_keys(space):
-    space.keys = True
+def show_keys(state):
+    state.keys = True
 
 
-def show_error(space):
-    space.error = f"/a/folder/{LONG}.png: expected a picture, got something else"
+def show_error(state):
+    state.error = f"/a/folder/{LONG}.png: expected a picture, got something else"
 
 
 @pytest.mark.parametrize(
@@ -51,8 +51,8 @@ def show_error(space):
     ],
 )
 def test_dialogs_are_wholly_in_the_window(ui, drawing, title, ask):
-    ui.space.show(new_document(replace(drawing, name=LONG)))
-    ask(ui.space)
+    ui.state.show(new_document(replace(drawing, name=LONG)))
+    ask(ui.state)
     ui.settle()
     dialog = imgui.internal.find_window_by_name(f"{title}###dialog {title}")
     assert dialog.active
@@ -116,7 +116,7 @@ def test_texts_are_broken_between_words_and_folders_alone(ui):
 
 
 def test_all_tools_are_seen_above_the_timeline(ui):
-    ui.space.show_timeline, ui.space.timeline = True, "keyframes"
+    ui.state.show_timeline, ui.state.timeline = True, "keyframes"
     ui.settle()
     tools, timeline = map(imgui.internal.find_window_by_name, ("Tools", "Timeline"))
     assert tools.scroll_max.y == 0
@@ -128,7 +128,7 @@ def test_all_tools_are_seen_above_the_timeline(ui):
 
 def test_the_captions_of_two_methods_stay_in_their_halves(pinned):
     """Between the captions and the line in the middle nothing is written."""
-    pinned.space.split, pinned.space.show_pins = True, False
+    pinned.state.split, pinned.state.show_pins = True, False
     picture = pinned.screenshot().astype(int)
     left, _, middle, bottom = map(int, pinned.editor.canvas)
     below = picture[bottom - 70 : bottom - 4, left:middle]
@@ -141,7 +141,7 @@ def test_a_long_name_of_a_pose_moves_no_other(ui):
     names = ("Rest", LONG[:80], "Wave")
     for name in names:
         ui.editor.keep_pose(name)
-    ui.space.preferences.put("sections", {"Drawing": False, "Pins": False, "Bending": False, "Mesh": False})
+    ui.state.preferences.put("sections", {"Drawing": False, "Pins": False, "Bending": False, "Mesh": False})
     ui.settle()
     found = {}
 
@@ -169,7 +169,7 @@ def test_the_present_step_of_a_long_history_is_seen_below_whole_rows(pinned):
     for depth in range(1, 21):
         pinned.editor.set_depth(1, depth)
     folded = dict.fromkeys(("Drawing", "Pins", "Bending", "Mesh", "Poses", "Numbers"), False)
-    pinned.space.preferences.put("sections", folded)
+    pinned.state.preferences.put("sections", folded)
     pinned.editor.go_to(11)
     pinned.settle()
     (rows,) = (window for window in imgui.get_current_context().windows if "##history" in window.name)

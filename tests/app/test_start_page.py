@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from akap_editor import cli
-from akap_editor.app.app_state import Workspace
-from akap_editor.app.commands import shortcuts_page as keys_overlay
+from akap_editor.app.app_state import AppState
 from akap_editor.app.commands.command import CTRL, Key
 from akap_editor.app.commands.registry import COMMANDS
-from akap_editor.app.dialogs import first_steps as hints
+from akap_editor.app.commands.registry import shortcuts_page as keys_overlay
+from akap_editor.app.dialogs.dialogs import first_steps as hints
 from akap_editor.app.preferences import Preferences
 from akap_editor.errors import InputError
 from akap_editor.io.images import write_png
@@ -25,7 +25,7 @@ START = "//Start/"
 def closed(ui):
     """The window with nothing open."""
     ui.key(CTRL | Key.w)
-    assert ui.space.document is None
+    assert ui.state.document is None
     return ui
 
 
@@ -37,8 +37,8 @@ def test_close_shows_the_start_page_and_nothing_of_the_drawing(ui):
     x, y = map(round, ui.screen((70.0, 80.0)))
     drawn = ui.screenshot()[y, x]
     ui.menu("File", "Close")
-    assert ui.space.document is None
-    assert ui.space.title == "akap-editor"
+    assert ui.state.document is None
+    assert ui.state.title == "akap-editor"
     shot = ui.screenshot()
     assert (shot[top:bottom, left:right] != drawn).any(axis=2).mean() > 0.99
     ui.do(lambda hand: [hand.item_info(START + path.stem) for path in bundled_drawings()])
@@ -48,12 +48,12 @@ def test_closing_asks_for_unsaved_changes(pinned):
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0], start[1] - 80))
     pinned.key(CTRL | Key.w)
-    assert pinned.space.document is not None
+    assert pinned.state.document is not None
     pinned.dialog("Unsaved changes", "Cancel")
-    assert pinned.space.document is not None
+    assert pinned.state.document is not None
     pinned.key(CTRL | Key.w)
     pinned.dialog("Unsaved changes", "Discard")
-    assert pinned.space.document is None
+    assert pinned.state.document is None
 
 
 @pytest.mark.parametrize("path", bundled_drawings()[1:3], ids=lambda path: path.stem)
@@ -83,16 +83,16 @@ def test_thumbnails_show_the_drawings(closed):
 
 def test_the_drop_zone_asks_for_a_file(closed):
     closed.do(lambda hand: hand.item_click(f"{START}Drop a picture here"))
-    assert closed.space.request is not None
+    assert closed.state.request is not None
     closed.key(Key.escape)
-    assert closed.space.request is None
+    assert closed.state.request is None
 
 
 def test_recent_files_are_listed_and_opened(closed, tmp_path, image):
     path = tmp_path / "a folder with a rather long name" / "seen before.png"
     path.parent.mkdir()
     write_png(path, image)
-    closed.space.preferences.opened(path)
+    closed.state.preferences.opened(path)
     closed.settle()
     closed.do(lambda hand: hand.item_click(f"{START}\uf1c5  seen before.png##recent 0"))
     closed.settle()
@@ -114,8 +114,8 @@ def test_a_bad_file_leaves_the_start_page(closed, tmp_path):
     (tmp_path / "bad.png").write_text("no picture")
     closed.drop(tmp_path / "bad.png")
     closed.settle()
-    assert "bad.png" in closed.space.error
-    assert closed.space.document is None
+    assert "bad.png" in closed.state.error
+    assert closed.state.document is None
     closed.dialog("That did not work", "OK")
     closed.do(lambda hand: hand.item_click(f"{START}bar"))
     closed.settle()
@@ -128,7 +128,7 @@ def shown(monkeypatch):
     seen = []
 
     class Screen:
-        space = SimpleNamespace(error="")
+        state = SimpleNamespace(error="")
 
         def __init__(self, **options):
             pass
@@ -140,7 +140,7 @@ def shown(monkeypatch):
             pass
 
         def run(self, document):
-            seen.append((document, self.space.error))
+            seen.append((document, self.state.error))
 
     monkeypatch.setenv("DISPLAY", ":of-a-test")
     monkeypatch.setattr("akap_editor.app.window.Window", Screen)
@@ -203,7 +203,7 @@ def test_of_several_dropped_files_the_first_opens_and_that_is_said(ui, tmp_path,
     ui.drop(tmp_path / "one.png", tmp_path / "two.png")
     ui.settle()
     assert ui.document.drawing.name == "one"
-    assert ui.space.notice == "Opened one.png, the first of 2 files"
+    assert ui.state.notice == "Opened one.png, the first of 2 files"
 
 
 # -- first steps --------------------------------------------------------------------------------------------
@@ -212,20 +212,20 @@ def test_of_several_dropped_files_the_first_opens_and_that_is_said(ui, tmp_path,
 @pytest.fixture
 def newcomer(ui, tmp_path):
     """The window of a first run."""
-    ui.space.preferences = Preferences(tmp_path / "preferences.json")
-    ui.space.first_steps = Workspace.remembering(ui.space.preferences).first_steps
+    ui.state.preferences = Preferences(tmp_path / "preferences.json")
+    ui.state.first_steps = AppState.remembering(ui.state.preferences).first_steps
     ui.settle()
     return ui
 
 
 def test_the_steps_follow_what_is_done(newcomer):
-    assert hints.step(newcomer.space) == 0
+    assert hints.step(newcomer.state) == 0
     newcomer.click(newcomer.screen((60.0, 80.0)))
-    assert hints.step(newcomer.space) == 1
+    assert hints.step(newcomer.state) == 1
     start = newcomer.screen((200.0, 80.0))
     newcomer.drag(start, (start[0], start[1] - 100))
-    assert hints.step(newcomer.space) == 2
-    assert hints.step(newcomer.space) == len(hints.STEPS) - 1
+    assert hints.step(newcomer.state) == 2
+    assert hints.step(newcomer.state) == len(hints.STEPS) - 1
 
 
 def test_the_steps_never_go_back(newcomer):
@@ -235,32 +235,32 @@ def test_the_steps_never_go_back(newcomer):
     seen = []
     for _ in range(2):
         newcomer.key(CTRL | Key.z)
-        seen.append(hints.step(newcomer.space))
+        seen.append(hints.step(newcomer.state))
     assert not newcomer.pins
     assert seen == [2, 2]
 
 
 def test_they_wait_on_the_start_page_for_a_drawing(newcomer, document):
-    newcomer.space.close()
+    newcomer.state.close()
     newcomer.settle()
     bottom = newcomer.editor.canvas[3]
-    newcomer.space.show(document)
+    newcomer.state.show(document)
     newcomer.settle()
     assert newcomer.editor.canvas[3] < bottom
-    assert hints.step(newcomer.space) == 0
+    assert hints.step(newcomer.state) == 0
 
 
 def test_whoever_drags_the_only_pin_is_told_why_nothing_bends(newcomer):
     start = newcomer.screen((200.0, 80.0))
     newcomer.drag(start, (start[0], start[1] - 100))
     assert newcomer.session.posed
-    assert hints.step(newcomer.space) == 0
+    assert hints.step(newcomer.state) == 0
     newcomer.click(newcomer.screen((60.0, 20.0)))  # the head, where it is now
     assert len(newcomer.pins) == 2
-    assert hints.step(newcomer.space) == 1
+    assert hints.step(newcomer.state) == 1
     end = newcomer.screen(newcomer.pin_place(1))
     newcomer.drag(end, (end[0], end[1] + 100))
-    assert hints.step(newcomer.space) == 2
+    assert hints.step(newcomer.state) == 2
 
 
 @pytest.mark.parametrize("steps", [0, 2])
@@ -271,14 +271,14 @@ def test_put_away_they_are_gone_for_good(newcomer, tmp_path, steps):
         newcomer.drag(start, (start[0], start[1] - 100))
     bottom = newcomer.editor.canvas[3]
     newcomer.do(lambda hand: hand.item_click("//First steps/###away"))
-    assert not newcomer.space.first_steps
+    assert not newcomer.state.first_steps
     assert newcomer.editor.canvas[3] > bottom, "the canvas has the room again"
     newcomer.window._remember()
-    assert not Workspace.remembering(Preferences(tmp_path / "preferences.json")).first_steps
+    assert not AppState.remembering(Preferences(tmp_path / "preferences.json")).first_steps
 
 
 def test_whoever_has_no_preferences_to_keep_sees_no_first_steps():
-    assert not Workspace.remembering(Preferences()).first_steps
+    assert not AppState.remembering(Preferences()).first_steps
 
 
 # -- page of keys -------------------------------------------------------------------------------------------
@@ -306,7 +306,7 @@ def test_columns_keep_the_order_and_balance():
 def test_a_question_mark_shows_it_wherever_that_is_on_the_keyboard(ui):
     imgui.get_io().add_input_character(ord("?"))
     ui.settle()
-    assert ui.space.keys
+    assert ui.state.keys
     imgui.get_io().add_input_character(ord("?"))
     ui.settle()
-    assert not ui.space.keys
+    assert not ui.state.keys

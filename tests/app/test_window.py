@@ -27,7 +27,7 @@ class Loop:
     def _wait(self, seconds):
         self.waits.append((seconds, self.ui.window.frames - self._start))
         if len(self.waits) == self._most:
-            self.ui.space.closing = True
+            self.ui.state.closing = True
         interrupted = self.on_wait(len(self.waits))
         self.now += 0.1 * seconds if interrupted else seconds
 
@@ -60,7 +60,7 @@ def test_an_event_wakes_it_until_all_stands_where_it_belongs(loop):
 
 
 def test_a_caret_blinks(loop):
-    loop.ui.space.ask_open()
+    loop.ui.state.ask_open()
     waits = loop.run(4)
     assert {seconds for seconds, _ in waits} == {0.4}
     assert np.diff([frames for _, frames in waits]).tolist() == [1, 1, 1]
@@ -74,7 +74,7 @@ def test_it_wakes_for_a_tooltip(loop):
     assert imgui.get_current_context().hover_item_delay_id != 0
     assert all(0 < seconds <= imgui.get_style().hover_delay_normal + 0.02 for seconds, _ in waits)
     assert waits[1][1] == waits[0][1] + SETTLE_FRAMES
-    glfw.set_cursor_pos(loop.ui.window._handle, *loop.ui.beside)
+    glfw.set_cursor_pos(loop.ui.window._handle, *loop.ui.comparison)
     loop.ui.settle()
     assert widgets.tooltip_due() == 0.0
 
@@ -90,30 +90,30 @@ def test_input_that_comes_with_the_last_frame_is_taken_in_whole(loop):
 
     loop.on_poll = press
     loop.run()
-    assert loop.ui.space.show_mesh
+    assert loop.ui.state.show_mesh
     assert not imgui.is_key_down(imgui.Key.m)
 
 
 def test_it_does_not_sleep_until_a_dialog_has_dimmed_the_rest(loop):
-    loop.ui.space.about = True
+    loop.ui.state.about = True
     loop.run(1)
     assert imgui.get_current_context().dim_bg_ratio == 1.0
 
 
 def test_it_draws_until_the_drawing_has_come_to_rest_and_shows_it(loop):
     """The last frame before the sleep shows, in the panel's numbers too, what any later frame would."""
-    ui, shots = loop.ui, []
+    ui, snapshots = loop.ui, []
     x, y = ui.pin_place(3)
     ui.session.begin("Bend")
     ui.session.set_targets({3: (x, y - 40)})
     ui.session.commit()
-    ui.window.after_draw.append(lambda: shots.append(ui.window.screenshot()))
+    ui.window.after_draw.append(lambda: snapshots.append(ui.window.screenshot()))
     waits = loop.run(1)
     ui.window.after_draw.clear()
     assert waits[0][1] > SETTLE_FRAMES
     assert not ui.session.moving
     assert ui.session.pin_error() < 0.25
-    np.testing.assert_array_equal(shots[-1], ui.screenshot())
+    np.testing.assert_array_equal(snapshots[-1], ui.screenshot())
 
 
 def test_a_minimised_window_is_not_drawn(loop, monkeypatch):
@@ -145,14 +145,14 @@ def test_the_fitted_drawing_follows_the_size_of_the_window(ui):
 def test_without_a_document_the_window_shows_how_to_begin(ui):
     ui.editor.session = None
     ui.settle()
-    assert ui.space.title == "akap-editor"
+    assert ui.state.title == "akap-editor"
     assert "Open" in ui.editor.hint
     for label in ("Save", "Export...", "Fit in Window"):
         command = next(c for c in window_module.commands.COMMANDS if c.label == label)
-        assert not command.enabled(ui.space)
-    ui.click(ui.beside)
-    ui.wheel(ui.beside, 1.0)
-    assert not ui.space.error
+        assert not command.enabled(ui.state)
+    ui.click(ui.comparison)
+    ui.wheel(ui.comparison, 1.0)
+    assert not ui.state.error
 
 
 def test_no_display_is_said_in_one_sentence(monkeypatch):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from akap_editor.deform.akap import deformer as akap
 from akap_editor.deform.akap.deformer import AkapDeformer
-from akap_editor.deform.akap.preconditioned_cholesky import ReusedCholesky
+from akap_editor.deform.akap.deformer import deformer as akap
+from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
 from akap_editor.resources import bundled_drawings
@@ -188,13 +188,13 @@ def wave(drag, t):
 def factorizations(monkeypatch):
     """How often the matrix of a field was factorized."""
     count = [0]
-    original = ReusedCholesky._factorize
+    original = PreconditionedCholesky._factorize
 
     def counted(self):
         count[0] += 1
         original(self)
 
-    monkeypatch.setattr(ReusedCholesky, "_factorize", counted)
+    monkeypatch.setattr(PreconditionedCholesky, "_factorize", counted)
     return count
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from akap_editor.deform.deformer import StepReport, StepResult, make_deformer, method_names
-from akap_editor.deform.islands import RidingDeformer
+from akap_editor.deform.islands import IslandDeformer
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
 from akap_editor.io.images import read_image
 from akap_editor.meshing.outline import outlines
@@ -75,7 +75,7 @@ def rigid_motion(before, after):
 def ridden(mesh, points, poses, start=None):
     """Where a rider's drawing is after its pinned parts were in ``poses``, one after the other."""
     puppeteer = Puppeteer()
-    deformer = RidingDeformer(mesh, puppeteer)
+    deformer = IslandDeformer(mesh, puppeteer)
     deformer.set_pins(points)
     pose = mesh.vertices if start is None else start
     pinned = np.isin(mesh.component, mesh.component[mesh.faces[points.faces, 0]])[:, None]
@@ -108,8 +108,8 @@ def test_untied_islands_stay(row, method):
     deformer = make_deformer(method, free)
     deformer.set_pins(points)
     pose = deformer.step(free.vertices, free.evaluate(points, free.vertices) + 9.0).positions
-    beside = ~part_at(free, 20, 20)
-    assert pose[beside].tolist() == free.vertices[beside].tolist()
+    comparison = ~part_at(free, 20, 20)
+    assert pose[comparison].tolist() == free.vertices[comparison].tolist()
 
 
 def test_island_is_where_the_patch_is_whatever_the_way(row):
@@ -124,8 +124,8 @@ def test_island_is_where_the_patch_is_whatever_the_way(row):
 
 def test_a_chain_rides_as_one_body(row):
     moved = ridden(row, pin_on(row, (20, 20)), [bent(row, 0.8)])
-    beside = ~part_at(row, 20, 20)
-    rigid_motion(row.vertices[beside], moved[beside])
+    comparison = ~part_at(row, 20, 20)
+    rigid_motion(row.vertices[comparison], moved[comparison])
 
 
 def test_a_chain_begins_at_the_nearest_pin(row):
@@ -174,17 +174,17 @@ def test_in_betweens_lead_from_one_pose_to_the_other(row, memory):
     deformer.set_pins(points)
     targets = row.evaluate(points, row.vertices) + np.array([[0, 9], [4, -3], [-8, 1]])
     result = deformer.step(row.vertices, targets)
-    beside = ~part_at(row, 20, 20)
+    comparison = ~part_at(row, 20, 20)
     assert np.abs(result.at(0) - row.vertices).max() < 1e-9
-    assert np.abs(result.at(1)[beside] - result.positions[beside]).max() < 0.05
+    assert np.abs(result.at(1)[comparison] - result.positions[comparison]).max() < 0.05
     for t in (0.2, 0.7):
-        rigid_motion(row.vertices[beside], result.at(t)[beside])
+        rigid_motion(row.vertices[comparison], result.at(t)[comparison])
 
 
 def test_field_at_the_islands_is_the_velocity_that_they_start_with(row):
     """By differences, from a bent pose along a field that is rigid nowhere."""
     body, puppeteer = part_at(row, 20, 20)[:, None], Puppeteer()
-    deformer = RidingDeformer(row, puppeteer)
+    deformer = IslandDeformer(row, puppeteer)
     deformer.set_pins(pin_on(row, (20, 20)))
     start = bent(row, 0.6)
     puppeteer.pose = np.where(body, bent(row, 0.7) + by(20, 0), start)
@@ -235,5 +235,5 @@ def test_nails_around_a_gopher_ride_with_its_feet(shared_data, shapes):
 
 def test_meshes_of_one_part_need_no_rider(shapes):
     mesh = replace(shapes.SHAPES["square"], tied=True)
-    assert not isinstance(make_deformer("akap", mesh), RidingDeformer)
+    assert not isinstance(make_deformer("akap", mesh), IslandDeformer)
     assert isinstance(mesh, TriMesh)

@@ -3,7 +3,7 @@
 import pytest
 
 from akap_editor.deform.deformer import make_deformer, method_names
-from akap_editor.deform.methods import VARIANTS, default_settings, parse_method, variant_of
+from akap_editor.deform.methods import PRESETS, default_settings, parse_method, preset_of
 from akap_editor.errors import InputError
 
 
@@ -42,17 +42,17 @@ def test_bad_specs_are_refused(text, sentence):
 
 
 def test_every_method_has_a_variant_and_every_variant_works(shapes):
-    assert {variant.method for variant in VARIANTS} == set(method_names())
-    for variant in VARIANTS:
+    assert {variant.method for variant in PRESETS} == set(method_names())
+    for variant in PRESETS:
         assert parse_method(variant.spec) == (variant.method, variant.settings)
         make_deformer(variant.method, shapes.SHAPES["square"], **variant.settings)
         assert variant.settings.items().isdisjoint(default_settings(variant.method).items())
 
 
 def test_variants_are_told_by_their_settings():
-    for variant in VARIANTS:
-        assert variant_of(variant.method, {**variant.settings, "irrelevant": 3}) is variant
-    assert variant_of("akap", {"dirichlet": False, "trajectory": "linear", "memory": 1.0}).short == (
+    for variant in PRESETS:
+        assert preset_of(variant.method, {**variant.settings, "irrelevant": 3}) is variant
+    assert preset_of("akap", {"dirichlet": False, "trajectory": "linear", "memory": 1.0}).short == (
         "AKAP, straight, one solve"
     )
-    assert variant_of("akap", {"dirichlet": True}).spec == "akap"
+    assert preset_of("akap", {"dirichlet": True}).spec == "akap"

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from akap_editor.deform.pose_interpolation import Inbetween, Ways
+from akap_editor.deform.pose_interpolation import InterpolationCache, PoseInterpolation
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
-from akap_editor.geometry.area_bounds import bounded
+from akap_editor.geometry.area_bounds import bound_face_areas
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io.images import read_image
@@ -48,7 +48,7 @@ def mesh():
 
 def test_the_ends_are_exact_and_neighbors_are_near(mesh):
     start, end = mesh.vertices, curled(mesh, 2.5)
-    pose = Inbetween(mesh).between(start, end)
+    pose = PoseInterpolation(mesh).between(start, end)
     np.testing.assert_array_equal(pose(0.0), start)
     np.testing.assert_array_equal(pose(1.0), end)
     np.testing.assert_allclose(pose(1e-9), start, atol=1e-6)
@@ -57,7 +57,7 @@ def test_the_ends_are_exact_and_neighbors_are_near(mesh):
 
 def test_the_way_back_is_the_way(mesh):
     start, end = curled(mesh, -1.0), curled(mesh, 2.5)
-    there, back = Inbetween(mesh).between(start, end), Inbetween(mesh).between(end, start)
+    there, back = PoseInterpolation(mesh).between(start, end), PoseInterpolation(mesh).between(end, start)
     for t in (0.2, 0.5, 0.9):
         np.testing.assert_allclose(there(t), back(1 - t), atol=1e-9)
 
@@ -67,14 +67,14 @@ def test_a_similarity_goes_along_its_log_spiral(mesh, angle):
     factor, center = 1.5 * np.exp(1j * angle), 7 - 3j
     start = mesh.vertices.view(np.complex128)[:, 0]
     end = center + factor * (start - center)
-    pose = Inbetween(mesh).between(mesh.vertices, end.view(np.float64).reshape(-1, 2))
+    pose = PoseInterpolation(mesh).between(mesh.vertices, end.view(np.float64).reshape(-1, 2))
     for t in TIMES:
         expected = center + np.exp(t * np.log(factor)) * (start - center)
         np.testing.assert_allclose(pose(t).view(np.complex128)[:, 0], expected, atol=1e-8)
 
 
 def test_a_translation_goes_straight(mesh):
-    pose = Inbetween(mesh).between(mesh.vertices, mesh.vertices + np.array([30.0, -7.0]))
+    pose = PoseInterpolation(mesh).between(mesh.vertices, mesh.vertices + np.array([30.0, -7.0]))
     np.testing.assert_allclose(pose(0.3), mesh.vertices + np.array([9.0, -2.1]), atol=1e-8)
 
 
@@ -82,7 +82,7 @@ def test_a_translation_goes_straight(mesh):
 def test_an_arm_sweeps_an_arc_also_beyond_half_a_turn(mesh, turn):
     """Halfway it is bent by half, the part that stayed stays, and every area is kept."""
     end = curled(mesh, turn)
-    pose = Inbetween(mesh).between(mesh.vertices, end)
+    pose = PoseInterpolation(mesh).between(mesh.vertices, end)
     np.testing.assert_allclose(pose(0.5), curled(mesh, turn / 2), atol=0.25)
     still = mesh.vertices[:, 0] < 9
     assert max(np.abs(pose(t) - mesh.vertices)[still].max() for t in TIMES) < 0.02
@@ -95,18 +95,18 @@ def test_a_straight_mix_of_the_two_poses_would_shrink(mesh):
     """What the spirals are for."""
     end = curled(mesh, np.pi)
     mixed = distortion(mesh, 0.5 * (mesh.vertices + end)).area
-    spiral = distortion(mesh, Inbetween(mesh).between(mesh.vertices, end)(0.5)).area
+    spiral = distortion(mesh, PoseInterpolation(mesh).between(mesh.vertices, end)(0.5)).area
     assert mixed > 2.2
     assert spiral < 2.01
 
 
 def test_bounding_moves_little_and_only_what_is_beyond(mesh):
     pose = mesh.vertices.copy()
-    np.testing.assert_array_equal(bounded(mesh, pose, 1.5), pose)
+    np.testing.assert_array_equal(bound_face_areas(mesh, pose, 1.5), pose)
     pose[50] += [0.9, 0.0]
     ratios = lambda p: distortion(mesh, p).face_determinant  # noqa: E731
     assert ratios(pose).min() < 0.5
-    mended = bounded(mesh, pose, 2.0)
+    mended = bound_face_areas(mesh, pose, 2.0)
     assert ratios(mended).min() >= 0.99 / 2
     assert ratios(mended).max() <= 2 * 1.01
     far = np.abs(mesh.vertices - mesh.vertices[50]).max(axis=1) > 3
@@ -115,14 +115,14 @@ def test_bounding_moves_little_and_only_what_is_beyond(mesh):
 
 def test_ways_are_prepared_once_and_are_those_of_in_betweens(mesh, monkeypatch):
     start, end, other = mesh.vertices, curled(mesh, 1.0), curled(mesh, -1.0)
-    ways, made = Ways(most=2), []
-    original = Inbetween.between
+    ways, made = InterpolationCache(most=2), []
+    original = PoseInterpolation.between
     monkeypatch.setattr(
-        Inbetween, "between", lambda self, a, b: made.append((id(a), id(b))) or original(self, a, b)
+        PoseInterpolation, "between", lambda self, a, b: made.append((id(a), id(b))) or original(self, a, b)
     )
     for t in (0.2, 0.5):
         np.testing.assert_array_equal(
-            ways.pose(mesh, start, end, t), original(Inbetween(mesh), start, end)(t)
+            ways.pose(mesh, start, end, t), original(PoseInterpolation(mesh), start, end)(t)
         )
     assert ways.pose(mesh, start, end, 0) is start
     assert ways.pose(mesh, start, end, 1) is end
@@ -141,15 +141,15 @@ def test_parts_move_each_on_their_own():
     )
     end = both.vertices.copy()
     end[n:] += [5.0, 1.0]
-    middle = Inbetween(both).between(both.vertices, end)(0.5)
+    middle = PoseInterpolation(both).between(both.vertices, end)(0.5)
     np.testing.assert_allclose(middle[:n], both.vertices[:n], atol=1e-9)
     np.testing.assert_allclose(middle[n:], both.vertices[n:] + np.array([2.5, 0.5]), atol=1e-9)
 
 
 def test_a_collapsed_pose_gives_finite_in_betweens(mesh):
     flat = mesh.vertices * [1.0, 0.0]
-    assert np.isfinite(Inbetween(mesh).between(mesh.vertices, flat)(0.5)).all()
-    assert np.isfinite(Inbetween(mesh).between(mesh.vertices * 0.0, mesh.vertices)(0.5)).all()
+    assert np.isfinite(PoseInterpolation(mesh).between(mesh.vertices, flat)(0.5)).all()
+    assert np.isfinite(PoseInterpolation(mesh).between(mesh.vertices * 0.0, mesh.vertices)(0.5)).all()
 
 
 @pytest.mark.parametrize(
@@ -163,7 +163,7 @@ def test_a_collapsed_pose_gives_finite_in_betweens(mesh):
 )
 def test_bad_arguments_are_named(mesh, bad, message):
     with pytest.raises(InputError, match=message):
-        bad(Inbetween(mesh).between, mesh.vertices)
+        bad(PoseInterpolation(mesh).between, mesh.vertices)
 
 
 @pytest.mark.parametrize("name", ["cat", "elephant", "t-rex", "gecko", "dancer"])
@@ -193,7 +193,7 @@ def test_real_cartoons_are_distorted_no_more_than_at_the_worse_end(name):
         for _ in range(60):
             session.step()
         poses.append(session.state.positions)
-    inbetween = Inbetween(mesh)
+    inbetween = PoseInterpolation(mesh)
     for start, end in ((poses[0], poses[1]), (poses[1], poses[2])):
         pose = inbetween.between(start, end)
         measured = [distortion(mesh, pose(t)) for t in TIMES]

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 import akap_editor as akap
-from akap_editor.deform.warm_up import warm_up
+from akap_editor.deform.precompile import precompile
 from akap_editor.resources import resource
 
 def compiled():
@@ -16,7 +16,7 @@ def compiled():
     values = [(f"{m.__name__}.{n}", v) for m in modules for n, v in vars(m).items()]
     return {name: len(value.signatures) for name, value in values if isinstance(value, Dispatcher)}
 
-warm_up()
+precompile()
 before = compiled()
 drawing = akap.make_drawing(akap.read_image(resource("assets", "drawings", "gingerbread.png")), vertices=400)
 stiffness = np.linspace(1, 10, len(drawing.mesh.faces))

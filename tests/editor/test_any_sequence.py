@@ -10,8 +10,8 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_sta
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import KeyEvent, PointerEvent
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.session.worker import AT_ONCE
-from akap_editor.editor.tools.keyboard_pointer import select_next, toggle_crosshair
+from akap_editor.editor.session.worker import INLINE
+from akap_editor.editor.tools.keyboard_pointer import select_next, toggle_keyboard_pointer
 from tests.support.editor_driver import BESIDE, Driver, bits
 
 HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
@@ -59,7 +59,7 @@ def machine(drawing, worker):
 
         @rule(clicks=st.integers(0, 2), forward=st.booleans())
         def point_by_keys(self, clicks, forward):
-            toggle_crosshair(self.editor)
+            toggle_keyboard_pointer(self.editor)
             for _ in range(clicks):
                 self.driver.key("enter")
                 select_next(self.editor, forward)
@@ -135,8 +135,8 @@ def machine(drawing, worker):
     return Editing
 
 
-@pytest.mark.parametrize("beside", [False, True], ids=["at once", "in a thread"])
-def test_whatever_is_done_can_be_undone_and_redone_and_replayed(drawing, beside):
+@pytest.mark.parametrize("comparison", [False, True], ids=["at once", "in a thread"])
+def test_whatever_is_done_can_be_undone_and_redone_and_replayed(drawing, comparison):
     with ThreadPoolExecutor(1) as thread:
-        kind = machine(drawing, thread if beside else AT_ONCE)
+        kind = machine(drawing, thread if comparison else INLINE)
         run_state_machine_as_test(kind, settings=settings(max_examples=20, stateful_step_count=30))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from akap_editor.editor.background_remesh import Remesher
+from akap_editor.editor.background_remesh import BackgroundRemesh
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing, make_drawing
 from akap_editor.editor.editor import Editor
@@ -24,7 +24,7 @@ def editor():
 
 def test_a_series_of_choices_is_one_entry_made_from_where_it_began(editor):
     """Coarse in between: nothing of that is left in the result."""
-    session, remesher = editor.session, Remesher(editor)
+    session, remesher = editor.session, BackgroundRemesh(editor)
     session.begin("Bend")
     session.set_targets({3: (150.0, 100.0)})
     session.settle()
@@ -37,7 +37,7 @@ def test_a_series_of_choices_is_one_entry_made_from_where_it_began(editor):
     remesher.let_go()
     assert session.history.depth == depth + 1
     assert session.drawing.meshing == Meshing(900)
-    once = Remesher(editor)
+    once = BackgroundRemesh(editor)
     found = session.state.positions
     session.undo()
     assert session.state is before
@@ -47,7 +47,7 @@ def test_a_series_of_choices_is_one_entry_made_from_where_it_began(editor):
 
 
 def test_only_the_last_of_many_choices_counts(editor):
-    remesher = Remesher(editor)
+    remesher = BackgroundRemesh(editor)
     for vertices in range(200, 400, 5):
         remesher.want(Meshing(vertices), held=True)
         remesher.advance()
@@ -60,7 +60,7 @@ def test_only_the_last_of_many_choices_counts(editor):
 
 
 def test_choices_of_two_gestures_are_two_entries(editor):
-    remesher, depth = Remesher(editor), editor.session.history.depth
+    remesher, depth = BackgroundRemesh(editor), editor.session.history.depth
     remesher.want(Meshing(300))
     remesher.finish()
     remesher.want(Meshing(500))
@@ -69,7 +69,7 @@ def test_choices_of_two_gestures_are_two_entries(editor):
 
 
 def test_a_choice_made_before_the_last_is_there_is_not_lost(editor):
-    remesher = Remesher(editor)
+    remesher = BackgroundRemesh(editor)
     remesher.want(Meshing(300))
     remesher.advance()
     remesher.want(Meshing(remesher.meshing.vertices, 5.0))
@@ -78,7 +78,7 @@ def test_a_choice_made_before_the_last_is_there_is_not_lost(editor):
 
 
 def test_what_was_done_meanwhile_stays(editor):
-    remesher = Remesher(editor)
+    remesher = BackgroundRemesh(editor)
     remesher.want(Meshing(300))
     remesher.advance()
     editor.add_pin((65.0, 60.0))
@@ -90,7 +90,7 @@ def test_what_was_done_meanwhile_stays(editor):
 
 
 def test_it_waits_for_a_gesture_to_end(editor):
-    remesher = Remesher(editor)
+    remesher = BackgroundRemesh(editor)
     remesher.want(Meshing(300))
     remesher.advance()
     editor.session.begin("Bend")
@@ -101,7 +101,7 @@ def test_it_waits_for_a_gesture_to_end(editor):
 
 
 def test_another_drawing_ends_it(editor):
-    remesher = Remesher(editor)
+    remesher = BackgroundRemesh(editor)
     remesher.want(Meshing(300))
     remesher.advance()
     other = new_document(make_drawing(np.full((30, 40, 4), 255, np.uint8), vertices=30))
@@ -115,7 +115,7 @@ def test_another_drawing_ends_it(editor):
 
 
 def test_what_cannot_be_made_is_said_and_changes_nothing(editor):
-    remesher, state = Remesher(editor), editor.session.state
+    remesher, state = BackgroundRemesh(editor), editor.session.state
     remesher.want(Meshing(300, threshold=1.5))
     with pytest.raises(InputError, match=r"threshold: expected a share between 0 and 1, got 1\.5"):
         remesher.finish()

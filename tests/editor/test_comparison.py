@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.deform.deformer import make_deformer
-from akap_editor.editor.comparison import Beside
+from akap_editor.editor.comparison import MethodComparison
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.session import Session
@@ -33,11 +33,11 @@ def drag(session, dx, dy):
     session.commit()
 
 
-def followed(beside, main):
+def followed(comparison, main):
     for _ in range(1000):
-        beside.follow(main)
-        if not beside.moving:
-            return beside.session.state.positions
+        comparison.follow(main)
+        if not comparison.moving:
+            return comparison.session.state.positions
     raise AssertionError("it does not come to rest")
 
 
@@ -45,8 +45,8 @@ def followed(beside, main):
 def test_it_bends_to_the_same_targets_by_its_own_method(main, spec):
     drag(main, 20.0, -10.0)
     before = main.state
-    beside = Beside(spec)
-    pose = followed(beside, main)
+    comparison = MethodComparison(spec)
+    pose = followed(comparison, main)
     deformer = make_deformer(spec, main.drawing.mesh)
     deformer.set_pins(main.state.points)
     expected = main.drawing.mesh.vertices
@@ -54,51 +54,51 @@ def test_it_bends_to_the_same_targets_by_its_own_method(main, spec):
         expected = deformer.step(expected, main.state.targets).positions
     assert np.abs(pose - expected).max() < (0.5 if spec == "arap" else 1e-9)
     assert main.state is before
-    measured = beside.measure()
+    measured = comparison.measure()
     assert measured.area == distortion(main.drawing.mesh, pose).area
-    assert beside.measure() is measured
+    assert comparison.measure() is measured
 
 
 def test_it_follows_new_pins_removed_pins_undo_and_reset(main):
-    beside = Beside("cauchy-green")
+    comparison = MethodComparison("cauchy-green")
     drag(main, 20.0, -10.0)
-    bent = followed(beside, main)
+    bent = followed(comparison, main)
     main.begin("Remove")
     main.remove_pins([main.state.pins[1].id])
     main.commit()
-    followed(beside, main)
-    assert [pin.id for pin in beside.session.state.pins] == [pin.id for pin in main.state.pins]
+    followed(comparison, main)
+    assert [pin.id for pin in comparison.session.state.pins] == [pin.id for pin in main.state.pins]
     main.undo()
-    assert np.abs(followed(beside, main) - bent).max() < 0.5
+    assert np.abs(followed(comparison, main) - bent).max() < 0.5
     main.undo()
-    followed(beside, main)
+    followed(comparison, main)
     assert not main.posed
-    assert not beside.session.posed
+    assert not comparison.session.posed
 
 
 def test_another_method_starts_from_the_pose_that_is_there(main):
     drag(main, 20.0, -10.0)
-    beside = Beside("cauchy-green")
-    followed(beside, main)
-    beside.spec = "akap"
-    beside.follow(main)
-    assert beside.session.state.settings == Settings.of("akap")
-    beside.close()
-    assert beside.session is None
-    assert beside.measure() is None
-    assert not beside.moving
+    comparison = MethodComparison("cauchy-green")
+    followed(comparison, main)
+    comparison.spec = "akap"
+    comparison.follow(main)
+    assert comparison.session.state.settings == Settings.of("akap")
+    comparison.close()
+    assert comparison.session is None
+    assert comparison.measure() is None
+    assert not comparison.moving
 
 
 def test_without_pins_or_motion_it_rests(drawing):
     session = Session(new_document(drawing))
-    beside = Beside()
-    beside.follow(session)
-    assert not beside.moving
-    assert beside.session.state.positions.tolist() == drawing.mesh.vertices.tolist()
+    comparison = MethodComparison()
+    comparison.follow(session)
+    assert not comparison.moving
+    assert comparison.session.state.positions.tolist() == drawing.mesh.vertices.tolist()
 
 
 def test_bad_method_is_refused_and_leaves_nothing(main):
-    beside = Beside("magic")
+    comparison = MethodComparison("magic")
     with pytest.raises(InputError, match="method: expected one of"):
-        beside.follow(main)
-    assert beside.session is None
+        comparison.follow(main)
+    assert comparison.session is None

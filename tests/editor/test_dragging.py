@@ -91,9 +91,9 @@ def test_pins_that_were_stopped_on_their_way_hold_while_another_is_dragged(pinne
     pinned.drag((x, y), (x + 25, y - 20), steps=1)
     pinned.undo()
     pinned.redo()
-    stopped = pinned.where(first)
-    assert np.hypot(x + 25 - stopped[0], y - 20 - stopped[1]) > 1
+    pins_fixed_at_pose = pinned.where(first)
+    assert np.hypot(x + 25 - pins_fixed_at_pose[0], y - 20 - pins_fixed_at_pose[1]) > 1
     x, y = pinned.where(second)
     pinned.drag((x, y), (x + 4, y + 4))
     pinned.settle()
-    assert np.allclose(pinned.where(first), stopped, atol=0.25)
+    assert np.allclose(pinned.where(first), pins_fixed_at_pose, atol=0.25)

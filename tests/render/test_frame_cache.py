@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from akap_editor.render.frame_cache import KeptPicture
+from akap_editor.render.frame_cache import FrameCache
 
 SIZE = (40, 30)
 THING, OTHER = np.zeros(3), np.zeros(3)
@@ -11,7 +11,7 @@ THING, OTHER = np.zeros(3), np.zeros(3)
 
 @pytest.fixture
 def kept(ctx):
-    made = KeptPicture(ctx)
+    made = FrameCache(ctx)
     yield made
     made.release()
 

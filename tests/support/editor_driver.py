@@ -10,7 +10,7 @@ from akap_editor.editor.document.document import Document, EditState
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
 from akap_editor.editor.session.session import Session
-from akap_editor.editor.session.worker import AT_ONCE
+from akap_editor.editor.session.worker import INLINE
 from akap_editor.geometry.mesh import signed_areas
 
 Point = tuple[float, float]
@@ -45,7 +45,7 @@ class Driver:
     """An editor with one drawing open; places are in drawing pixels."""
 
     def __init__(
-        self, document: Document, clock: Callable[[], float] | None = None, worker: Executor = AT_ONCE
+        self, document: Document, clock: Callable[[], float] | None = None, worker: Executor = INLINE
     ) -> None:
         self.editor = Editor(clock or Ticks(), worker)
         self.editor.open(document)

@@ -13,7 +13,7 @@ import imgui_bundle._imgui_bundle as native
 import numpy as np
 from numpy.typing import NDArray
 
-from akap_editor.app.app_state import Workspace
+from akap_editor.app.app_state import AppState
 from akap_editor.app.commands.command import Command
 from akap_editor.app.jobs.task import Task
 from akap_editor.app.window import Window
@@ -56,21 +56,21 @@ class WindowDriver:
         """As just started with this document, whatever was open before."""
         if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
             imgui.internal.close_popup_to_level(0, False)
-        self.window.space = Workspace(exporter=self.window.space.exporter)
+        self.window.state = AppState(exporter=self.window.state.exporter)
         self.editor.ui_scale = self.window.scale
-        self.space.show(document)
-        self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.beside)))
-        assert not self.space.error
+        self.state.show(document)
+        self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.comparison)))
+        assert not self.state.error
 
     # -- what is there -------------------------------------------------------------------------------------
 
     @property
-    def space(self) -> Workspace:
-        return self.window.space
+    def state(self) -> AppState:
+        return self.window.state
 
     @property
     def editor(self) -> Editor:
-        return self.space.editor
+        return self.state.editor
 
     @property
     def session(self) -> Session:
@@ -90,7 +90,7 @@ class WindowDriver:
         return type(self.editor.tool).__name__
 
     @property
-    def beside(self) -> Point:
+    def comparison(self) -> Point:
         """A place on the canvas where no drawing is."""
         left, top, _, _ = self.editor.canvas
         return left + 8, top + 8
@@ -128,12 +128,12 @@ class WindowDriver:
 
     def screenshot(self) -> NDArray[np.uint8]:
         """(h, w, 3) of the settled window."""
-        shots: list[NDArray[np.uint8]] = []
+        snapshots: list[NDArray[np.uint8]] = []
         self.settle()
-        self.window.after_draw.append(lambda: shots.append(self.window.screenshot()))
+        self.window.after_draw.append(lambda: snapshots.append(self.window.screenshot()))
         self.frame()
         self.window.after_draw.clear()
-        return shots[0]
+        return snapshots[0]
 
     # -- what a hand does ----------------------------------------------------------------------------------
 

@@ -6,8 +6,8 @@ from imgui_bundle import ImVec2, imgui
 
 from ...editor.camera import Point
 from ...editor.editor import Editor
-from ...editor.tools.keyboard_pointer import Crosshair
-from ...editor.tools.rotate import RING, TurningPin, ring_pin
+from ...editor.tools.keyboard_pointer import KeyboardPointer
+from ...editor.tools.rotate import RING, RotatingPin, ring_pin
 from ..theme import ACCENT, DARK, packed
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
@@ -31,7 +31,7 @@ def draw_ring(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
     pin, session = ring_pin(editor), editor.session
     if pin is None or session is None:
         return
-    place, turning = editor.pins_on_screen()[pin], isinstance(editor.tool, TurningPin)
+    place, turning = editor.pins_on_screen()[pin], isinstance(editor.tool, RotatingPin)
     held = session.state.pin(pin).angle
     angle = session.pin_angle(pin) if held is None else held
     center, radius = ImVec2(*place), RING * scale
@@ -72,7 +72,7 @@ def draw_brush(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
 
 def draw_crosshair(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
     """Four arms around the place that it points at, which stays free; thin lines lead to them."""
-    if not isinstance(editor.tool, Crosshair):
+    if not isinstance(editor.tool, KeyboardPointer):
         return
     (x, y), (left, top, right, bottom) = editor.tool.place, editor.canvas
     inner = 13 * scale

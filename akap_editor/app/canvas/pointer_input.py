@@ -5,10 +5,10 @@ from imgui_bundle import ImVec2, imgui
 from ...editor.editor import HELD_KEYS
 from ...editor.events import ARROWS, Button, KeyEvent, PointerEvent, ScrollEvent
 from ...editor.tools.base import DRAG_DISTANCE, distance
-from ...editor.tools.keyboard_pointer import Crosshair
+from ...editor.tools.keyboard_pointer import KeyboardPointer
 from ...editor.tools.pins import DraggingPin, Idle, PointingPin, RubberBand
-from ...editor.tools.rotate import PointingRing, TurningPin, hovered_ring
-from ..app_state import Workspace
+from ...editor.tools.rotate import PointingRotationRing, RotatingPin, hovered_ring
+from ..app_state import AppState
 from ..panels.pin_popup import PinPopup
 from ..theme import ACCENT, DARK, packed
 from .pin_markers import draw_brush, draw_crosshair, draw_held_angle, draw_ring
@@ -16,7 +16,7 @@ from .pin_markers import draw_brush, draw_crosshair, draw_held_angle, draw_ring
 _BUTTONS: tuple[Button, ...] = ("left", "right", "middle")  # in ImGui's order
 _ARROW_KEYS = {name: imgui.Key[f"{name}_arrow"] for name in ARROWS}
 _CLICK_KEYS = (imgui.Key.enter, imgui.Key.keypad_enter, imgui.Key.space)  # of the crosshair
-_HOLDING = (PointingPin, DraggingPin, PointingRing, TurningPin)  # tools
+_HOLDING = (PointingPin, DraggingPin, PointingRotationRing, RotatingPin)  # tools
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 
 
@@ -32,17 +32,17 @@ class Canvas:
         self._popup = PinPopup()
         self._interrupted = -1  # the last frame with a dialog or a menu
 
-    def read_input(self, space: Workspace) -> None:
+    def read_input(self, state: AppState) -> None:
         """Pass this frame's pointer and keys on, unless a panel wants them."""
-        io, editor = imgui.get_io(), space.editor
-        self._read_keys(space)
+        io, editor = imgui.get_io(), state.editor
+        self._read_keys(state)
         at = imgui.get_mouse_pos()
         position = (at.x, at.y)
         free = not io.want_capture_mouse
         idle = isinstance(editor.tool, Idle)
         inside = imgui.is_mouse_pos_valid()
         # a mouse that lies there trembles
-        still = DRAG_DISTANCE * editor.ui_scale if isinstance(editor.tool, Crosshair) else 0.0
+        still = DRAG_DISTANCE * editor.ui_scale if isinstance(editor.tool, KeyboardPointer) else 0.0
         if inside and distance(position, self._last) > still and (free or not idle):
             self._last = position
             editor.handle_event(PointerEvent("move", position))
@@ -50,33 +50,33 @@ class Canvas:
             editor.pointer_left()
         for index, button in enumerate(_BUTTONS):
             if free and imgui.is_mouse_clicked(index):
-                space.notice = ""
+                state.notice = ""
                 event = PointerEvent(
                     "press", position, button, io.key_shift, io.key_alt, io.mouse_clicked_count[index]
                 )
                 if io.key_ctrl:
-                    space.player.take(True)
+                    state.session_playback.take(True)
                     self._taking = True
                 editor.handle_event(event)
             if imgui.is_mouse_released(index) and not isinstance(editor.tool, Idle):
                 editor.handle_event(PointerEvent("release", position, button, io.key_shift, io.key_alt))
                 if self._taking:
-                    space.player.take(False)
+                    state.session_playback.take(False)
                     self._taking = False
         if free and io.mouse_wheel:
             editor.handle_event(ScrollEvent(position, io.mouse_wheel))
 
-    def let_go(self, space: Workspace) -> None:
+    def let_go(self, state: AppState) -> None:
         """End what is held half-way: its end goes to a dialog or another window and will not be seen here."""
         at = imgui.get_mouse_pos()
         self._last, self._interrupted = (at.x, at.y), imgui.get_frame_count()
-        space.editor.cancel()
+        state.editor.cancel()
         for name in HELD_KEYS:
-            space.editor.handle_event(KeyEvent(name, pressed=False))
+            state.editor.handle_event(KeyEvent(name, pressed=False))
 
-    def _read_keys(self, space: Workspace) -> None:
-        io, editor = imgui.get_io(), space.editor
-        pointing = isinstance(editor.tool, Crosshair)
+    def _read_keys(self, state: AppState) -> None:
+        io, editor = imgui.get_io(), state.editor
+        pointing = isinstance(editor.tool, KeyboardPointer)
         held = {
             "space": imgui.is_key_down(imgui.Key.space) and not pointing,
             "h": imgui.is_key_down(imgui.Key.h) and not io.key_ctrl,
@@ -90,7 +90,7 @@ class Canvas:
         if io.want_text_input:
             return
         if pointing and not io.nav_visible and any(imgui.is_key_pressed(key, False) for key in _CLICK_KEYS):
-            space.notice = ""
+            state.notice = ""
             editor.handle_event(KeyEvent("enter"))
         closed_menu = imgui.get_frame_count() <= self._interrupted + 1  # before this frame began
         if imgui.is_key_pressed(imgui.Key.escape, False) and not closed_menu:
@@ -103,14 +103,14 @@ class Canvas:
             if imgui.is_key_pressed(key) and not io.nav_visible and not io.key_ctrl:
                 editor.handle_event(KeyEvent(name, shift=io.key_shift))
 
-    def draw_popup(self, space: Workspace, scale: float) -> None:
+    def draw_popup(self, state: AppState, scale: float) -> None:
         """The menu or the values of a pin, if asked for."""
-        self._popup.draw(space, scale)
+        self._popup.draw(state, scale)
 
     @staticmethod
-    def choose_cursor(space: Workspace) -> None:
+    def choose_cursor(state: AppState) -> None:
         """The shape of the pointer says what a press would do."""
-        editor = space.editor
+        editor = state.editor
         if imgui.get_io().want_capture_mouse:
             return
         if editor.hand:
@@ -121,14 +121,14 @@ class Canvas:
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
 
     @staticmethod
-    def draw_overlay(space: Workspace, scale: float) -> None:
+    def draw_overlay(state: AppState, scale: float) -> None:
         """Pins, the pin that a click would add, and the selection box: over the drawing, under the panels."""
-        editor, session = space.editor, space.editor.session
+        editor, session = state.editor, state.editor.session
         if session is None:
             return
         draw = imgui.get_background_draw_list()
         draw.push_clip_rect(ImVec2(*editor.canvas[:2]), ImVec2(*editor.canvas[2:]))
-        if space.show_pins and "h" not in editor.held:
+        if state.show_pins and "h" not in editor.held:
             hovered = editor.hovered_pin if isinstance(editor.tool, Idle) else None
             targets = {pin.id: editor.camera.to_screen(tuple(pin.target)) for pin in session.state.pins}
             depths = {pin.id: pin.depth for pin in session.state.pins}

@@ -3,14 +3,14 @@
 import moderngl
 from imgui_bundle import ImVec2, imgui
 
-from ...deform.methods import VARIANTS, variant_of
+from ...deform.methods import PRESETS, preset_of
 from ...editor.camera import Camera
 from ...editor.editor import FRAME_BUDGET
 from ...editor.events import ScrollEvent
 from ...editor.session.session import Session
 from ...geometry.distortion import Distortion
 from ...render.renderer import Background, Renderer
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import QUIET, TEXT, packed
 from .pointer_input import draw_pin
 
@@ -33,48 +33,48 @@ def halves(canvas: Canvas) -> tuple[Canvas, Canvas]:
     return (left, top, middle, bottom), (middle, top, right, bottom)
 
 
-def draw(space: Workspace, canvas: Canvas, scale: float) -> Canvas:
+def draw(state: AppState, canvas: Canvas, scale: float) -> Canvas:
     """Draw names and numbers and step the second method; what is left of the canvas for editing."""
-    session = space.editor.session
-    if not space.split or session is None:
-        space.beside.close()
+    session = state.editor.session
+    if not state.split or session is None:
+        state.comparison.close()
         return canvas
     left, right = halves(canvas)
-    if not space.attempt(lambda: space.beside.follow(session, space.editor.worker, FRAME_BUDGET)):
-        space.split = False
+    if not state.attempt(lambda: state.comparison.follow(session, state.editor.worker, FRAME_BUDGET)):
+        state.split = False
         return canvas
     settings = session.state.settings
-    name = variant_of(settings.method, dict(settings.parameters)).label
-    _caption(left, name, space.measure(), session, scale)
-    _pane(space, right, scale)
+    name = preset_of(settings.method, dict(settings.parameters)).label
+    _caption(left, name, state.measure(), session, scale)
+    _pane(state, right, scale)
     return left
 
 
-def _pane(space: Workspace, pane: Canvas, scale: float) -> None:
+def _pane(state: AppState, pane: Canvas, scale: float) -> None:
     """The right half: a window without background, so that no click in it reaches the left half's drawing."""
-    beside = space.beside
+    comparison = state.comparison
     imgui.set_next_window_pos(ImVec2(pane[0], pane[1]))
     imgui.set_next_window_size(ImVec2(pane[2] - pane[0], pane[3] - pane[1]))
     imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(12 * scale, 10 * scale))
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
-    imgui.begin("Beside", None, _PANE)
+    imgui.begin("Comparison", None, _PANE)
     imgui.set_next_item_width(min(220 * scale, pane[2] - pane[0] - 24 * scale))
-    specs = [variant.spec for variant in VARIANTS]
-    labels = [variant.label for variant in VARIANTS]
-    changed, index = imgui.combo("##beside", specs.index(beside.spec), labels, len(labels))
+    specs = [variant.spec for variant in PRESETS]
+    labels = [variant.label for variant in PRESETS]
+    changed, index = imgui.combo("##beside", specs.index(comparison.spec), labels, len(labels))
     if changed:
-        beside.spec = specs[index]
+        comparison.spec = specs[index]
     wheel, at = imgui.get_io().mouse_wheel, imgui.get_mouse_pos()
     if imgui.is_window_hovered() and wheel:  # zooms both halves, as in the left one
-        space.editor.handle_event(ScrollEvent((at.x - (pane[2] - pane[0]), at.y), wheel))
+        state.editor.handle_event(ScrollEvent((at.x - (pane[2] - pane[0]), at.y), wheel))
     imgui.end()
     imgui.pop_style_var(2)
     lines = imgui.get_background_draw_list()
     lines.add_line(ImVec2(pane[0], pane[1]), ImVec2(pane[0], pane[3]), packed((1, 1, 1, 0.16)), scale)
-    if beside.session is not None:
-        _caption(pane, "", beside.measure(), beside.session, scale)
-        if space.show_pins:
-            _pins(pane, beside.session, _camera(space.editor.camera, pane, space.editor.canvas), scale)
+    if comparison.session is not None:
+        _caption(pane, "", comparison.measure(), comparison.session, scale)
+        if state.show_pins:
+            _pins(pane, comparison.session, _camera(state.editor.camera, pane, state.editor.canvas), scale)
 
 
 def _caption(pane: Canvas, name: str, found: Distortion | None, session: Session, scale: float) -> None:
@@ -116,7 +116,7 @@ def _camera(camera: Camera, pane: Canvas, edited: Canvas) -> Camera:
 
 
 def render(
-    space: Workspace,
+    state: AppState,
     renderer: Renderer,
     target: moderngl.Framebuffer,
     pixels: tuple[int, int],
@@ -124,10 +124,10 @@ def render(
     background: Background,
 ) -> None:
     """Draw the second pose over the right half. pixels, window: sizes in framebuffer pixels and in points."""
-    session = space.beside.session
-    if not space.split or session is None:
+    session = state.comparison.session
+    if not state.split or session is None:
         return
-    left, top, right, bottom = space.editor.canvas
+    left, top, right, bottom = state.editor.canvas
     pane = right, top, right + (right - left), bottom
     density = pixels[0] / max(window[0], 1)
     x0, x1 = (round(density * x) for x in (pane[0], pane[2]))
@@ -136,7 +136,7 @@ def render(
     renderer.draw(
         target,
         pixels,
-        _camera(space.editor.camera, pane, space.editor.canvas).view(*window),
+        _camera(state.editor.camera, pane, state.editor.canvas).view(*window),
         background=background,
         region=(x0, pixels[1] - y1, x1 - x0, y1 - y0),
     )

@@ -22,7 +22,7 @@ from ...geometry.distortion import Distortion
 from ...geometry.validation import Floats, Ints
 from ...io.images import read_image
 from ...render.colormaps import diverging, sequential
-from ...render.overlays import Heat, Overlays, Reference, Skin, Strokes
+from ...render.overlays import FaceColors, LineSegments, OnionPose, Overlays, Reference
 from ..theme import DARK, QUIET, TEXT, packed
 
 Measure = Literal["area", "angle"]
@@ -42,7 +42,7 @@ SWITCHES = ("vectors", "ghost", "trails", "show_reference")  # fields that are r
 
 
 @dataclass
-class ViewState:
+class ViewOptions:
     """Which overlays are on.
 
     vectors: the fields of the drag; heat: what the map of distortion shows, if on; heat_range: see RANGES;
@@ -57,9 +57,9 @@ class ViewState:
     reference: Reference | None = None
     reference_path: Path | None = None
     show_reference: bool = True
-    _fields: "_Fields" = field(default_factory=lambda: _Fields())
-    _heat: "tuple[Distortion, Measure, int, Heat] | None" = None
-    _tint: tuple[Floats, Heat] | None = None
+    _fields: "_VectorFieldArrows" = field(default_factory=lambda: _VectorFieldArrows())
+    _heat: "tuple[Distortion, Measure, int, FaceColors] | None" = None
+    _tint: tuple[Floats, FaceColors] | None = None
 
     def set_reference(self, image: NDArray[np.uint8], path: Path | None = None) -> None:
         """Show another reference picture, (h, w, 4) uint8, at half its strength."""
@@ -102,7 +102,7 @@ class ViewState:
 
         scale: framebuffer pixels for a point of the design.
         """
-        strokes: list[Strokes] = []
+        strokes: list[LineSegments] = []
         if self.trails:
             strokes += outlined(editor.trails.segments(), TRAIL, 1.5 * scale)
         if (
@@ -131,17 +131,17 @@ class ViewState:
         """Whether they are being computed."""
         return self._fields.coming is not None and not self._fields.coming.done()
 
-    def _tint_of(self, editor: Editor) -> Heat | None:
+    def _tint_of(self, editor: Editor) -> FaceColors | None:
         """What bends less, while the brush is at hand; one object for each stiffness."""
         stiffness = shown_stiffness(editor)
         if stiffness is None:
             return None
         if self._tint is None or self._tint[0] is not stiffness:
             levels = np.log(stiffness) / np.log(STIFFEST)
-            self._tint = stiffness, Heat(levels, np.array([STIFF, STIFF]), sheer=True)
+            self._tint = stiffness, FaceColors(levels, np.array([STIFF, STIFF]), sheer=True)
         return self._tint[1]
 
-    def _heat_of(self, distortion: Distortion | None) -> Heat | None:
+    def _heat_of(self, distortion: Distortion | None) -> FaceColors | None:
         """One object for each pose, so that it is uploaded once."""
         if self.heat is None or distortion is None:
             return None
@@ -151,7 +151,7 @@ class ViewState:
         return self._heat[3]
 
 
-def heat(distortion: Distortion, measure: Measure, limit: float) -> Heat:
+def heat(distortion: Distortion, measure: Measure, limit: float) -> FaceColors:
     """Levels for a scale that ends at ``limit``, the ratio by which an area or a shape has changed.
 
     area: from 1/limit over 1 in the middle to limit, by equal ratios. angle: the longer by the shorter axis
@@ -164,23 +164,23 @@ def heat(distortion: Distortion, measure: Measure, limit: float) -> Heat:
             s = np.maximum(distortion.face_angle, 2.0)
             levels = np.log(0.5 * (s + np.sqrt(s * s - 4.0))) / np.log(limit)
     levels = np.clip(levels, 0.0, 1.0)
-    return Heat(np.where(distortion.face_determinant > 0, levels, -1.0), COLORS[measure])
+    return FaceColors(np.where(distortion.face_determinant > 0, levels, -1.0), COLORS[measure])
 
 
-def skins(before: list[Floats], after: list[Floats]) -> tuple[Skin, ...]:
+def skins(before: list[Floats], after: list[Floats]) -> tuple[OnionPose, ...]:
     """The onion skin of poses before and after, the nearest ones first; those lie in front."""
     made = [
-        (number, Skin(pose, tint, SKIN * FADING**number))
+        (number, OnionPose(pose, tint, SKIN * FADING**number))
         for poses, tint in ((before, BEFORE), (after, AFTER))
         for number, pose in enumerate(poses)
     ]
     return tuple(skin for _, skin in sorted(made, key=lambda each: -each[0]))
 
 
-def outlined(segments: Floats, color: tuple[float, float, float, float], width: float) -> list[Strokes]:
+def outlined(segments: Floats, color: tuple[float, float, float, float], width: float) -> list[LineSegments]:
     """Lines with a dark rim, which stand out from any picture."""
     dark = (*DARK[:3], 0.55)
-    return [Strokes(segments, dark, width + 2.0), Strokes(segments, color, width)]
+    return [LineSegments(segments, dark, width + 2.0), LineSegments(segments, color, width)]
 
 
 def spread(drawing: Drawing, spacing: float) -> Ints:
@@ -212,7 +212,7 @@ def arrows(starts: Floats, vectors: Floats, head: float) -> Floats:
     return np.concatenate([np.stack(piece, axis=1) for piece in pieces])
 
 
-class _Fields:
+class _VectorFieldArrows:
     """The vector fields of the last move of the pins, computed no more often than there is time for.
 
     coming: those that the worker computes.
@@ -226,7 +226,7 @@ class _Fields:
         self._begun = self._until = 0.0
         self._chosen: tuple[Drawing, float, Ints] | None = None
 
-    def strokes(self, editor: Editor, session: Session, scale: float) -> list[Strokes]:
+    def strokes(self, editor: Editor, session: Session, scale: float) -> list[LineSegments]:
         """Arrows of U° with those of U_opt over them; none for methods without fields."""
         self._update(editor, session)
         if self._fields is None:
@@ -242,7 +242,7 @@ class _Fields:
             arrows(starts, softened(each[chosen] / longest, LONGEST * spacing / zoom), 0.25 * spacing / zoom)
             for each in (smooth, optimal)
         )
-        return [*outlined(below, BLUE, 3.2 * scale), Strokes(above, GREEN, 1.4 * scale)]
+        return [*outlined(below, BLUE, 3.2 * scale), LineSegments(above, GREEN, 1.4 * scale)]
 
     def drop(self) -> None:
         """Nobody waits for what the worker computes."""
@@ -268,7 +268,7 @@ class _Fields:
         return self._chosen[2]
 
 
-def draw_legend(view: ViewState, editor: Editor, scale: float) -> None:
+def draw_legend(view: ViewOptions, editor: Editor, scale: float) -> None:
     """What colors mean, in the lower left corner of the canvas; a click on a scale chooses its range."""
     if editor.session is None or not (view.vectors or view.heat is not None):
         return
@@ -307,7 +307,7 @@ def _field_legend(session: Session, scale: float) -> None:
         imgui.text_colored(ImVec4(*TEXT), label)
 
 
-def _heat_legend(view: ViewState, measure: Measure, scale: float) -> None:
+def _heat_legend(view: ViewOptions, measure: Measure, scale: float) -> None:
     limit = RANGES[view.heat_range]
     title = "Area, against the drawing at rest" if measure == "area" else "Stretch, longer by shorter axis"
     imgui.text_colored(ImVec4(*QUIET), title)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
-from ..app_state import Workspace
+from ..app_state import AppState
 
 CTRL, SHIFT = imgui.Key.mod_ctrl, imgui.Key.mod_shift
 Key = imgui.Key
@@ -21,14 +21,14 @@ _WALKING = frozenset(
 )
 
 
-def always(_: Workspace) -> bool:
+def always(_: AppState) -> bool:
     """Of a command that can be given at any time."""
     return True
 
 
-def has_drawing(space: Workspace) -> bool:
+def has_drawing(state: AppState) -> bool:
     """Whether there is something to work on."""
-    return space.document is not None
+    return state.document is not None
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,11 @@ class Command:
     """
 
     label: str
-    run: Callable[[Workspace], None]
+    run: Callable[[AppState], None]
     chords: tuple[int, ...] = ()
     icon: str = ""
-    enabled: Callable[[Workspace], bool] = always
-    checked: Callable[[Workspace], bool] | None = None
+    enabled: Callable[[AppState], bool] = always
+    checked: Callable[[AppState], bool] | None = None
     typed: str = ""
     repeats: bool = False
 
@@ -78,7 +78,7 @@ class Submenu:
     """A menu of files to open; files: what each is called, and its path."""
 
     label: str
-    files: Callable[[Workspace], list[tuple[str, Path]]]
+    files: Callable[[AppState], list[tuple[str, Path]]]
 
 
 _KEY_NAMES = {

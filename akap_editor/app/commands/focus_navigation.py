@@ -2,12 +2,20 @@
 
 from imgui_bundle import imgui
 
-from ..app_state import Workspace
+from ..app_state import AppState
 
-_PANES = ("Start", "Panel", "Tools", "Timeline", "Beside", "##legend", "First steps")  # windows, as F6 goes
+_PANES = (
+    "Start",
+    "Panel",
+    "Tools",
+    "Timeline",
+    "Comparison",
+    "##legend",
+    "First steps",
+)  # windows, as F6 goes
 
 
-def give_keys_to_panels(space: Workspace) -> None:
+def give_keys_to_panels(state: AppState) -> None:
     """With Tab to the side panel or the start page, with Shift+Tab to the tools; before these are drawn.
 
     F6 goes on to the next pane, and in the end back to the canvas; Shift+F6 the other way.
@@ -21,7 +29,7 @@ def give_keys_to_panels(space: Workspace) -> None:
         at = stops.index(here) if here in stops else 0
         _enter(stops[(at + (-1 if io.key_shift else 1)) % len(stops)])
     elif not (io.want_text_input or io.nav_visible) and imgui.is_key_pressed(imgui.Key.tab, False):
-        _enter("Start" if space.document is None else "Tools" if io.key_shift else "Panel")
+        _enter("Start" if state.document is None else "Tools" if io.key_shift else "Panel")
 
 
 def _is_shown(name: str) -> bool:

@@ -6,8 +6,8 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...editor.events import ARROWS
-from ...editor.tools.keyboard_pointer import Crosshair, select_next, toggle_crosshair
-from ..app_state import Workspace
+from ...editor.tools.keyboard_pointer import KeyboardPointer, select_next, toggle_keyboard_pointer
+from ..app_state import AppState
 from . import keying
 from .command import CTRL, MENU_KEYS, SHIFT, Command, Key, has_drawing
 
@@ -15,57 +15,57 @@ _ARROWS = {"left": Key.left_arrow, "right": Key.right_arrow, "up": Key.up_arrow,
 _PAN = 60.0  # points of the design by which the canvas moves
 
 
-def _has_pins(space: Workspace) -> bool:
-    return space.document is not None and bool(space.document.state.pins)
+def _has_pins(state: AppState) -> bool:
+    return state.document is not None and bool(state.document.state.pins)
 
 
-def _point(space: Workspace) -> None:
+def _point(state: AppState) -> None:
     """Keys belong to the canvas then, and the status bar says what they do."""
-    space.notice = ""
+    state.notice = ""
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
-    toggle_crosshair(space.editor)
+    toggle_keyboard_pointer(state.editor)
 
 
-def _points(space: Workspace) -> bool:
-    return isinstance(space.editor.tool, Crosshair)
+def _points(state: AppState) -> bool:
+    return isinstance(state.editor.tool, KeyboardPointer)
 
 
-def _one_pin(space: Workspace) -> bool:
-    return len(space.editor.selection) == 1 and not _points(space)
+def _one_pin(state: AppState) -> bool:
+    return len(state.editor.selection) == 1 and not _points(state)
 
 
-def _menu(space: Workspace) -> None:
+def _menu(state: AppState) -> None:
     """Of the pin that was selected, or of a keyframe."""
     imgui.set_nav_cursor_visible(True)  # so that arrows walk through it
-    if space.editor.selection:
-        space.editor.ask("menu", max(space.editor.selection))
+    if state.editor.selection:
+        state.editor.ask("menu", max(state.editor.selection))
     else:
-        space.key_menu = True
+        state.key_menu = True
 
 
-def _can_ask(space: Workspace) -> bool:
-    return bool(space.editor.selection) or keying.shown(space)
+def _can_ask(state: AppState) -> bool:
+    return bool(state.editor.selection) or keying.shown(state)
 
 
-def _look(x: int, y: int) -> Callable[[Workspace], None]:
+def _look(x: int, y: int) -> Callable[[AppState], None]:
     """Shows what is farther that way, as if one looked there."""
 
-    def look(space: Workspace) -> None:
-        way = _PAN * space.editor.ui_scale
-        space.editor.camera = space.editor.camera.panned(-way * x, -way * y)
+    def look(state: AppState) -> None:
+        way = _PAN * state.editor.ui_scale
+        state.editor.camera = state.editor.camera.panned(-way * x, -way * y)
 
     return look
 
 
 CROSSHAIR = Command("Crosshair", _point, (Key.c,), icons.ICON_FA_CROSSHAIRS, has_drawing, _points)
-NEXT_PIN = Command("Next Pin", lambda space: select_next(space.editor), (Key.j,), "", _has_pins)
+NEXT_PIN = Command("Next Pin", lambda state: select_next(state.editor), (Key.j,), "", _has_pins)
 PREVIOUS_PIN = Command(
-    "Previous Pin", lambda space: select_next(space.editor, False), (SHIFT | Key.j,), "", _has_pins
+    "Previous Pin", lambda state: select_next(state.editor, False), (SHIFT | Key.j,), "", _has_pins
 )
 PIN_VALUES = Command(
     "Pin Values...",
-    lambda space: space.editor.ask("values", *space.editor.selection),
+    lambda state: state.editor.ask("values", *state.editor.selection),
     (Key.enter, Key.keypad_enter),
     "",
     _one_pin,

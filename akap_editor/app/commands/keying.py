@@ -3,52 +3,52 @@
 from collections.abc import Callable
 
 from ...editor.animation.keyframe_playback import STEP
-from ..app_state import Workspace
+from ..app_state import AppState
 
 
-def shown(space: Workspace) -> bool:
+def shown(state: AppState) -> bool:
     """Whether there are keyframes, and the timeline shows them."""
-    keyed = space.document is not None and space.show_timeline and space.timeline == "keyframes"
-    return keyed and bool(space.key_player.animation.keys)
+    keyed = state.document is not None and state.show_timeline and state.timeline == "keyframes"
+    return keyed and bool(state.keyframe_playback.animation.keys)
 
 
-def has_chosen(space: Workspace) -> bool:
+def has_chosen(state: AppState) -> bool:
     """Whether some of them are chosen."""
-    return shown(space) and bool(space.key_player.chosen)
+    return shown(state) and bool(state.keyframe_playback.chosen)
 
 
-def keyframe_here(space: Workspace) -> None:
+def keyframe_here(state: AppState) -> None:
     """Keep what is seen as a keyframe; the timeline opens where it is not seen."""
-    session, player = space.editor.session, space.key_player
+    session, playback = state.editor.session, state.keyframe_playback
     seen = session.state.positions if session is not None and session.visiting else None
-    player.watch()
-    if not (space.show_timeline and space.timeline == "keyframes"):
-        space.show_in_timeline("keyframes")
-        space.show_timeline = True
-    player.put(positions=seen)
+    playback.watch()
+    if not (state.show_timeline and state.timeline == "keyframes"):
+        state.show_in_timeline("keyframes")
+        state.show_timeline = True
+    playback.put(positions=seen)
 
 
-def toggle_onion(space: Workspace) -> None:
+def toggle_onion(state: AppState) -> None:
     """Show the neighbors of the pose, or not."""
-    space.key_player.onion.shown = not space.key_player.onion.shown
+    state.keyframe_playback.onion.shown = not state.keyframe_playback.onion.shown
 
 
-def nudging(by: float) -> Callable[[Workspace], None]:
+def nudging(by: float) -> Callable[[AppState], None]:
     """Brings the chosen keyframes forward or back by seconds."""
-    return lambda space: space.key_player.nudge(by)
+    return lambda state: state.keyframe_playback.nudge(by)
 
 
-def choose_all(space: Workspace) -> None:
+def choose_all(state: AppState) -> None:
     """Select every keyframe, to be moved together."""
-    space.key_player.chosen = frozenset(space.key_player.kept_times)
+    state.keyframe_playback.chosen = frozenset(state.keyframe_playback.kept_times)
 
 
-def going(by: float) -> Callable[[Workspace], None]:
+def going(by: float) -> Callable[[AppState], None]:
     """Looks so many seconds later, or earlier; at keyframes, where the mouse would stop, too."""
 
-    def go(space: Workspace) -> None:
-        moment = space.transport.position + by
-        space.transport.look(snapped(moment) if space.timeline == "keyframes" else moment)
+    def go(state: AppState) -> None:
+        moment = state.playback.position + by
+        state.playback.look(snapped(moment) if state.timeline == "keyframes" else moment)
 
     return go
 
@@ -58,13 +58,13 @@ def snapped(time: float) -> float:
     return round(time / STEP) * STEP
 
 
-def play(space: Workspace) -> None:
+def play(state: AppState) -> None:
     """Play what the timeline shows, or stop."""
-    space.show_timeline = True
-    space.transport.play()
+    state.show_timeline = True
+    state.playback.play()
 
 
-def can_play(space: Workspace) -> bool:
+def can_play(state: AppState) -> bool:
     """Whether there is something that moves."""
-    start, end = space.transport.range
-    return space.document is not None and end > start
+    start, end = state.playback.range
+    return state.document is not None and end > start

@@ -3,7 +3,7 @@
 from imgui_bundle import imgui
 
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from .command import Command, Submenu
 from .registry import MENUS
 
@@ -11,7 +11,7 @@ _LONGEST = 24  # times the font's size: what is shown of a file's name
 _NAMES = [name for name, _ in MENUS]
 
 
-def draw(space: Workspace) -> None:
+def draw(state: AppState) -> None:
     """The bar, and the menu that is open."""
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
     shown = imgui.begin_main_menu_bar()
@@ -21,7 +21,7 @@ def draw(space: Workspace) -> None:
     wanted = _pressed()
     for name, items in MENUS:
         if imgui.begin_menu(name):
-            in_submenu = [_item(space, item) for item in items]
+            in_submenu = [_item(state, item) for item in items]
             if not any(in_submenu) and imgui.is_window_focused():
                 wanted = _neighbor(name)
             imgui.end_menu()
@@ -52,27 +52,27 @@ def _neighbor(name: str) -> str:
     return ""
 
 
-def _item(space: Workspace, item: Command | Submenu | None) -> bool:
+def _item(state: AppState, item: Command | Submenu | None) -> bool:
     """One line of a menu; whether arrow keys belong to it, as it leads or has led to a menu of its own."""
     if item is None:
         imgui.separator()
     elif isinstance(item, Submenu):
-        return _submenu(space, item)
+        return _submenu(state, item)
     else:
-        checked = item.checked(space) if item.checked is not None else False
-        if imgui.menu_item(item.label, item.key_name, checked, item.enabled(space))[0]:
-            widgets.run(space, item)
+        checked = item.checked(state) if item.checked is not None else False
+        if imgui.menu_item(item.label, item.key_name, checked, item.enabled(state))[0]:
+            widgets.run(state, item)
     return False
 
 
-def _submenu(space: Workspace, item: Submenu) -> bool:
-    files = item.files(space)
+def _submenu(state: AppState, item: Submenu) -> bool:
+    files = item.files(state)
     is_open = imgui.begin_menu(item.label, bool(files))
     if is_open:
         room = _LONGEST * imgui.get_font_size()
         for index, (name, path) in enumerate(files):
             if imgui.menu_item_simple(f"{widgets.shortened(name, room)}###{index}"):
-                space.open_path(path)
+                state.open_path(path)
             widgets.explain(str(path))
         imgui.end_menu()
     return is_open or (bool(files) and imgui.is_item_focused())

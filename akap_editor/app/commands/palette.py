@@ -7,7 +7,7 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import ACCENT, QUIET, TEXT, packed
 from .command import Command, Submenu
 from .registry import COMMANDS, MENUS
@@ -32,7 +32,7 @@ class Entry:
     """One line of the palette: what it is called, how it is run, its key, whether that makes sense now."""
 
     label: str
-    run: Callable[[Workspace], None]
+    run: Callable[[AppState], None]
     key: str = ""
     enabled: bool = True
 
@@ -40,24 +40,24 @@ class Entry:
 Found = tuple[Entry, tuple[int, ...]]
 
 
-def entries(space: Workspace) -> list[Entry]:
+def entries(state: AppState) -> list[Entry]:
     """All that can be run, in the order of the menus."""
     found = []
     for item in (*(item for _, items in MENUS for item in items), *COMMANDS):
         if isinstance(item, Submenu):
-            for name, path in item.files(space):
+            for name, path in item.files(state):
                 found.append(Entry(f"{item.label}: {name}", _opens(path)))
         elif item is not None:
-            found.append(_entry(item, space))
+            found.append(_entry(item, state))
     return list({entry.label: entry for entry in found}.values())
 
 
-def _opens(path: Path) -> Callable[[Workspace], None]:
-    return lambda space: space.open_path(path)
+def _opens(path: Path) -> Callable[[AppState], None]:
+    return lambda state: state.open_path(path)
 
 
-def _entry(command: Command, space: Workspace) -> Entry:
-    return Entry(command.label.rstrip("."), command.run, command.key_name, command.enabled(space))
+def _entry(command: Command, state: AppState) -> Entry:
+    return Entry(command.label.rstrip("."), command.run, command.key_name, command.enabled(state))
 
 
 def match(query: str, label: str) -> tuple[float, tuple[int, ...]] | None:
@@ -97,21 +97,21 @@ def ranked(query: str, found: list[Entry]) -> list[Found]:
     return [(entry, places) for _, places, entry in scored]
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """One frame of the palette, if it is open."""
-    palette = space.palette
+    palette = state.palette
     if palette is None:
         return
     is_new = not palette.shown  # the key that opened it may be pressed still
     palette.shown = True
     if not _begin(is_new, scale):
-        space.palette = None
+        state.palette = None
         return
     if is_new:
         imgui.set_keyboard_focus_here()
     imgui.set_next_item_width(-1)
     changed, palette.query = imgui.input_text_with_hint("##query", _HINT, palette.query)
-    found = ranked(palette.query, entries(space))
+    found = ranked(palette.query, entries(state))
     steps = [step for key, step in _STEPS.items() if imgui.is_key_pressed(key)]
     chosen = 0 if changed else palette.chosen + sum(steps)
     palette.chosen = max(0, min(chosen, len(found) - 1))
@@ -122,12 +122,12 @@ def draw(space: Workspace, scale: float) -> None:
         picked = None
     if picked is not None or (widgets.escape() and not is_new):
         widgets.close_popup()
-        space.palette = None
+        state.palette = None
     imgui.end_popup()
     if picked is not None:
         run = picked.run
-        space.notice = ""
-        space.attempt(lambda: run(space))
+        state.notice = ""
+        state.attempt(lambda: run(state))
 
 
 def _begin(is_new: bool, scale: float) -> bool:

@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import ACTIVE, QUIET, TEXT, packed
 from .command import Command, Key
 from .registry import COMMANDS, KEYS, MENUS
@@ -53,7 +53,7 @@ def _line(command: Command) -> tuple[str, str]:
     return command.key_name, command.label.rstrip(".")
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """The page as a dialog; ?, Esc or Enter closes it."""
     if not widgets.begin_dialog("Keys and mouse"):
         return
@@ -77,7 +77,7 @@ def draw(space: Workspace, scale: float) -> None:
     imgui.end_child()
     done = widgets.button("Close", primary=True)
     if done or widgets.escape() or widgets.enter() or KEYS.is_pressed():
-        widgets.close(space, "keys", False)
+        widgets.close(state, "keys", False)
     imgui.end_popup()
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor.animation.keyframe_playback import STEP
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..dialogs import animating
 from . import keying
 from .command import CTRL, SHIFT, Command, Key, has_drawing
@@ -13,42 +13,42 @@ from .command import CTRL, SHIFT, Command, Key, has_drawing
 _ZOOM = 1.5
 
 
-def _shown(space: Workspace) -> bool:
-    return has_drawing(space) and space.show_timeline
+def _shown(state: AppState) -> bool:
+    return has_drawing(state) and state.show_timeline
 
 
-def _can_cut(space: Workspace) -> bool:
-    return _shown(space) and space.transport.duration > 0
+def _can_cut(state: AppState) -> bool:
+    return _shown(state) and state.playback.duration > 0
 
 
-def _end(space: Workspace) -> None:
-    space.transport.look(space.transport.range[1])
+def _end(state: AppState) -> None:
+    state.playback.look(state.playback.range[1])
 
 
-def _zoom(factor: float) -> Callable[[Workspace], None]:
-    return lambda space: space.transport.view.zoom(factor, space.transport.position)
+def _zoom(factor: float) -> Callable[[AppState], None]:
+    return lambda state: state.playback.view.zoom(factor, state.playback.position)
 
 
-def _clear_range(space: Workspace) -> None:
-    space.transport.cut = None
+def _clear_range(state: AppState) -> None:
+    state.playback.cut = None
 
 
 KEY_HERE = Command("Keyframe Here", keying.keyframe_here, (Key.k,), icons.ICON_FA_DIAMOND, has_drawing)
 KEY_REMOVE = Command(
-    "Remove Keyframe", lambda space: space.key_player.remove(), (SHIFT | Key.k,), "", keying.shown
+    "Remove Keyframe", lambda state: state.keyframe_playback.remove(), (SHIFT | Key.k,), "", keying.shown
 )
 KEY_COPY = Command(
     "Duplicate Keyframe",
-    lambda space: space.key_player.duplicate(),
+    lambda state: state.keyframe_playback.duplicate(),
     (CTRL | SHIFT | Key.k,),
     "",
     keying.shown,
 )
 KEY_NEXT = Command(
-    "Next Keyframe", lambda space: space.key_player.step(True), (Key.period,), "", keying.shown
+    "Next Keyframe", lambda state: state.keyframe_playback.step(True), (Key.period,), "", keying.shown
 )
 KEY_PREVIOUS = Command(
-    "Previous Keyframe", lambda space: space.key_player.step(False), (Key.comma,), "", keying.shown
+    "Previous Keyframe", lambda state: state.keyframe_playback.step(False), (Key.comma,), "", keying.shown
 )
 KEY_LATER = Command("Move Keyframe Later", keying.nudging(STEP), (SHIFT | Key.period,), "", keying.shown)
 KEY_EARLIER = Command("Move Keyframe Earlier", keying.nudging(-STEP), (SHIFT | Key.comma,), "", keying.shown)
@@ -59,7 +59,7 @@ ONION = Command(
     (Key.o,),
     icons.ICON_FA_LAYER_GROUP,
     keying.shown,
-    lambda space: space.key_player.onion.shown,
+    lambda state: state.keyframe_playback.onion.shown,
 )
 EXPORT_ANIMATION = Command(
     "Export Animation...", animating.ask, (CTRL | SHIFT | Key.e,), icons.ICON_FA_FILM, keying.can_play
@@ -72,26 +72,24 @@ SECOND_ON = Command(
 )
 SECOND_BACK = Command("One Second Back", keying.going(-1.0), (SHIFT | Key.page_up,), "", _shown, repeats=True)
 GO_START = Command(
-    "Go to Start", lambda space: space.transport.look(space.transport.range[0]), (Key.home,), "", _shown
+    "Go to Start", lambda state: state.playback.look(state.playback.range[0]), (Key.home,), "", _shown
 )
 GO_END = Command("Go to End", _end, (Key.end,), "", _shown)
 RANGE_START = Command(
     "Start Range Here",
-    lambda space: space.transport.cut_to(start=space.transport.position),
+    lambda state: state.playback.cut_to(start=state.playback.position),
     (SHIFT | Key.home,),
     "",
     _can_cut,
 )
 RANGE_END = Command(
     "End Range Here",
-    lambda space: space.transport.cut_to(end=space.transport.position),
+    lambda state: state.playback.cut_to(end=state.playback.position),
     (SHIFT | Key.end,),
     "",
     _can_cut,
 )
-RANGE_ALL = Command(
-    "Range Is Everything", _clear_range, (), "", lambda space: space.transport.cut is not None
-)
+RANGE_ALL = Command("Range Is Everything", _clear_range, (), "", lambda state: state.playback.cut is not None)
 ZOOM_IN = Command("Zoom into Timeline", _zoom(_ZOOM), (), "", _shown)
 ZOOM_OUT = Command("Zoom out of Timeline", _zoom(1 / _ZOOM), (), "", _shown)
 KEY_ALL = Command("Select All Keyframes", keying.choose_all, (), "", keying.shown)

@@ -7,9 +7,9 @@ from typing import Any
 
 from ...editor.animation.motion import Frame, closed, frame_times
 from ...editor.document.easing import EASINGS
-from ...editor.document.framing import frame_box, joined, picture_size
+from ...editor.document.framing import frame_box, picture_size, union_of_boxes
 from ...io.animation.frames import export_frames, export_kind
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..jobs.frame_encoder import Encoder
 from ..jobs.task import Progress, Steps, Task
 from .file_dialog import FileRequest
@@ -47,7 +47,7 @@ LIMITS = {"fps": (1.0, 120.0), "size": (16, 8192), "speed": (0.01, 100.0)}
 
 
 @dataclass
-class Choice:
+class AnimationExportOptions:
     """fps: frames a second; size: of the longest side, in pixels; speed: 2 is twice as fast; ease: see
     `easing`; loop: shown for ever, else once; ping_pong: forwards, then backwards; background: where opaque.
     """
@@ -78,10 +78,10 @@ class Choice:
         return times + times[-2:0:-1] if self.ping_pong else times
 
 
-def remembered(space: Workspace) -> Choice:
+def remembered(state: AppState) -> AnimationExportOptions:
     """As it was chosen the last time; what makes no sense is as at first."""
-    values: dict[str, Any] = space.preferences.get(REMEMBERED, {})
-    choice = Choice()
+    values: dict[str, Any] = state.preferences.get(REMEMBERED, {})
+    choice = AnimationExportOptions()
     for name, plain in asdict(choice).items():
         value = values.get(name, plain)
         if name in LIMITS and type(value) in (int, float):
@@ -95,66 +95,66 @@ def remembered(space: Workspace) -> Choice:
     return choice
 
 
-def remember(space: Workspace, choice: Choice) -> None:
+def remember(state: AppState, choice: AnimationExportOptions) -> None:
     """Keep a choice for the next time."""
-    space.preferences.put(REMEMBERED, asdict(choice))
+    state.preferences.put(REMEMBERED, asdict(choice))
 
 
-def ask(space: Workspace) -> None:
+def ask(state: AppState) -> None:
     """Ask what is to be made of the part between the marks."""
-    start, end = space.transport.range
-    if space.document is not None and end > start:
-        if space.transport.playing:
-            space.transport.stop()
-        space.animating = True
+    start, end = state.playback.range
+    if state.document is not None and end > start:
+        if state.playback.playing:
+            state.playback.stop()
+        state.animating = True
 
 
-def frame_at(space: Workspace, moment: float) -> Frame:
+def frame_at(state: AppState, moment: float) -> Frame:
     """What the timeline shows at a time."""
-    keyed = space.timeline == "keyframes"
-    return space.key_player.frame(moment) if keyed else space.player.frame(moment)
+    keyed = state.timeline == "keyframes"
+    return state.keyframe_playback.frame(moment) if keyed else state.session_playback.frame(moment)
 
 
-def chosen_times(space: Workspace, choice: Choice) -> list[float]:
+def chosen_times(state: AppState, choice: AnimationExportOptions) -> list[float]:
     """When to look, for each frame. Of what repeats and ends as it begins, the end is left out."""
-    start, end = space.transport.range
+    start, end = state.playback.range
     times = choice.times(start, end)
     over = choice.kind.repeats and choice.loop and not choice.ping_pong and len(times) > 2
-    return times[:-1] if over and closed(frame_at(space, start), frame_at(space, end)) else times
+    return times[:-1] if over and closed(frame_at(state, start), frame_at(state, end)) else times
 
 
-def ask_file(space: Workspace) -> None:
+def ask_file(state: AppState) -> None:
     """Ask where it goes."""
-    assert space.document is not None
-    kind, name = remembered(space).kind, space.document.drawing.name
+    assert state.document is not None
+    kind, name = remembered(state).kind, state.document.drawing.name
     name += kind.suffix or "-frames"
     if kind.sheet:
-        name = f"{space.document.drawing.name}-sheet.png"
+        name = f"{state.document.drawing.name}-sheet.png"
     suffixes = (kind.suffix,)
-    use = partial(export, space)
-    space.request = FileRequest("Export animation", suffixes, space.folder, use, name, saving=True)
+    use = partial(export, state)
+    state.request = FileRequest("Export animation", suffixes, state.folder, use, name, saving=True)
 
 
-def export(space: Workspace, path: Path) -> None:
+def export(state: AppState, path: Path) -> None:
     """Write the part between the marks, as it was chosen; the name's ending decides on the format."""
-    choice = remembered(space)
+    choice = remembered(state)
 
     def begin() -> None:
         sheet = choice.kind.sheet and path.suffix.lower() == ".png"
         export_kind(path, sheet)
-        space.task = Task(f"Exporting {path.name}", _steps(space, choice, path, sheet))
+        state.task = Task(f"Exporting {path.name}", _steps(state, choice, path, sheet))
 
-    space.later(begin)
+    state.later(begin)
 
 
-def _steps(space: Workspace, choice: Choice, path: Path, sheet: bool) -> Steps:
+def _steps(state: AppState, choice: AnimationExportOptions, path: Path, sheet: bool) -> Steps:
     """Poses, then pictures, which another thread encodes."""
-    times = chosen_times(space, choice)
+    times = chosen_times(state, choice)
     frames = []
     for number, time in enumerate(times):
-        frames.append(frame_at(space, time))
+        frames.append(frame_at(state, time))
         yield Progress(0.3 * number / len(times), f"Moving, frame {number + 1} of {len(times)}")
-    box = joined([frame_box(frame.drawing, [frame.pose]) for frame in frames])
+    box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])
     scale = min(1.0, choice.size / max(box[2] - box[0], box[3] - box[1]))
     picture_size(box, scale)
     encoder = Encoder(
@@ -162,7 +162,7 @@ def _steps(space: Workspace, choice: Choice, path: Path, sheet: bool) -> Steps:
     )
     try:
         for number, frame in enumerate(frames):
-            picture = space.exporter.render(*frame[:2], box, scale, choice.behind, frame.order)
+            picture = state.exporter.render(*frame[:2], box, scale, choice.behind, frame.order)
             share = 0.3 + 0.6 * number / len(frames)
             done = Progress(share, f"Drawing, frame {number + 1} of {len(frames)}")
             yield done
@@ -172,4 +172,4 @@ def _steps(space: Workspace, choice: Choice, path: Path, sheet: bool) -> Steps:
             yield Progress(0.95, f"Writing {path.name}")
     finally:
         encoder.close()
-    space.notice = f"Exported {path.name}, {len(frames)} frames, {encoder.said}"
+    state.notice = f"Exported {path.name}, {len(frames)} frames, {encoder.said}"

@@ -12,7 +12,7 @@ from imgui_bundle import portable_file_dialogs as native
 
 from ... import __version__
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..commands import shortcuts_page as keys_overlay
 from ..theme import ACCENT, QUIET
 from . import export_animation as animation_dialog
@@ -41,37 +41,37 @@ class Dialogs:
         """Whether a dialog of the system is open, whose answer must be polled."""
         return self._native is not None
 
-    def draw(self, space: Workspace, scale: float) -> None:
+    def draw(self, state: AppState, scale: float) -> None:
         """One frame of what is to be answered now; a message goes before everything else."""
-        if space.error:
-            _message(space, scale)
-        elif space.task is not None:
-            task_dialog.draw(space, space.task, scale)
-        elif space.question is not None:
-            _unsaved(space, scale)
-        elif space.lost:
-            self._recovery.draw(space, scale)
-        elif space.request is not None:
-            self._file(space, space.request, scale)
-        elif space.export.shown:
-            export_dialog.draw(space, scale)
-        elif space.animating:
-            animation_dialog.draw(space, scale)
-        elif space.keys:
-            keys_overlay.draw(space, scale)
-        elif space.about:
-            _about(space, scale)
+        if state.error:
+            _message(state, scale)
+        elif state.task is not None:
+            task_dialog.draw(state, state.task, scale)
+        elif state.question is not None:
+            _unsaved(state, scale)
+        elif state.lost:
+            self._recovery.draw(state, scale)
+        elif state.request is not None:
+            self._file(state, state.request, scale)
+        elif state.export.shown:
+            export_dialog.draw(state, scale)
+        elif state.animating:
+            animation_dialog.draw(state, scale)
+        elif state.keys:
+            keys_overlay.draw(state, scale)
+        elif state.about:
+            _about(state, scale)
 
-    def _file(self, space: Workspace, request: FileRequest, scale: float) -> None:
+    def _file(self, state: AppState, request: FileRequest, scale: float) -> None:
         if not self._use_native:
-            _choose_file(space, request, request is not self._asked, scale)
+            _choose_file(state, request, request is not self._asked, scale)
             self._asked = request
             return
         if self._native is None:
             self._native = _open_native(request)
         elif self._native.ready(0):
             result = self._native.result()
-            self._native, space.request = None, None
+            self._native, state.request = None, None
             path = result if isinstance(result, str) else next(iter(result), "")
             if path:
                 request.name = path
@@ -85,19 +85,19 @@ def _open_native(request: FileRequest) -> Any:
     return native.open_file(request.title, str(request.folder), [patterns, patterns])
 
 
-def _message(space: Workspace, scale: float) -> None:
+def _message(state: AppState, scale: float) -> None:
     if widgets.begin_dialog("That did not work"):
-        widgets.paragraph(space.error, 420 * scale)
+        widgets.paragraph(state.error, 420 * scale)
         imgui.spacing()
         if widgets.button("OK", primary=True) or widgets.escape() or widgets.enter():
-            widgets.close(space, "error", "")
+            widgets.close(state, "error", "")
         imgui.end_popup()
 
 
-def _unsaved(space: Workspace, scale: float) -> None:
-    question, document = space.question, space.document
+def _unsaved(state: AppState, scale: float) -> None:
+    question, document = state.question, state.document
     if question is None or document is None:
-        space.question = None
+        state.question = None
         return
     if widgets.begin_dialog("Unsaved changes"):
         name = document.path.name if document.path is not None else document.drawing.name
@@ -105,19 +105,19 @@ def _unsaved(space: Workspace, scale: float) -> None:
         widgets.paragraph(text, min(imgui.calc_text_size(text).x + 1, 420 * scale))
         imgui.spacing()
         if widgets.button("Save", primary=True) or widgets.enter():
-            widgets.close(space, "question", None)
-            space.save(question.go_on)
+            widgets.close(state, "question", None)
+            state.save(question.go_on)
         imgui.same_line()
         if widgets.button("Discard"):
-            widgets.close(space, "question", None)
+            widgets.close(state, "question", None)
             question.go_on()
         imgui.same_line()
         if widgets.button("Cancel") or widgets.escape():
-            widgets.close(space, "question", None)
+            widgets.close(state, "question", None)
         imgui.end_popup()
 
 
-def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: float) -> None:
+def _choose_file(state: AppState, request: FileRequest, is_new: bool, scale: float) -> None:
     """An own file dialog, for systems that have none to offer."""
     if not widgets.begin_dialog(request.title):
         return
@@ -145,9 +145,9 @@ def _choose_file(space: Workspace, request: FileRequest, is_new: bool, scale: fl
     imgui.end_disabled()
     imgui.same_line()
     if widgets.button("Cancel") or widgets.escape():
-        widgets.close(space, "request", None)
+        widgets.close(state, "request", None)
     elif (accepted or chosen or widgets.enter()) and request.name.strip():
-        _accept(space, request)
+        _accept(state, request)
     imgui.end_popup()
 
 
@@ -172,16 +172,16 @@ def _list_entries(request: FileRequest, scale: float) -> bool:
     return chosen
 
 
-def _accept(space: Workspace, request: FileRequest) -> None:
+def _accept(state: AppState, request: FileRequest) -> None:
     path = request.path
     if os.path.isdir(path):
         request.folder, request.name = path, ""
         return
-    widgets.close(space, "request", None)
+    widgets.close(state, "request", None)
     request.use(Path(path))
 
 
-def _about(space: Workspace, scale: float) -> None:
+def _about(state: AppState, scale: float) -> None:
     if not widgets.begin_dialog("About akap-editor"):
         return
     imgui.text(f"akap-editor {__version__}")
@@ -198,5 +198,5 @@ def _about(space: Workspace, scale: float) -> None:
     )
     imgui.spacing()
     if widgets.button("Close", primary=True) or widgets.escape() or widgets.enter():
-        widgets.close(space, "about", False)
+        widgets.close(state, "about", False)
     imgui.end_popup()

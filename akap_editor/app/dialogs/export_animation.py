@@ -4,10 +4,10 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...editor.document.easing import EASINGS
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import QUIET
 from . import animating
-from .animating import FORMATS, LIMITS, RATES, Choice
+from .animating import FORMATS, LIMITS, RATES, AnimationExportOptions
 
 EASING_LABELS = {
     "none": "Steady",
@@ -19,15 +19,15 @@ EASING_LABELS = {
 _WIDTH, _HEIGHT, _LEFT, _LABEL = 600, 292, 190, 104  # points of the design
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """One frame of the dialog."""
-    start, end = space.transport.range
-    if space.document is None or end <= start:
-        space.animating = False
+    start, end = state.playback.range
+    if state.document is None or end <= start:
+        state.animating = False
         return
     if not widgets.begin_dialog("Export animation"):
         return
-    choice = animating.remembered(space)
+    choice = animating.remembered(state)
     imgui.begin_child(
         "##formats", ImVec2(_LEFT * scale, _HEIGHT * scale), imgui.ChildFlags_.borders | widgets.WALKED
     )
@@ -36,21 +36,21 @@ def draw(space: Workspace, scale: float) -> None:
     imgui.same_line(0, 18 * scale)
     imgui.begin_child("##options", ImVec2((_WIDTH - _LEFT - 18) * scale, _HEIGHT * scale), widgets.WALKED)
     _options(choice, scale)
-    _facts(space, choice, scale)
+    _facts(state, choice, scale)
     imgui.end_child()
     imgui.spacing()
-    animating.remember(space, choice)
+    animating.remember(state, choice)
     accepted = widgets.button("Export...", primary=True)
     imgui.same_line()
     if widgets.button("Cancel") or widgets.escape():
-        widgets.close(space, "animating", False)
+        widgets.close(state, "animating", False)
     elif accepted or (widgets.enter() and not imgui.get_io().want_text_input):
-        widgets.close(space, "animating", False)
-        animating.ask_file(space)
+        widgets.close(state, "animating", False)
+        animating.ask_file(state)
     imgui.end_popup()
 
 
-def _formats(choice: Choice) -> None:
+def _formats(choice: AnimationExportOptions) -> None:
     flags = imgui.SelectableFlags_.no_auto_close_popups
     for each in FORMATS:
         right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
@@ -61,7 +61,7 @@ def _formats(choice: Choice) -> None:
         imgui.text_colored(ImVec4(*QUIET), ending)
 
 
-def _options(choice: Choice, scale: float) -> None:
+def _options(choice: AnimationExportOptions, scale: float) -> None:
     below = imgui.get_cursor_pos_y() + 2 * imgui.get_text_line_height()
     widgets.quiet(choice.kind.about)
     imgui.set_cursor_pos_y(below + imgui.get_style().item_spacing.y)
@@ -112,8 +112,8 @@ def _number(
     return float(value)
 
 
-def _facts(space: Workspace, choice: Choice, scale: float) -> None:
-    count = len(animating.chosen_times(space, choice))
+def _facts(state: AppState, choice: AnimationExportOptions, scale: float) -> None:
+    count = len(animating.chosen_times(state, choice))
     seconds = f"{count / choice.fps:.1f}".removesuffix(".0")
     widgets.label("Makes", _LABEL * scale)
     imgui.text(f"{count} frame{'s' * (count != 1)}, {seconds} s")

@@ -10,9 +10,9 @@ from ...editor.document.document import Document
 from ...errors import InputError
 from ...io.export import FORMATS, Painter, export, format_of
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import ACCENT, QUIET
-from .exporting import LARGEST, SCALES, SMALLEST, ExportChoice
+from .exporting import LARGEST, SCALES, SMALLEST, PoseExportOptions
 from .file_dialog import FileRequest
 
 _CROPS = {"none": "Frame and pose", "frame": "Picture's frame", "pose": "Pose alone"}
@@ -23,9 +23,9 @@ _ABOUT_CROPS = (
 _WIDTH, _HEIGHT, _LEFT, _LABEL = 580, 226, 208, 104  # points of the design
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """One frame of the dialog."""
-    choice, document = space.export, space.document
+    choice, document = state.export, state.document
     if document is None:
         choice.shown = False
         return
@@ -49,41 +49,41 @@ def draw(space: Workspace, scale: float) -> None:
         _close(choice)
     elif accepted or (widgets.enter() and not problem and not imgui.get_io().want_text_input):
         _close(choice)
-        ask_file(space)
+        ask_file(state)
     imgui.end_popup()
 
 
-def ask_file(space: Workspace) -> None:
+def ask_file(state: AppState) -> None:
     """Ask where what was chosen goes."""
-    if space.document is not None:
-        suffixes, name = (space.export.format.suffix,), space.export.file_name(space.document)
-        use = partial(write, space)
-        space.request = FileRequest("Export to", suffixes, space.folder, use, name, saving=True)
+    if state.document is not None:
+        suffixes, name = (state.export.format.suffix,), state.export.file_name(state.document)
+        use = partial(write, state)
+        state.request = FileRequest("Export to", suffixes, state.folder, use, name, saving=True)
 
 
-def write(space: Workspace, path: Path) -> None:
+def write(state: AppState, path: Path) -> None:
     """Write what was chosen, of the pose as it is now; one may go on meanwhile."""
-    document, choice = space.document, replace(space.export)
+    document, choice = state.document, replace(state.export)
     assert document is not None
 
     def work(painter: Painter) -> str:
-        *beside, _ = export(document, path, choice.options, painter)
-        said = f"Exported {', '.join([path.name, *(each.name for each in beside)])}"
+        *companions, _ = export(document, path, choice.options, painter)
+        said = f"Exported {', '.join([path.name, *(each.name for each in companions)])}"
         if format_of(path).framed:
             width, height = choice.size(document)
             said += f", {width} × {height} pixels"
         return said
 
-    space.notice = f"Exporting {path.name} ..."
-    space.writer.begin(work)
+    state.notice = f"Exporting {path.name} ..."
+    state.writer.begin(work)
 
 
-def _close(choice: ExportChoice) -> None:
+def _close(choice: PoseExportOptions) -> None:
     imgui.close_current_popup()
     choice.shown = False
 
 
-def _formats(choice: ExportChoice) -> None:
+def _formats(choice: PoseExportOptions) -> None:
     flags = imgui.SelectableFlags_.no_auto_close_popups
     for each in FORMATS:
         right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
@@ -93,7 +93,7 @@ def _formats(choice: ExportChoice) -> None:
         imgui.text_colored(ImVec4(*QUIET), each.suffix)
 
 
-def _options(choice: ExportChoice, document: Document, scale: float) -> str:
+def _options(choice: PoseExportOptions, document: Document, scale: float) -> str:
     """The right half; what stands in the way of this export, if anything does."""
     below = imgui.get_cursor_pos_y() + 3 * imgui.get_text_line_height()
     widgets.quiet(choice.format.about)
@@ -104,7 +104,7 @@ def _options(choice: ExportChoice, document: Document, scale: float) -> str:
     return problem
 
 
-def _framing(choice: ExportChoice, document: Document, scale: float) -> str:
+def _framing(choice: PoseExportOptions, document: Document, scale: float) -> str:
     widgets.label("Scale", _LABEL * scale)
     imgui.set_next_item_width(86 * scale)
     speed, low, high = max(0.5, choice.scale), 100 * SMALLEST, 100 * LARGEST
@@ -136,7 +136,7 @@ def _framing(choice: ExportChoice, document: Document, scale: float) -> str:
     return problem
 
 
-def _size(choice: ExportChoice, document: Document, scale: float) -> str:
+def _size(choice: PoseExportOptions, document: Document, scale: float) -> str:
     widgets.label("Size", _LABEL * scale)
     try:
         width, height = choice.size(document)

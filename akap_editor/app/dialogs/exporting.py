@@ -13,7 +13,7 @@ SMALLEST, LARGEST = 0.01, 100.0  # scales that can be chosen
 
 
 @dataclass
-class ExportChoice:
+class PoseExportOptions:
     """shown: whether the dialog is open; the rest is kept for the next time. See `ExportOptions`."""
 
     shown: bool = False

@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 @dataclass
-class Question:
+class UnsavedChangesQuestion:
     """Unsaved changes stand in the way of ``go_on``."""
 
     go_on: Callable[[], None]

@@ -4,7 +4,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..commands import registry as commands
 from ..theme import ACCENT, QUIET, STRONG_LINE, packed
 
@@ -23,32 +23,32 @@ ALONE = "With one pin, all of the drawing goes along. Click where it should hold
 MOVED = 1.0  # pixels: where the way of all vertices differs by less, the drawing was only moved
 
 
-def step(space: Workspace) -> int:
+def step(state: AppState) -> int:
     """The step to be taken, as an index into `STEPS`: what has been done shows in the drawing itself.
 
     What is undone has been done all the same.
     """
-    session = space.editor.session
-    alone = _went_along(space)
-    if session is not None and session.state.pins and not (alone or space.editor.busy):
+    session = state.editor.session
+    alone = _went_along(state)
+    if session is not None and session.state.pins and not (alone or state.editor.busy):
         way = session.state.positions - session.drawing.mesh.vertices
-        space.steps_taken = max(space.steps_taken, 2 if np.ptp(way, axis=0).max() > MOVED else 1)
-    return 0 if alone and space.steps_taken < 2 else space.steps_taken
+        state.steps_taken = max(state.steps_taken, 2 if np.ptp(way, axis=0).max() > MOVED else 1)
+    return 0 if alone and state.steps_taken < 2 else state.steps_taken
 
 
-def _went_along(space: Workspace) -> bool:
+def _went_along(state: AppState) -> bool:
     """Whether the only pin was dragged, which bends nothing."""
-    session = space.editor.session
+    session = state.editor.session
     return session is not None and len(session.state.pins) == 1 and session.posed
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """A strip below the canvas, until it is put away."""
-    if not space.first_steps or space.document is None:
+    if not state.first_steps or state.document is None:
         return
-    now = step(space)
+    now = step(state)
     title, text = STEPS[now]
-    text = ALONE if _went_along(space) else text
+    text = ALONE if _went_along(state) else text
     padding = ImVec2(16 * scale, 10 * scale)
     room = imgui.get_main_viewport().work_size.x - 2 * padding.x
     height = imgui.get_text_line_height_with_spacing() + imgui.calc_text_size(text, wrap_width=room).y
@@ -60,8 +60,8 @@ def draw(space: Workspace, scale: float) -> None:
         width = imgui.calc_text_size(label).x + 2 * imgui.get_style().frame_padding.x
         imgui.same_line(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
         if imgui.small_button(f"{label}###away"):
-            space.first_steps = False
-            space.preferences.put("first steps done", True)
+            state.first_steps = False
+            state.preferences.put("first steps done", True)
         imgui.push_text_wrap_pos(0.0)
         imgui.text_unformatted(text)
         imgui.pop_text_wrap_pos()

@@ -3,14 +3,14 @@
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..jobs.task import Task
 from ..theme import ACCENT, QUIET
 
 _WIDTH = 420  # points of the design
 
 
-def draw(space: Workspace, task: Task, scale: float) -> None:
+def draw(state: AppState, task: Task, scale: float) -> None:
     """One frame of the dialog."""
     if not widgets.begin_dialog(task.title):
         return
@@ -28,6 +28,6 @@ def draw(space: Workspace, task: Task, scale: float) -> None:
         imgui.same_line()
     if widgets.button("Cancel") or widgets.escape():
         task.cancel()
-        widgets.close(space, "task", None)
-        space.notice = f"{task.title}: cancelled"
+        widgets.close(state, "task", None)
+        state.notice = f"{task.title}: cancelled"
     imgui.end_popup()

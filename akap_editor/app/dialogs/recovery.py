@@ -9,9 +9,9 @@ from imgui_bundle import ImVec2, imgui
 from ...editor.document.document import Document
 from ...editor.document.framing import frame_box
 from ...errors import AkapError
-from ...io.akap.autosave import Copy
+from ...io.akap.autosave import RecoveryCopy
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import DARK, QUIET, packed
 
 _SIDE = 220  # of the thumbnail, in design points
@@ -22,7 +22,7 @@ class Recovery:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._copy: Copy | None = None
+        self._copy: RecoveryCopy | None = None
         self._document: Document | None = None
         self._texture: moderngl.Texture | None = None
 
@@ -32,10 +32,10 @@ class Recovery:
             self._texture.release()
             self._texture = None
 
-    def draw(self, space: Workspace, scale: float) -> None:
+    def draw(self, state: AppState, scale: float) -> None:
         """One frame of the dialog; there must be something lost."""
-        copy = space.lost[0]
-        if copy is not self._copy and not self._read(space, copy, _SIDE * scale):
+        copy = state.lost[0]
+        if copy is not self._copy and not self._read(state, copy, _SIDE * scale):
             return
         document = self._document
         assert document is not None
@@ -44,34 +44,34 @@ class Recovery:
         self._thumbnail(_SIDE * scale)
         imgui.same_line(0, 20 * scale)
         imgui.begin_group()
-        _facts(copy, document, len(space.lost), 300 * scale)
+        _facts(copy, document, len(state.lost), 300 * scale)
         imgui.end_group()
         imgui.spacing()
         if widgets.button("Recover", primary=True) or widgets.enter():
             imgui.close_current_popup()
-            space.attempt(lambda: recover(space, copy, document))
+            state.attempt(lambda: recover(state, copy, document))
         imgui.same_line()
         if widgets.button("Discard"):
-            _drop(space)
+            _drop(state)
             copy.discard()
         imgui.same_line()
         if widgets.button("Later") or widgets.escape():
-            _drop(space)
+            _drop(state)
             copy.leave()
         imgui.end_popup()
 
-    def _read(self, space: Workspace, copy: Copy, pixels: float) -> bool:
+    def _read(self, state: AppState, copy: RecoveryCopy, pixels: float) -> bool:
         """Read a copy and draw its pose; one that cannot be read stays where it is."""
         try:
             document = copy.read()
             low_x, low_y, high_x, high_y = frame_box(document.drawing, [document.state.positions])
             scale = pixels / max(high_x - low_x, high_y - low_y)
-            picture = space.exporter.render(
+            picture = state.exporter.render(
                 document.drawing, document.state.positions, scale=scale, order=document.order
             )
         except AkapError as error:
-            space.lost.pop(0).leave()
-            space.error = f"Unsaved work could not be recovered: {error}"
+            state.lost.pop(0).leave()
+            state.error = f"Unsaved work could not be recovered: {error}"
             return False
         self.release()
         self._copy, self._document = copy, document
@@ -89,21 +89,21 @@ class Recovery:
         imgui.dummy(ImVec2(side, side))
 
 
-def recover(space: Workspace, copy: Copy, document: Document) -> None:
+def recover(state: AppState, copy: RecoveryCopy, document: Document) -> None:
     """Go on with what a program that crashed has left; what else is lost is asked for another time."""
-    assert space.autosave is not None
-    space.show(document)
-    assert space.editor.session is not None
-    space.editor.session.mark_unsaved()
-    space.autosave.adopt(copy, document)
-    for other in space.lost:
+    assert state.autosave is not None
+    state.show(document)
+    assert state.editor.session is not None
+    state.editor.session.mark_unsaved()
+    state.autosave.adopt(copy, document)
+    for other in state.lost:
         if other is not copy:
             other.leave()
-    space.lost = []
-    space.notice = f"Recovered {document.drawing.name}, which is not saved yet"
+    state.lost = []
+    state.notice = f"Recovered {document.drawing.name}, which is not saved yet"
 
 
-def _facts(copy: Copy, document: Document, count: int, width: float) -> None:
+def _facts(copy: RecoveryCopy, document: Document, count: int, width: float) -> None:
     imgui.push_font(None, imgui.get_style().font_size_base * 1.25)
     widgets.paragraph(document.drawing.name, width)
     imgui.pop_font()
@@ -123,6 +123,6 @@ def _place(path: Path | None) -> str:
     return f"Belongs to {path}" if path is not None else "Was never saved to a file"
 
 
-def _drop(space: Workspace) -> None:
+def _drop(state: AppState) -> None:
     imgui.close_current_popup()
-    space.lost.pop(0)
+    state.lost.pop(0)

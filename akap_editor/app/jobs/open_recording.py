@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from ...editor.animation.session_playback import Player
+from ...editor.animation.session_playback import SessionPlayback
 from ...editor.session.replay import Replay
 from ...editor.session.session import Session
 from ...errors import InputError
@@ -11,7 +11,7 @@ from ...io.akap.json_records import inside
 from ...io.akap.recording import read_recording, recorded_drawing
 from .task import Progress, Steps, Task
 
-Show = Callable[[Session, Player], None]
+Show = Callable[[Session, SessionPlayback], None]
 
 
 def reenacting(path: Path, show: Show) -> Task:
@@ -22,7 +22,7 @@ def reenacting(path: Path, show: Show) -> Task:
     recording = read_recording(path)
     with inside(path):
         replay = Replay(recording, recorded_drawing(recording))
-    player = Player(replay.clock)
+    playback = SessionPlayback(replay.clock)
     if not recording.events:
         raise InputError(f"{path}: expected a recording of something that was done, got none")
     wanted = True
@@ -35,12 +35,12 @@ def reenacting(path: Path, show: Show) -> Task:
         times = [float(event["t"]) for event in recording.events]
         for number, moment in enumerate(replay.moments(), start=1):
             if number == len(times) or times[number] > moment.time:  # the last of what was done then
-                player.watch(replay.session)
+                playback.watch(replay.session)
             yield Progress(number / len(times), f"At {moment.time:.0f} of {recording.duration:.0f} s")
             if not wanted:
                 break
         session = replay.end()
-        player.watch(session)
-        show(session, player)
+        playback.watch(session)
+        show(session, playback)
 
     return Task(f"Opening {path.name}", steps(), stop)

@@ -16,7 +16,7 @@ _WAIT = 0.01  # seconds
 Job = Callable[[Painter], str]
 
 
-class _Asking:
+class _MainThreadPainter:
     """Painter of the thread: OpenGL belongs to the window, which is asked and waited for."""
 
     def __init__(self) -> None:
@@ -35,12 +35,12 @@ class _Asking:
         raise InputError("the window was closed before the picture was drawn")
 
 
-class Writer:
+class PoseExportQueue:
     """Writes files one after the other. `advance` is called by the window between two frames."""
 
     def __init__(self) -> None:
         self._thread = ThreadPoolExecutor(1, "writer")
-        self._asking = _Asking()
+        self._asking = _MainThreadPainter()
         self._jobs: deque[Future[str]] = deque()
 
     def begin(self, job: Job) -> None:

@@ -2,10 +2,10 @@
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ...deform.methods import VARIANTS, variant_of
+from ...deform.methods import PRESETS, preset_of
 from ...editor.document.settings import Settings
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..canvas.view_options import RANGES
 from ..commands import registry as commands
 from ..theme import QUIET
@@ -18,29 +18,29 @@ _SWITCHES = (
 )
 
 
-def drawing(space: Workspace, scale: float) -> None:
+def drawing(state: AppState, scale: float) -> None:
     """Name and size."""
-    assert space.document is not None
-    shown = space.document.drawing
+    assert state.document is not None
+    shown = state.document.drawing
     widgets.row("Name", shown.name)
     widgets.row("Picture", f"{shown.size[0]} × {shown.size[1]} px")
 
 
-def pin_count(space: Workspace) -> str:
+def pin_count(state: AppState) -> str:
     """How many pins there are, in digits; nothing where there are none."""
-    count = len(space.document.state.pins) if space.document is not None else 0
+    count = len(state.document.state.pins) if state.document is not None else 0
     return str(count or "")
 
 
-def pins(space: Workspace, scale: float) -> None:
+def pins(state: AppState, scale: float) -> None:
     """The list of pins, which selects."""
-    assert space.document is not None
-    state, editor = space.document.state, space.editor
-    if not state.pins:
+    assert state.document is not None
+    edit_state, editor = state.document.state, state.editor
+    if not edit_state.pins:
         widgets.quiet("None yet. Click on the drawing where it should hold still.")
         return
-    widgets.begin_list("##pins", len(state.pins), _ROWS)
-    for index, pin in enumerate(state.pins):
+    widgets.begin_list("##pins", len(edit_state.pins), _ROWS)
+    for index, pin in enumerate(edit_state.pins):
         label = f"  Pin {pin.id}##pin"
         chosen = pin.id in editor.selection
         if imgui.selectable(label, chosen)[0]:
@@ -56,51 +56,51 @@ def pins(space: Workspace, scale: float) -> None:
     imgui.end_child()
     imgui.begin_disabled(not editor.selection)
     if imgui.button("Remove selected", ImVec2(widgets.FULL, 0)):
-        widgets.run(space, commands.REMOVE)
+        widgets.run(state, commands.REMOVE)
     imgui.end_disabled()
 
 
-def bending(space: Workspace, scale: float) -> None:
+def bending(state: AppState, scale: float) -> None:
     """The method and its settings."""
-    assert space.document is not None
-    settings = space.document.state.settings
-    variant = variant_of(settings.method, dict(settings.parameters))
+    assert state.document is not None
+    settings = state.document.state.settings
+    variant = preset_of(settings.method, dict(settings.parameters))
     imgui.set_next_item_width(widgets.FULL)
-    labels = [each.label for each in VARIANTS]
-    changed, index = imgui.combo("##method", VARIANTS.index(variant), labels, len(labels))
+    labels = [each.label for each in PRESETS]
+    changed, index = imgui.combo("##method", PRESETS.index(variant), labels, len(labels))
     widgets.explain(f"{variant.note} {variant.source}.")
     if changed:
-        chosen = Settings.of(VARIANTS[index].spec)
+        chosen = Settings.of(PRESETS[index].spec)
         if chosen.method == settings.method == Settings().method:
             chosen = chosen.with_parameter("memory", settings.get("memory", 0.0))
-        widgets.change(space, chosen)
-    imgui.begin_disabled(not commands.REMEMBER.enabled(space))
+        widgets.change(state, chosen)
+    imgui.begin_disabled(not commands.REMEMBER.enabled(state))
     remember = (
         "On: the drawing springs back towards its own shape as you drag, so that going there and back "
         "leaves no trace. Off: it keeps what each drag did to it, as clay would."
     )
-    if widgets.switch("Remember the rest shape", commands.remembers(space), remember)[0]:
-        widgets.run(space, commands.REMEMBER)
+    if widgets.switch("Remember the rest shape", commands.remembers(state), remember)[0]:
+        widgets.run(state, commands.REMEMBER)
     imgui.end_disabled()
-    settings_panel.draw(space)
-    imgui.begin_disabled(not commands.RESET.enabled(space))
+    settings_panel.draw(state)
+    imgui.begin_disabled(not commands.RESET_POSE.enabled(state))
     if imgui.button("Reset pose", ImVec2(widgets.FULL, 0)):
-        widgets.run(space, commands.RESET)
+        widgets.run(state, commands.RESET_POSE)
     imgui.end_disabled()
 
 
-def view(space: Workspace, scale: float) -> None:
+def view(state: AppState, scale: float) -> None:
     """What is seen besides the drawing."""
     for command in _SWITCHES:
-        on = command.checked is not None and command.checked(space)
+        on = command.checked is not None and command.checked(state)
         label = command.label.removeprefix("Show ").capitalize()
-        if command.enabled(space) and widgets.switch(label, on, f"Key: {command.key_name}")[0]:
-            widgets.run(space, command)
-    if space.view.heat is not None:
+        if command.enabled(state) and widgets.switch(label, on, f"Key: {command.key_name}")[0]:
+            widgets.run(state, command)
+    if state.view.heat is not None:
         imgui.align_text_to_frame_padding()
         imgui.text("Scale ends at")
         imgui.same_line()
         imgui.set_next_item_width(-1)
         ends = [f"× {limit:g}" for limit in RANGES]
-        _, space.view.heat_range = imgui.combo("##range", space.view.heat_range, ends)
+        _, state.view.heat_range = imgui.combo("##range", state.view.heat_range, ends)
         widgets.explain("The change of area or shape at the ends of the colors. R for the next one.")

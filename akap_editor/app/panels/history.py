@@ -3,16 +3,16 @@
 from imgui_bundle import ImVec4, imgui
 
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import QUIET
 
 _ROWS = 6  # that are seen at once
 _START = "As opened"
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """The steps, the oldest first; a click goes there. What is undone is quiet."""
-    session = space.editor.session
+    session = state.editor.session
     assert session is not None
     depth, names = session.history.depth, [_START, *session.history.labels]
     widgets.begin_list("##history", len(names), _ROWS)
@@ -20,8 +20,8 @@ def draw(space: Workspace, scale: float) -> None:
         if index > depth:
             imgui.push_style_color(imgui.Col_.text, ImVec4(*QUIET))
         if imgui.selectable(f"  {name}##step {index}", index == depth)[0]:
-            space.notice = ""
-            space.attempt(lambda index=index: space.editor.go_to(index))  # type: ignore[misc]
+            state.notice = ""
+            state.attempt(lambda index=index: state.editor.go_to(index))  # type: ignore[misc]
         if index > depth:
             imgui.pop_style_color()
         if index == depth:
@@ -29,6 +29,6 @@ def draw(space: Workspace, scale: float) -> None:
     imgui.end_child()
 
 
-def step_count(space: Workspace) -> str:
+def step_count(state: AppState) -> str:
     """How many steps there are to go back, in digits; nothing where there are none."""
-    return str((space.editor.session.history.depth if space.editor.session is not None else 0) or "")
+    return str((state.editor.session.history.depth if state.editor.session is not None else 0) or "")

@@ -13,7 +13,7 @@ KEPT = 120  # measurements that are remembered
 RECENT = 30  # frames and steps that rates are averaged over
 
 
-class Meter:
+class Measurements:
     """What was measured lately: the distortion of poses, and how long steps and frames took."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:

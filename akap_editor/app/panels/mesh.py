@@ -10,7 +10,7 @@ from ...geometry.mesh import TriMesh
 from ...meshing.background import DEFAULT_TOLERANCE
 from ...meshing.quality import smallest_angles
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import QUIET
 
 FEWEST, MOST = 200, 50_000
@@ -18,15 +18,15 @@ WIDEST = 20.0  # pixels of expansion
 _LABEL = 6.4  # width of the labels, in heights of the font
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """Sliders, the background, and the mesh in numbers."""
-    wanted = space.remesher.meshing
-    assert space.document is not None
+    wanted = state.remesher.meshing
+    assert state.document is not None
     assert wanted is not None
-    _background(space, wanted)
+    _background(state, wanted)
     logarithmic = imgui.SliderFlags_.logarithmic
     vertices = _slider(
-        space,
+        state,
         "Vertices",
         float(min(max(wanted.vertices, FEWEST), MOST)),
         (FEWEST, MOST, "%.0f"),
@@ -34,52 +34,52 @@ def draw(space: Workspace, scale: float) -> None:
         logarithmic,
     )
     if vertices is not None:
-        space.remesher.want(replace(wanted, vertices=_rounded(vertices)), held=True)
+        state.remesher.want(replace(wanted, vertices=_rounded(vertices)), held=True)
     expand = _slider(
-        space,
+        state,
         "Expansion",
         wanted.expand,
         (0.0, WIDEST, "%.1f px"),
         "How far the mesh goes beyond the outline. Parts that are nearer to one another become one.",
     )
     if expand is not None:
-        space.remesher.want(replace(wanted, expand=round(expand, 1)), held=True)
+        state.remesher.want(replace(wanted, expand=round(expand, 1)), held=True)
     threshold = _slider(
-        space,
+        state,
         "Edge",
         100 * wanted.threshold,
         (1.0, 99.0, "%.0f %%"),
         "How opaque the picture must be to belong to the drawing. Lower it to keep what is faint.",
     )
     if threshold is not None:
-        space.remesher.want(replace(wanted, threshold=round(threshold) / 100), held=True)
-    _numbers(space.document.drawing.mesh)
+        state.remesher.want(replace(wanted, threshold=round(threshold) / 100), held=True)
+    _numbers(state.document.drawing.mesh)
 
 
-def _background(space: Workspace, wanted: Meshing) -> None:
-    assert space.document is not None
+def _background(state: AppState, wanted: Meshing) -> None:
+    assert state.document is not None
     if wanted.background is not None:
         tolerance = _slider(
-            space,
+            state,
             "Background",
             100 * wanted.background,
             (0.0, 60.0, "%.0f %%"),
             "How far a color may be from that of the border and still be background.",
         )
         if tolerance is not None:
-            space.remesher.want(replace(wanted, background=round(tolerance) / 100), held=True)
+            state.remesher.want(replace(wanted, background=round(tolerance) / 100), held=True)
         if imgui.button("Keep the background", ImVec2(widgets.FULL, 0)):
-            space.remesher.want(replace(wanted, background=None))
-    elif space.document.drawing.is_opaque:
+            state.remesher.want(replace(wanted, background=None))
+    elif state.document.drawing.is_opaque:
         widgets.quiet("This picture has no transparency, so all of its rectangle bends.")
         if imgui.button("Remove background", ImVec2(widgets.FULL, 0)):
-            space.notice = ""
-            space.remesher.want(replace(wanted, background=DEFAULT_TOLERANCE))
+            state.notice = ""
+            state.remesher.want(replace(wanted, background=DEFAULT_TOLERANCE))
         widgets.explain("Makes transparent what has the color of the border and is joined to it.")
 
 
 def _slider(
-    space: Workspace, label: str, value: float, scope: tuple[float, float, str], tooltip: str, flags: int = 0
+    state: AppState, label: str, value: float, scope: tuple[float, float, str], tooltip: str, flags: int = 0
 ) -> float | None:
     """A slider below its label; the new value while it is moved, else None."""
     low, high, text = scope
@@ -89,9 +89,9 @@ def _slider(
     imgui.same_line(_LABEL * imgui.get_font_size())
     moved, chosen, released = widgets.slider(f"##{label}", value, (low, high), text, flags)
     if released:
-        space.remesher.let_go()
+        state.remesher.let_go()
     if moved:
-        space.notice = ""
+        state.notice = ""
     return chosen if moved else None
 
 

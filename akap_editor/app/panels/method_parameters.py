@@ -9,7 +9,7 @@ from imgui_bundle import ImVec4, imgui
 from ...deform.methods import default_settings
 from ...editor.document.settings import Settings
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import QUIET
 
 _TITLE = "Parameters"
@@ -192,25 +192,25 @@ def defaults(settings: Settings) -> Settings:
     return settings
 
 
-def draw(space: Workspace) -> None:
+def draw(state: AppState) -> None:
     """The parameters of the current method, folded away at first."""
-    assert space.document is not None
-    settings = space.document.state.settings
-    remembered: dict[str, object] = space.preferences.get("sections", {})
+    assert state.document is not None
+    settings = state.document.state.settings
+    remembered: dict[str, object] = state.preferences.get("sections", {})
     was_open = remembered.get(_TITLE) is True
     imgui.set_next_item_open(was_open)
     imgui.push_style_var(imgui.StyleVar_.indent_spacing, 0.0)
     is_open = imgui.tree_node_ex(_TITLE, imgui.TreeNodeFlags_.span_avail_width)
     if is_open != was_open:
-        space.preferences.put("sections", {**remembered, _TITLE: is_open})
+        state.preferences.put("sections", {**remembered, _TITLE: is_open})
     if is_open:
         for parameter in PARAMETERS[settings.method]:
-            _parameter(space, settings, parameter)
+            _parameter(state, settings, parameter)
         imgui.tree_pop()
     imgui.pop_style_var()
 
 
-def _parameter(space: Workspace, settings: Settings, parameter: Parameter) -> None:
+def _parameter(state: AppState, settings: Settings, parameter: Parameter) -> None:
     """Its label, which resets it on a double click, and its item. A value is used once the item is let go."""
     standard = default(settings.method, parameter.name)
     value = settings.get(parameter.name, standard)
@@ -224,9 +224,9 @@ def _parameter(space: Workspace, settings: Settings, parameter: Parameter) -> No
     reset = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0)
     imgui.same_line(_LABELS * imgui.get_font_size())
     imgui.set_next_item_width(widgets.FULL)
-    edited = space.drafts.edit((settings.method, parameter.name), value, parameter.draw)
+    edited = state.pending_values.edit((settings.method, parameter.name), value, parameter.draw)
     imgui.pop_id()
     if reset and value != standard:
-        widgets.change(space, settings.with_parameter(parameter.name, standard))
+        widgets.change(state, settings.with_parameter(parameter.name, standard))
     elif edited is not None and edited != value:
-        widgets.change(space, settings.with_parameter(parameter.name, edited))
+        widgets.change(state, settings.with_parameter(parameter.name, edited))

@@ -6,7 +6,7 @@ from itertools import pairwise
 from imgui_bundle import ImVec2, imgui
 
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..theme import FRAME, Rgba, packed
 from .measurements import KEPT
 
@@ -15,23 +15,23 @@ ANGLE_COLOR: Rgba = (1.0, 0.71, 0.23, 1.0)
 LEAST_RANGE = 0.01  # of the sparkline, so that rest is a flat line
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """How far the pose is from the rest pose, and how fast it got there."""
-    session, meter = space.editor.session, space.meter
+    session, measurements = state.editor.session, state.measurements
     assert session is not None
-    meter.look(session, space.measure)
-    found = meter.distortion
+    measurements.look(session, state.measure)
+    found = measurements.distortion
     assert found is not None
     _energy("E_area", found.area, AREA_COLOR, "How much areas change, on average over the drawing.", scale)
     _energy("E_angle", found.angle, ANGLE_COLOR, "How much shapes are sheared or stretched.", scale)
-    _sparkline(((meter.areas, AREA_COLOR), (meter.angles, ANGLE_COLOR)), scale)
+    _sparkline(((measurements.areas, AREA_COLOR), (measurements.angles, ANGLE_COLOR)), scale)
     worst = max(float(found.face_area.max()), float(found.face_angle.max()))
     text = f"{worst:.3f}" if found.flipped == 0 else f"{found.flipped} flipped"
     widgets.row("Worst face", text, "The area or angle measure of the triangle that is bent most; 2 is none.")
     widgets.row(
         "Pins off target", f"{session.pin_error():.2f} px", "How far the farthest pin is from its place."
     )
-    step, rate = meter.step_seconds, meter.frame_rate
+    step, rate = measurements.step_seconds, measurements.frame_rate
     widgets.row(
         "Step", "–" if step is None else f"{1000 * step:.1f} ms", "One solve and move of the drawing."
     )

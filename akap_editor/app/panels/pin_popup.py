@@ -9,7 +9,7 @@ from ...editor.document.pin import Pin
 from ...editor.events import PinRequest
 from ...editor.tools.rotate import set_angle
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..commands import registry as commands
 from ..commands.command import Command
 from ..pending_values import T
@@ -17,8 +17,8 @@ from ..pending_values import T
 _OFFSET = 14.0  # points from a pin's center to the popup's corner, so that the pin is still seen
 _LABELS = 3.6  # times the font's size: width of the labels
 _MENU: tuple[Command | None, ...] = (
-    commands.FORWARD,
-    commands.BACK,
+    commands.BRING_FORWARD,
+    commands.SEND_BACK,
     commands.HOLD_ANGLE,
     None,
     commands.REMOVE,
@@ -32,9 +32,9 @@ class PinPopup:
     def __init__(self) -> None:
         self._shown: PinRequest | None = None
 
-    def draw(self, space: Workspace, scale: float) -> None:
+    def draw(self, state: AppState, scale: float) -> None:
         """Draw what is asked for, if anything."""
-        editor = space.editor
+        editor = state.editor
         request = editor.request
         if request is None or editor.session is None:
             self._shown = None
@@ -50,68 +50,68 @@ class PinPopup:
             return
         pin = editor.session.state.pin(request.pin)
         if request.kind == "menu":
-            _menu(space, pin)
+            _menu(state, pin)
         else:
-            _values(space, pin, scale)
+            _values(state, pin, scale)
         imgui.end_popup()
 
 
-def _menu(space: Workspace, pin: Pin) -> None:
+def _menu(state: AppState, pin: Pin) -> None:
     if imgui.menu_item_simple("Values..."):
-        space.editor.ask("values", pin.id)
-    if len(space.editor.selection) > 1 and imgui.menu_item_simple("Select Only This Pin"):
-        space.editor.select({pin.id})
+        state.editor.ask("values", pin.id)
+    if len(state.editor.selection) > 1 and imgui.menu_item_simple("Select Only This Pin"):
+        state.editor.select({pin.id})
     for command in _MENU:
         if command is None:
             imgui.separator()
         else:
-            on = command.checked is not None and command.checked(space)
-            if imgui.menu_item(command.label, command.key_name, on, command.enabled(space))[0]:
-                widgets.run(space, command)
+            on = command.checked is not None and command.checked(state)
+            if imgui.menu_item(command.label, command.key_name, on, command.enabled(state))[0]:
+                widgets.run(state, command)
 
 
-def _field(space: Workspace, pin: Pin, name: str, value: T, draw: Callable[[T], tuple[bool, T]]) -> T | None:
+def _field(state: AppState, pin: Pin, name: str, value: T, draw: Callable[[T], tuple[bool, T]]) -> T | None:
     """A value of the pin behind its name; another one once the field is left."""
     widgets.label(name, imgui.get_style().window_padding.x + _LABELS * imgui.get_font_size())
-    return space.drafts.edit((pin.id, name), value, draw)
+    return state.pending_values.edit((pin.id, name), value, draw)
 
 
-def _angle(space: Workspace, pin: Pin) -> None:
+def _angle(state: AppState, pin: Pin) -> None:
     """Whether the pin holds an angle, and in degrees which one."""
-    session = space.editor.session
+    session = state.editor.session
     assert session is not None
     imgui.begin_disabled(not session.turns)
     shown = math.degrees(session.pin_angle(pin.id) if pin.angle is None else pin.angle)
     shown = 0.0 if abs(shown) < 0.05 else shown  # not -0.0°
     angle = _field(
-        space, pin, "Angle", shown, lambda draft: imgui.input_double("##Angle", draft, 0, 0, "%.1f°")
+        state, pin, "Angle", shown, lambda draft: imgui.input_double("##Angle", draft, 0, 0, "%.1f°")
     )
     widgets.explain("By how many degrees the drawing around the pin is turned, clockwise.")
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + _LABELS * imgui.get_font_size())
     held = widgets.switch("Hold this angle", pin.angle is not None, "Off: the drawing turns as it will here.")
     imgui.end_disabled()
     if angle is not None:
-        space.attempt(lambda: set_angle(space.editor, pin.id, math.radians(angle)))
+        state.attempt(lambda: set_angle(state.editor, pin.id, math.radians(angle)))
     elif held[0]:
-        space.attempt(lambda: set_angle(space.editor, pin.id, math.radians(shown) if held[1] else None))
+        state.attempt(lambda: set_angle(state.editor, pin.id, math.radians(shown) if held[1] else None))
 
 
-def _values(space: Workspace, pin: Pin, scale: float) -> None:
+def _values(state: AppState, pin: Pin, scale: float) -> None:
     x, y = pin.target.tolist()
     widgets.quiet(f"Pin {pin.id}")
     imgui.push_item_width(126 * scale)
     if imgui.is_window_appearing():
         imgui.set_keyboard_focus_here()
-    new_x = _field(space, pin, "X", x, lambda draft: imgui.input_double("##X", draft, 0, 0, "%.2f"))
-    new_y = _field(space, pin, "Y", y, lambda draft: imgui.input_double("##Y", draft, 0, 0, "%.2f"))
-    depth = _field(space, pin, "Depth", pin.depth, lambda draft: imgui.input_int("##Depth", draft, 0, 0))
+    new_x = _field(state, pin, "X", x, lambda draft: imgui.input_double("##X", draft, 0, 0, "%.2f"))
+    new_y = _field(state, pin, "Y", y, lambda draft: imgui.input_double("##Y", draft, 0, 0, "%.2f"))
+    depth = _field(state, pin, "Depth", pin.depth, lambda draft: imgui.input_int("##Depth", draft, 0, 0))
     widgets.explain("Where limbs cross, the higher number passes in front.")
-    _angle(space, pin)
+    _angle(state, pin)
     imgui.pop_item_width()
     if widgets.escape():  # ImGui would only leave the field
         widgets.close_popup()
     if depth is not None:
-        space.attempt(lambda: space.editor.set_depth(pin.id, depth))
+        state.attempt(lambda: state.editor.set_depth(pin.id, depth))
     if new_x is not None or new_y is not None:
         to = x if new_x is None else new_x, y if new_y is None else new_y
-        space.attempt(lambda: space.editor.place_pin(pin.id, to))
+        state.attempt(lambda: state.editor.place_pin(pin.id, to))

@@ -10,7 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...editor.document.framing import frame_box
 from ...editor.document.named_poses import NamedPose
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..commands.command import menu_key
 from ..theme import ACCENT, FRAME, HOVER, QUIET, packed
 from ..timeline.keyframe_track import POSE_PAYLOAD
@@ -25,14 +25,14 @@ class Thumbnails:
     def __init__(self) -> None:
         self._textures: WeakKeyDictionary[NamedPose, moderngl.Texture] = WeakKeyDictionary()
 
-    def of(self, space: Workspace, pose: NamedPose, pixels: int) -> moderngl.Texture:
+    def of(self, state: AppState, pose: NamedPose, pixels: int) -> moderngl.Texture:
         """The pose in at most ``pixels`` a side."""
         if pose not in self._textures:
-            assert space.document is not None
-            drawing = space.document.drawing
+            assert state.document is not None
+            drawing = state.document.drawing
             box = frame_box(drawing, [pose.positions])
             scale = pixels / max(box[2] - box[0], box[3] - box[1])
-            picture = space.exporter.render(drawing, pose.positions, box, scale)
+            picture = state.exporter.render(drawing, pose.positions, box, scale)
             size = picture.shape[1], picture.shape[0]
             self._textures[pose] = moderngl.get_context().texture(size, 4, picture.tobytes(), alignment=1)
         return self._textures[pose]
@@ -41,27 +41,27 @@ class Thumbnails:
 _thumbnails = Thumbnails()
 
 
-def pose_count(space: Workspace) -> str:
+def pose_count(state: AppState) -> str:
     """How many poses there are, in digits; nothing where there are none."""
-    count = len(space.document.state.poses) if space.document is not None else 0
+    count = len(state.document.state.poses) if state.document is not None else 0
     return str(count or "")
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """The poses of the drawing, and the pose between two of them."""
-    assert space.document is not None
-    poses = space.document.state.poses
+    assert state.document is not None
+    poses = state.document.state.poses
     if not poses:
         widgets.quiet("None yet. Keep a pose here to come back to it with a click.")
-    _all_poses(space, poses, scale)
+    _all_poses(state, poses, scale)
     if imgui.button(f"{icons.ICON_FA_PLUS}  Keep this pose", ImVec2(widgets.FULL, 0)):
-        space.notice = ""
-        space.attempt(space.editor.keep_pose)
+        state.notice = ""
+        state.attempt(state.editor.keep_pose)
     if len(poses) > 1:
-        _mixer(space, scale)
+        _mixer(state, scale)
 
 
-def _all_poses(space: Workspace, poses: Sequence[NamedPose], scale: float) -> None:
+def _all_poses(state: AppState, poses: Sequence[NamedPose], scale: float) -> None:
     """The thumbnails in rows; where there are many, the rest are to be scrolled to."""
     scrolls = len(poses) > _COLUMNS * _ROWS
     if scrolls:
@@ -72,129 +72,129 @@ def _all_poses(space: Workspace, poses: Sequence[NamedPose], scale: float) -> No
     for number, pose in enumerate(poses):
         if number % _COLUMNS:
             imgui.same_line(0, 6 * scale)
-        _pose(space, pose, scale)
+        _pose(state, pose, scale)
     if scrolls:
         imgui.end_child()
 
 
-def _pose(space: Workspace, pose: NamedPose, scale: float) -> None:
+def _pose(state: AppState, pose: NamedPose, scale: float) -> None:
     """A thumbnail: a click applies it, a right click asks what else."""
     corner, side = imgui.get_cursor_screen_pos(), round(_SIDE * scale)
     drawer = imgui.get_window_draw_list()
     imgui.begin_group()
     if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side), imgui.ButtonFlags_.enable_nav):
-        space.notice = ""
-        space.attempt(lambda: space.editor.set_pose(pose.positions, f"Apply {pose.name}"))
+        state.notice = ""
+        state.attempt(lambda: state.editor.set_pose(pose.positions, f"Apply {pose.name}"))
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
     widgets.explain(
         f"{pose.name}: click to apply, drag to the timeline or another place, right-click for more"
     )
     if hovered and imgui.is_key_pressed(imgui.Key.f2, False):
-        _begin_renaming(space, pose)
-    _dragging(space, pose)
+        _begin_renaming(state, pose)
+    _dragging(state, pose)
     if imgui.is_item_focused() and menu_key():
         imgui.open_popup(f"menu {pose.name}")
     if imgui.begin_popup_context_item(f"menu {pose.name}"):
-        _menu(space, pose)
+        _menu(state, pose)
         imgui.end_popup()
     end = ImVec2(corner.x + side, corner.y + side)
     drawer.add_rect_filled(corner, end, packed(HOVER if hovered else FRAME), 6 * scale)
-    texture = _thumbnails.of(space, pose, side - round(8 * scale))
+    texture = _thumbnails.of(state, pose, side - round(8 * scale))
     low = ImVec2(round(corner.x + (side - texture.width) / 2), round(corner.y + (side - texture.height) / 2))
     drawer.add_image(
         imgui.ImTextureRef(texture.glo), low, ImVec2(low.x + texture.width, low.y + texture.height)
     )
-    assert space.document is not None
-    if pose.positions is space.document.state.positions:
+    assert state.document is not None
+    if pose.positions is state.document.state.positions:
         drawer.add_rect(corner, end, packed(ACCENT), 6 * scale)
     imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
-    if space.renaming == pose.name:
-        _rename(space, pose, side)
+    if state.renaming == pose.name:
+        _rename(state, pose, side)
     else:
         imgui.text_colored(ImVec4(*QUIET), widgets.shortened(pose.name, side))
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
-            _begin_renaming(space, pose)
+            _begin_renaming(state, pose)
         widgets.explain(f"{pose.name}: double-click or F2 to rename")
     imgui.pop_font()
     imgui.end_group()
 
 
-def _menu(space: Workspace, pose: NamedPose) -> None:
+def _menu(state: AppState, pose: NamedPose) -> None:
     if imgui.menu_item("Rename", "F2", False)[0]:
-        _begin_renaming(space, pose)
+        _begin_renaming(state, pose)
     if imgui.menu_item_simple("Change to the Present Pose"):
-        space.attempt(lambda: space.editor.keep_pose(pose.name))
+        state.attempt(lambda: state.editor.keep_pose(pose.name))
     if imgui.menu_item_simple("Keyframe of It"):
-        space.show_in_timeline("keyframes")
-        space.show_timeline = True
-        space.attempt(lambda: space.key_player.put(positions=pose.positions))
+        state.show_in_timeline("keyframes")
+        state.show_timeline = True
+        state.attempt(lambda: state.keyframe_playback.put(positions=pose.positions))
     imgui.separator()
-    assert space.document is not None
-    last = len(space.document.state.poses) - 1
-    at = space.document.state.poses.index(pose)
+    assert state.document is not None
+    last = len(state.document.state.poses) - 1
+    at = state.document.state.poses.index(pose)
     for label, to in (("Move Forward", at - 1), ("Move Back", at + 1)):
         if imgui.menu_item(label, "", False, 0 <= to <= last)[0]:
-            _order(space, at, to)
+            _order(state, at, to)
     imgui.separator()
     if imgui.menu_item_simple("Forget"):
-        space.editor.forget_pose(pose.name)
+        state.editor.forget_pose(pose.name)
 
 
-def _begin_renaming(space: Workspace, pose: NamedPose) -> None:
-    space.renaming, space.new_name = pose.name, ""
+def _begin_renaming(state: AppState, pose: NamedPose) -> None:
+    state.renaming, state.new_name = pose.name, ""
 
 
-def _rename(space: Workspace, pose: NamedPose, width: float) -> None:
+def _rename(state: AppState, pose: NamedPose, width: float) -> None:
     """A field in place of the name: Enter or a click elsewhere takes what is in it, Escape nothing."""
-    if not space.new_name:  # again and again: a mouse that is still pressed takes the focus away
+    if not state.new_name:  # again and again: a mouse that is still pressed takes the focus away
         imgui.set_keyboard_focus_here()
     imgui.set_next_item_width(width)
     flags = imgui.InputTextFlags_.auto_select_all
     imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
-    _, text = imgui.input_text("##name of pose", space.new_name or pose.name, flags)
+    _, text = imgui.input_text("##name of pose", state.new_name or pose.name, flags)
     imgui.pop_style_var()
     if imgui.is_item_active():
-        space.new_name = text or " "  # which is no name, and not the sign that the field is new
+        state.new_name = text or " "  # which is no name, and not the sign that the field is new
     if imgui.is_item_deactivated():
-        name, space.renaming = space.new_name.strip(), None
+        name, state.renaming = state.new_name.strip(), None
         if name and name != pose.name and not imgui.is_key_pressed(imgui.Key.escape, False):
             label = f"Rename {pose.name}"
-            space.attempt(
-                lambda: space.editor.edit(
+            state.attempt(
+                lambda: state.editor.edit(
                     label, lambda session: session.change_poses("rename", name=pose.name, to=name)
                 )
             )
 
 
-def _dragging(space: Workspace, pose: NamedPose) -> None:
+def _dragging(state: AppState, pose: NamedPose) -> None:
     """A thumbnail goes to the timeline, or where another one is, which makes room."""
-    assert space.document is not None
-    names = [each.name for each in space.document.state.poses]
+    assert state.document is not None
+    names = [each.name for each in state.document.state.poses]
     if imgui.begin_drag_drop_source(imgui.DragDropFlags_.source_no_preview_tooltip):
         imgui.set_drag_drop_payload_py_id(POSE_PAYLOAD, names.index(pose.name))
         imgui.end_drag_drop_source()
     if imgui.begin_drag_drop_target():
         payload = imgui.accept_drag_drop_payload_py_id(POSE_PAYLOAD)
         if payload is not None and names[payload.data_id] != pose.name:
-            _order(space, payload.data_id, names.index(pose.name))
+            _order(state, payload.data_id, names.index(pose.name))
         imgui.end_drag_drop_target()
 
 
-def _order(space: Workspace, old: int, new: int) -> None:
+def _order(state: AppState, old: int, new: int) -> None:
     """Bring a pose to another place among the others."""
-    assert space.document is not None
-    names = [each.name for each in space.document.state.poses]
+    assert state.document is not None
+    names = [each.name for each in state.document.state.poses]
     names.insert(new, names.pop(old))
-    space.attempt(
-        lambda: space.editor.edit("Order poses", lambda session: session.change_poses("order", names=names))
+    state.attempt(
+        lambda: state.editor.edit("Order poses", lambda session: session.change_poses("order", names=names))
     )
 
 
-def _mixer(space: Workspace, scale: float) -> None:
+def _mixer(state: AppState, scale: float) -> None:
     """From one pose to another: the slider shows what is between, and takes it when it is let go."""
-    session, mixer = space.editor.session, space.mixer
+    session, pose_blend = state.editor.session, state.pose_blend
     assert session is not None
-    chosen = mixer.chosen(session)
+    chosen = pose_blend.chosen(session)
     assert chosen is not None
     names = [pose.name for pose in session.state.poses]
     width = (imgui.get_content_region_avail().x - 8 * scale) / 2
@@ -205,14 +205,16 @@ def _mixer(space: Workspace, scale: float) -> None:
     imgui.set_next_item_width(width)
     other, end = imgui.combo("##mix to", end, names)
     if changed or other:
-        mixer.start, mixer.end, mixer.share = names[start], names[end], 0.0
+        pose_blend.start, pose_blend.end, pose_blend.share = names[start], names[end], 0.0
     tooltip = "The pose between the two: every edge turns and grows at a constant rate"
-    moved, share, released = widgets.slider("##mix", 100 * mixer.share, (0, 100), "%.0f %%", tooltip=tooltip)
+    moved, share, released = widgets.slider(
+        "##mix", 100 * pose_blend.share, (0, 100), "%.0f %%", tooltip=tooltip
+    )
     if moved:
-        mixer.share = min(max(share / 100, 0.0), 1.0)
-        mixer.show(session)
+        pose_blend.share = min(max(share / 100, 0.0), 1.0)
+        pose_blend.show(session)
     if released:
         session.leave()
-        pose = mixer.pose(session)
+        pose = pose_blend.pose(session)
         if pose is not None:
-            space.attempt(lambda: space.editor.set_pose(pose, "In-between"))
+            state.attempt(lambda: state.editor.set_pose(pose, "In-between"))

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..commands import menu_bar as menus
 from ..commands import registry as commands
 from ..commands.command import Command
@@ -45,9 +45,9 @@ class Section:
     """
 
     title: str
-    draw: Callable[[Workspace, float], None]
-    shown: Callable[[Workspace], bool] = commands.has_drawing
-    note: Callable[[Workspace], str] = lambda _: ""
+    draw: Callable[[AppState, float], None]
+    shown: Callable[[AppState], bool] = commands.has_drawing
+    note: Callable[[AppState], str] = lambda _: ""
     opened: bool = True
 
 
@@ -65,21 +65,21 @@ SECTIONS = (
 )
 
 
-def draw(space: Workspace, scale: float) -> tuple[float, float, float, float]:
+def draw(state: AppState, scale: float) -> tuple[float, float, float, float]:
     """Draw the frame around the canvas; returns the canvas as (left, top, right, bottom) in window points."""
-    menus.draw(space)
-    _status_bar(space, scale)
-    timeline_panel.draw(space, scale)
-    if space.document is not None:
-        _tool_bar(space, scale)
-    _side_panel(space, scale)
-    hints.draw(space, scale)
+    menus.draw(state)
+    _status_bar(state, scale)
+    timeline_panel.draw(state, scale)
+    if state.document is not None:
+        _tool_bar(state, scale)
+    _side_panel(state, scale)
+    hints.draw(state, scale)
     viewport = imgui.get_main_viewport()
     left, top = viewport.work_pos.x, viewport.work_pos.y
     return left, top, left + viewport.work_size.x, top + viewport.work_size.y
 
 
-def _tool_bar(space: Workspace, scale: float) -> None:
+def _tool_bar(state: AppState, scale: float) -> None:
     gaps = 16 * scale + _TOOLS.count(None) * 12 * scale
     room = (imgui.get_main_viewport().work_size.y - gaps) / (len(_TOOLS) - _TOOLS.count(None))
     size = min(36 * scale, room - 4 * scale)  # in a low window, too, all of them are seen
@@ -96,40 +96,40 @@ def _tool_bar(space: Workspace, scale: float) -> None:
                 )
                 imgui.dummy(ImVec2(size, 3 * scale))
             else:
-                _tool_button(space, command, size)
+                _tool_button(state, command, size)
         imgui.pop_style_var()
     imgui.end()
 
 
-def _tool_button(space: Workspace, command: Command, size: float) -> None:
-    on = command.checked is not None and command.checked(space)
+def _tool_button(state: AppState, command: Command, size: float) -> None:
+    on = command.checked is not None and command.checked(state)
     imgui.push_style_color(imgui.Col_.button, ImVec4(*ACCENT[:3], 0.18) if on else ImVec4(0, 0, 0, 0))
     imgui.push_style_color(imgui.Col_.text, ImVec4(*(ACCENT if on else (0.91, 0.91, 0.925, 1.0))))
-    imgui.begin_disabled(not command.enabled(space))
+    imgui.begin_disabled(not command.enabled(state))
     if imgui.button(f"{command.icon}##{command.label}", ImVec2(size, size)):
-        widgets.run(space, command)
+        widgets.run(state, command)
     imgui.end_disabled()
     imgui.pop_style_color(2)
     if imgui.is_item_hovered(imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled):
         imgui.set_tooltip(command.label.rstrip(".") + (f"  ({command.key_name})" if command.chords else ""))
 
 
-def _side_panel(space: Workspace, scale: float) -> None:
+def _side_panel(state: AppState, scale: float) -> None:
     padding = ImVec2(16 * scale, 6 * scale)
-    shown = [section for section in SECTIONS if section.shown(space)]
+    shown = [section for section in SECTIONS if section.shown(state)]
     if not shown:
         return
     if widgets.side_bar("Panel", imgui.Dir.right, 268 * scale, padding, scrolls=True):
         for section in shown:
-            if _heading(space, section):
-                section.draw(space, scale)
+            if _heading(state, section):
+                section.draw(state, scale)
                 imgui.spacing()
     imgui.end()
 
 
-def _heading(space: Workspace, section: Section) -> bool:
+def _heading(state: AppState, section: Section) -> bool:
     """The title line, a click on which folds the section; whether it is open."""
-    remembered: dict[str, object] = space.preferences.get("sections", {})
+    remembered: dict[str, object] = state.preferences.get("sections", {})
     was_open = bool(remembered.get(section.title, section.opened))
     imgui.spacing()
     imgui.separator()
@@ -137,7 +137,7 @@ def _heading(space: Workspace, section: Section) -> bool:
     imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
     clicked = imgui.selectable(f"{section.title.upper()}###section {section.title}", False)[0]
     arrow = icons.ICON_FA_CHEVRON_DOWN if was_open else icons.ICON_FA_CHEVRON_RIGHT
-    note = f"{section.note(space)}   {arrow}"
+    note = f"{section.note(state)}   {arrow}"
     imgui.same_line(
         imgui.get_content_region_avail().x - imgui.calc_text_size(note).x + imgui.get_cursor_pos_x()
     )
@@ -145,19 +145,19 @@ def _heading(space: Workspace, section: Section) -> bool:
     imgui.pop_font()
     imgui.pop_style_color()
     if clicked:
-        space.preferences.put("sections", {**remembered, section.title: not was_open})
+        state.preferences.put("sections", {**remembered, section.title: not was_open})
     return was_open != clicked
 
 
-def _status_bar(space: Workspace, scale: float) -> None:
+def _status_bar(state: AppState, scale: float) -> None:
     height = imgui.get_frame_height() + 2 * scale
     if widgets.side_bar("Status", imgui.Dir.down, height, ImVec2(14 * scale, 1 * scale)):
         imgui.align_text_to_frame_padding()
-        facts = f"{space.editor.camera.zoom * 100:.0f} %" if space.document is not None else ""
+        facts = f"{state.editor.camera.zoom * 100:.0f} %" if state.document is not None else ""
         right = imgui.get_window_width() - imgui.calc_text_size(facts).x - 16 * scale
-        text = space.notice or space.editor.hint
+        text = state.notice or state.editor.hint
         shown = widgets.shortened(text, right - 30 * scale)
-        imgui.text_colored(ImVec4(*(ACCENT if space.notice else TEXT)), shown)
+        imgui.text_colored(ImVec4(*(ACCENT if state.notice else TEXT)), shown)
         widgets.explain(text if shown != text else "")
         if facts:
             imgui.same_line(right)

@@ -8,32 +8,32 @@ from ...deform.deformer import takes_stiffness
 from ...editor.document.stiffness import SOFTEST, STIFFEST
 from ...editor.tools.stiffness_brush import LARGEST, SMALLEST
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..commands import registry as commands
 from ..theme import QUIET
 
 _LABELS = 6.0  # times the font's size: width of the labels
 
 
-def is_at_hand(space: Workspace) -> bool:
+def is_at_hand(state: AppState) -> bool:
     """Whether there is something to paint on, and the brush to do it."""
-    return space.document is not None and space.editor.chosen_tool == "brush"
+    return state.document is not None and state.editor.chosen_tool == "brush"
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """Strength, size, eraser."""
-    assert space.document is not None
-    brush = space.editor.brush
+    assert state.document is not None
+    brush = state.editor.brush
     factor = _slider("Strength", brush.factor, (SOFTEST, STIFFEST), "%.0f ×", "How much less a part bends.")
     radius = _slider("Size", brush.radius, (SMALLEST, LARGEST), "%.0f px", "Radius on the screen: [ and ].")
-    space.editor.brush = replace(brush, factor=factor, radius=radius)
+    state.editor.brush = replace(brush, factor=factor, radius=radius)
     if widgets.switch("Erase", brush.erasing, "E, or drag with the right button.")[0]:
-        widgets.run(space, commands.ERASE)
-    if not takes_stiffness(space.document.state.settings.method):
+        widgets.run(state, commands.ERASE)
+    if not takes_stiffness(state.document.state.settings.method):
         widgets.quiet("The method chosen under Bending bends all parts alike; stiffness is kept for others.")
-    imgui.begin_disabled(not commands.SOFTEN_ALL.enabled(space))
+    imgui.begin_disabled(not commands.SOFTEN_ALL.enabled(state))
     if imgui.button(commands.SOFTEN_ALL.label.capitalize(), ImVec2(widgets.FULL, 0)):
-        widgets.run(space, commands.SOFTEN_ALL)
+        widgets.run(state, commands.SOFTEN_ALL)
     imgui.end_disabled()
 
 

@@ -6,12 +6,12 @@ from math import ceil
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...editor.animation.keyframe_playback import MOST_SKINS, STEP, KeyPlayer, stretched
-from ...editor.animation.time_view import TimeView
+from ...editor.animation.keyframe_playback import MOST_SKINS, STEP, KeyframePlayback, stretched
+from ...editor.animation.time_view import VisibleRange
 from ...editor.document.easing import KEY_EASINGS
 from ...editor.tools.pins import ZOOM_STEP
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..commands import keying
 from ..dialogs.export_animation import EASING_LABELS
 from ..theme import ACCENT, DARK, FRAME, QUIET, STRONG_LINE, TEXT, packed
@@ -25,15 +25,15 @@ _RULER, _LANE, _MARKS, _BOTTOM = 16, 28, 39, 48
 _TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0)  # seconds
 
 
-def buttons(space: Workspace, scale: float) -> None:
+def buttons(state: AppState, scale: float) -> None:
     """Add a keyframe, choose easings, show the onion skin."""
     side = ImVec2(30 * scale, 28 * scale)
-    player = space.key_player
+    playback = state.keyframe_playback
     if imgui.button(f"{icons.ICON_FA_PLUS}##add key", side):
-        space.attempt(lambda: keying.keyframe_here(space))
+        state.attempt(lambda: keying.keyframe_here(state))
     widgets.explain("Keyframe here (K): keep the pose that is seen at this time")
     imgui.same_line(0, 4 * scale)
-    imgui.begin_disabled(not player.animation.keys)
+    imgui.begin_disabled(not playback.animation.keys)
     if imgui.button(f"{icons.ICON_FA_BEZIER_CURVE}##easing", side):
         imgui.open_popup("easing menu")
     imgui.end_disabled()
@@ -41,18 +41,18 @@ def buttons(space: Workspace, scale: float) -> None:
     if _begin_menu("easing menu", scale):
         widgets.quiet("Between all keyframes, unless one says otherwise")
         for name in KEY_EASINGS:
-            if imgui.menu_item(EASING_LABELS[name], "", player.animation.ease == name)[0]:
-                space.attempt(lambda name=name: player.ease(name, general=True))  # type: ignore[misc]
+            if imgui.menu_item(EASING_LABELS[name], "", playback.animation.ease == name)[0]:
+                state.attempt(lambda name=name: playback.ease(name, general=True))  # type: ignore[misc]
         imgui.end_popup()
     imgui.same_line(0, 4 * scale)
-    color = ACCENT if player.onion.shown else QUIET
+    color = ACCENT if playback.onion.shown else QUIET
     imgui.push_style_color(imgui.Col_.text, ImVec4(*color))
     if imgui.button(f"{icons.ICON_FA_LAYER_GROUP}##onion", side):
         imgui.open_popup("onion menu")
     imgui.pop_style_color()
     widgets.explain("Onion skin (O): the poses before, blue, and after, orange")
     if _begin_menu("onion menu", scale):
-        _onion(player, scale)
+        _onion(playback, scale)
         imgui.end_popup()
 
 
@@ -63,8 +63,8 @@ def _begin_menu(name: str, scale: float) -> bool:
     return bool(imgui.begin_popup(name))
 
 
-def _onion(player: KeyPlayer, scale: float) -> None:
-    onion = player.onion
+def _onion(playback: KeyframePlayback, scale: float) -> None:
+    onion = playback.onion
     _, onion.shown = widgets.switch("Onion skin", onion.shown)
     imgui.begin_disabled(not onion.shown)
     if widgets.radio("Keyframes before and after", onion.of == "keyframes"):
@@ -82,10 +82,10 @@ def _onion(player: KeyPlayer, scale: float) -> None:
     imgui.end_disabled()
 
 
-class Scale:
+class TimeScale:
     """Where the times of a view are on the track, which begins at ``left``."""
 
-    def __init__(self, left: float, width: float, view: TimeView) -> None:
+    def __init__(self, left: float, width: float, view: VisibleRange) -> None:
         self._left, self._width, self._view = left, width, view
 
     def x(self, time: float) -> float:
@@ -104,25 +104,25 @@ class Scale:
         return max(self._view.start + share * self._view.seconds, 0.0)
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """The ruler, the keyframes below it, and what the mouse does with both."""
-    player = space.key_player
-    label = f"{player.at:.2f} / {player.duration:.2f} s"
+    playback = state.keyframe_playback
+    label = f"{playback.at:.2f} / {playback.duration:.2f} s"
     room = imgui.calc_text_size("000.00 / 000.00 s").x + 12 * scale
     corner = imgui.get_cursor_screen_pos()
     width = max(imgui.get_content_region_avail().x - room, 40 * scale)
-    track = Scale(corner.x + _REACH * scale, width - 2 * _REACH * scale, player.view)
+    track = TimeScale(corner.x + _REACH * scale, width - 2 * _REACH * scale, playback.view)
     imgui.invisible_button("##keys", ImVec2(width, _BOTTOM * scale))
-    space.attempt(lambda: _handle(space, track, corner.y, scale))
+    state.attempt(lambda: _handle(state, track, corner.y, scale))
     if imgui.is_item_hovered() and not imgui.is_item_active():
-        _explain(player, track, scale)
-        zoom(player.view, track)
-    _drop_target(space, track)
+        _explain(playback, track, scale)
+        zoom(playback.view, track)
+    _drop_target(state, track)
     drawer = imgui.get_window_draw_list()
     drawer.push_clip_rect(corner, ImVec2(corner.x + width, corner.y + _BOTTOM * scale), True)
-    _draw_ruler(drawer, player, track, corner, width, scale)
-    _draw_keys(drawer, player, track, corner.y + _LANE * scale, scale)
-    _draw_head(drawer, player, track, corner.y, scale)
+    _draw_ruler(drawer, playback, track, corner, width, scale)
+    _draw_keys(drawer, playback, track, corner.y + _LANE * scale, scale)
+    _draw_head(drawer, playback, track, corner.y, scale)
     drawer.pop_clip_rect()
     below = corner.y + (_BOTTOM * scale - imgui.get_text_line_height()) / 2
     imgui.set_cursor_screen_pos(ImVec2(corner.x + width + 12 * scale, below))
@@ -132,42 +132,42 @@ def draw(space: Workspace, scale: float) -> None:
 # -- the mouse ----------------------------------------------------------------------------------------------
 
 
-def _near(player: KeyPlayer, track: Scale, scale: float) -> float | None:
+def _near(playback: KeyframePlayback, track: TimeScale, scale: float) -> float | None:
     """The time of the keyframe under the pointer."""
     x = imgui.get_mouse_pos().x
-    time = min(player.animation.times, key=lambda each: abs(track.x(each) - x), default=None)
+    time = min(playback.animation.times, key=lambda each: abs(track.x(each) - x), default=None)
     return time if time is not None and abs(track.x(time) - x) <= _REACH * scale else None
 
 
-def _handle(space: Workspace, track: Scale, top: float, scale: float) -> None:
-    player = space.key_player
-    if player.held and imgui.is_key_pressed(imgui.Key.escape, False):
-        player.drop(keep=False)
-        space.grip = "none"
+def _handle(state: AppState, track: TimeScale, top: float, scale: float) -> None:
+    playback = state.keyframe_playback
+    if playback.held and imgui.is_key_pressed(imgui.Key.escape, False):
+        playback.drop(keep=False)
+        state.grip = "none"
     if imgui.is_item_activated():
-        _press(space, track, top, scale)
+        _press(state, track, top, scale)
     if imgui.is_item_active():
-        _drag(space, track, scale)
+        _drag(state, track, scale)
     if imgui.is_item_deactivated():
-        player.drop()
+        playback.drop()
     if imgui.is_item_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.right):
-        key = _near(player, track, scale)
-        player.scrub(keying.snapped(track.time(imgui.get_mouse_pos().x)) if key is None else key)
-        if key is None or key not in player.chosen:
-            player.chosen = frozenset() if key is None else frozenset({key})
-        space.held_key = player.at
+        key = _near(playback, track, scale)
+        playback.scrub(keying.snapped(track.time(imgui.get_mouse_pos().x)) if key is None else key)
+        if key is None or key not in playback.chosen:
+            playback.chosen = frozenset() if key is None else frozenset({key})
+        state.held_key = playback.at
         imgui.open_popup("key menu")
-    if space.key_menu:  # by keys: above the track, so that the keyframe stays in sight
-        space.key_menu = False
-        at = min(player.chosen, default=player.at)
+    if state.key_menu:  # by keys: above the track, so that the keyframe stays in sight
+        state.key_menu = False
+        at = min(playback.chosen, default=playback.at)
         imgui.set_next_window_pos(ImVec2(track.x(at), top - 8 * scale), pivot=ImVec2(0, 1))
         imgui.open_popup("key menu")
     if imgui.begin_popup("key menu"):
-        _menu(space)
+        _menu(state)
         imgui.end_popup()
 
 
-def zoom(view: TimeView, track: Scale) -> None:
+def zoom(view: VisibleRange, track: TimeScale) -> None:
     """The wheel zooms in on the time under the pointer; with Shift, or sideways, it goes along."""
     io = imgui.get_io()
     along = io.mouse_wheel if io.key_shift else -io.mouse_wheel_h
@@ -177,104 +177,104 @@ def zoom(view: TimeView, track: Scale) -> None:
         view.zoom(ZOOM_STEP**io.mouse_wheel, track.time(imgui.get_mouse_pos().x))
 
 
-def _press(space: Workspace, track: Scale, top: float, scale: float) -> None:
-    player, io = space.key_player, imgui.get_io()
-    key, y = _near(player, track, scale), imgui.get_mouse_pos().y - top
+def _press(state: AppState, track: TimeScale, top: float, scale: float) -> None:
+    playback, io = state.keyframe_playback, imgui.get_io()
+    key, y = _near(playback, track, scale), imgui.get_mouse_pos().y - top
     in_ruler = y < _RULER * scale
-    if y > _MARKS * scale and player.duration > 0:
-        away = [abs(track.x(mark) - imgui.get_mouse_pos().x) for mark in player.range]
+    if y > _MARKS * scale and playback.duration > 0:
+        away = [abs(track.x(mark) - imgui.get_mouse_pos().x) for mark in playback.range]
         if min(away) < _REACH * scale:
-            space.grip = "start" if away[0] < away[1] else "end"
+            state.grip = "start" if away[0] < away[1] else "end"
             return
     if key is None or in_ruler:
-        space.grip = "head"
-        player.chosen = frozenset()
+        state.grip = "head"
+        playback.chosen = frozenset()
         if imgui.is_mouse_double_clicked(0) and not in_ruler:
-            space.editor.select(())
-            player.put(keying.snapped(track.time(imgui.get_mouse_pos().x)))
+            state.editor.select(())
+            playback.put(keying.snapped(track.time(imgui.get_mouse_pos().x)))
         return
-    space.grip, space.held_key = "keys", key
-    space.editor.select(())
+    state.grip, state.held_key = "keys", key
+    state.editor.select(())
     if io.key_shift:
-        player.chosen ^= {key}
-    elif key not in player.chosen:
-        player.chosen = frozenset({key})
-    player.scrub(key)
+        playback.chosen ^= {key}
+    elif key not in playback.chosen:
+        playback.chosen = frozenset({key})
+    playback.scrub(key)
 
 
-def _drag(space: Workspace, track: Scale, scale: float) -> None:
-    player, io, x = space.key_player, imgui.get_io(), imgui.get_mouse_pos().x
-    if space.grip in ("start", "end"):
-        player.cut_to(**{space.grip: keying.snapped(track.time(x))})
-    elif space.grip == "head" and not imgui.is_mouse_double_clicked(0):
-        player.scrub(track.time(x) if io.key_alt else keying.snapped(track.time(x)))
-    elif space.grip == "keys" and player.chosen:
+def _drag(state: AppState, track: TimeScale, scale: float) -> None:
+    playback, io, x = state.keyframe_playback, imgui.get_io(), imgui.get_mouse_pos().x
+    if state.grip in ("start", "end"):
+        playback.cut_to(**{state.grip: keying.snapped(track.time(x))})
+    elif state.grip == "head" and not imgui.is_mouse_double_clicked(0):
+        playback.scrub(track.time(x) if io.key_alt else keying.snapped(track.time(x)))
+    elif state.grip == "keys" and playback.chosen:
         way = imgui.get_mouse_drag_delta(0, 0.0).x
-        if abs(way) < _DRAG * scale and not player.held:
+        if abs(way) < _DRAG * scale and not playback.held:
             return
-        to = max(keying.snapped(space.held_key + track.seconds(way)), 0.0)
+        to = max(keying.snapped(state.held_key + track.seconds(way)), 0.0)
         if io.key_alt:
-            chosen = player.chosen if len(player.chosen) > 1 else player.kept_times
-            player.drag(stretched(chosen, space.held_key, to))
+            chosen = playback.chosen if len(playback.chosen) > 1 else playback.kept_times
+            playback.drag(stretched(chosen, state.held_key, to))
         else:
-            by = max(to - space.held_key, -min(player.chosen))
-            player.drag({time: time + by for time in player.chosen}, copy=io.key_ctrl)
+            by = max(to - state.held_key, -min(playback.chosen))
+            playback.drag({time: time + by for time in playback.chosen}, copy=io.key_ctrl)
 
 
-def _menu(space: Workspace) -> None:
+def _menu(state: AppState) -> None:
     """Of a keyframe, or of a moment without one."""
-    player = space.key_player
-    if not player.chosen:
+    playback = state.keyframe_playback
+    if not playback.chosen:
         if imgui.menu_item("Keyframe Here", "K", False)[0]:
-            space.attempt(lambda: keying.keyframe_here(space))
+            state.attempt(lambda: keying.keyframe_here(state))
         return
-    key = next(key for key in player.animation.keys if key.time in player.chosen)
-    if len(player.chosen) == 1:
+    key = next(key for key in playback.animation.keys if key.time in playback.chosen)
+    if len(playback.chosen) == 1:
         imgui.set_next_item_width(9 * imgui.get_font_size())
         flags = imgui.InputTextFlags_.enter_returns_true
         changed, time = imgui.input_float("##time", key.time, STEP, 10 * STEP, "%.3f s", flags)
         if changed:
-            space.attempt(lambda: player.set_time(key.time, time))
+            state.attempt(lambda: playback.set_time(key.time, time))
     imgui.separator()
     for name in (None, *KEY_EASINGS):
         label = "As in the whole animation" if name is None else EASING_LABELS[name]
         if imgui.menu_item(label, "", key.ease == name)[0]:
-            space.attempt(lambda name=name: player.ease(name))  # type: ignore[misc]
+            state.attempt(lambda name=name: playback.ease(name))  # type: ignore[misc]
     imgui.separator()
     if imgui.menu_item("Change to the Present Pose", "", False)[0]:
-        space.attempt(lambda: _change(player, key.time))
+        state.attempt(lambda: _change(playback, key.time))
     if imgui.menu_item("Duplicate", "Ctrl+Shift+K", False)[0]:
-        space.attempt(player.duplicate)
+        state.attempt(playback.duplicate)
     if imgui.menu_item("Remove", "Shift+K", False)[0]:
-        space.attempt(player.remove)
+        state.attempt(playback.remove)
 
 
-def _change(player: KeyPlayer, time: float) -> None:
+def _change(playback: KeyframePlayback, time: float) -> None:
     """Put the present pose in the place of a keyframe's."""
-    player.leave()
-    player.put(time)
+    playback.leave()
+    playback.put(time)
 
 
-def _explain(player: KeyPlayer, track: Scale, scale: float) -> None:
-    time = _near(player, track, scale)
-    key = next((each for each in player.animation.keys if each.time == time), None)
+def _explain(playback: KeyframePlayback, track: TimeScale, scale: float) -> None:
+    time = _near(playback, track, scale)
+    key = next((each for each in playback.animation.keys if each.time == time), None)
     if key is not None:
         widgets.explain(
-            f"{key.time:.2f} s, {EASING_LABELS[key.ease or player.animation.ease].lower()}. Drag to move, "
+            f"{key.time:.2f} s, {EASING_LABELS[key.ease or playback.animation.ease].lower()}. Drag to move, "
             "with Ctrl to copy, with Alt to stretch; right-click for more"
         )
 
 
-def _drop_target(space: Workspace, track: Scale) -> None:
+def _drop_target(state: AppState, track: TimeScale) -> None:
     """A pose that is dragged here becomes a keyframe."""
     if not imgui.begin_drag_drop_target():
         return
     payload = imgui.accept_drag_drop_payload_py_id(POSE_PAYLOAD)
-    if payload is not None and space.document is not None:
-        pose = space.document.state.poses[payload.data_id]
+    if payload is not None and state.document is not None:
+        pose = state.document.state.poses[payload.data_id]
         time = keying.snapped(track.time(imgui.get_mouse_pos().x))
-        space.attempt(lambda: space.key_player.put(time, pose.positions))
-        space.key_player.scrub(time)
+        state.attempt(lambda: state.keyframe_playback.put(time, pose.positions))
+        state.keyframe_playback.scrub(time)
     imgui.end_drag_drop_target()
 
 
@@ -282,7 +282,12 @@ def _drop_target(space: Workspace, track: Scale) -> None:
 
 
 def _draw_ruler(
-    drawer: imgui.ImDrawList, player: KeyPlayer, track: Scale, corner: ImVec2, width: float, scale: float
+    drawer: imgui.ImDrawList,
+    playback: KeyframePlayback,
+    track: TimeScale,
+    corner: ImVec2,
+    width: float,
+    scale: float,
 ) -> None:
     """Ticks with their seconds, and the marks of the range."""
     low, high = ImVec2(corner.x, corner.y), ImVec2(corner.x + width, corner.y + _BOTTOM * scale)
@@ -291,7 +296,7 @@ def _draw_ruler(
     enough = track.seconds(52 * scale)
     step = next((tick for tick in _TICKS if tick >= enough), _TICKS[-1])
     form = "%.1f" if step < 1 else "%.0f"
-    view = player.view
+    view = playback.view
     for number in range(ceil(view.start / step - 1e-6), int((view.start + view.seconds) / step + 1e-6) + 1):
         x = track.x(number * step)
         drawer.add_line(
@@ -304,11 +309,18 @@ def _draw_ruler(
                 font, size, ImVec2(x + 3 * scale, corner.y + 1 * scale), packed(QUIET), form % (number * step)
             )
     draw_part(drawer, view, corner, width, scale)
-    if player.duration > 0:
-        draw_marks(drawer, [track.x(mark) for mark in player.range], corner.y + (_BOTTOM - 1) * scale, scale)
+    if playback.duration > 0:
+        draw_marks(
+            drawer,
+            [track.x(mark) for mark in playback.range],
+            corner.y + (_BOTTOM - 1) * scale,
+            scale,
+        )
 
 
-def draw_part(drawer: imgui.ImDrawList, view: TimeView, corner: ImVec2, width: float, scale: float) -> None:
+def draw_part(
+    drawer: imgui.ImDrawList, view: VisibleRange, corner: ImVec2, width: float, scale: float
+) -> None:
     """A line above the track: which part of all is shown, where it is not all."""
     if view.zoomed:
         first, last = (corner.x + width * at / view.whole for at in (view.start, view.start + view.seconds))
@@ -326,29 +338,35 @@ def draw_marks(drawer: imgui.ImDrawList, marks: list[float], bottom: float, scal
 
 
 def _draw_keys(
-    drawer: imgui.ImDrawList, player: KeyPlayer, track: Scale, middle: float, scale: float
+    drawer: imgui.ImDrawList,
+    playback: KeyframePlayback,
+    track: TimeScale,
+    middle: float,
+    scale: float,
 ) -> None:
     """A diamond for each keyframe, a bar for each motion between two; a line where it holds."""
-    keys = player.animation.keys
-    start, end = player.range
+    keys = playback.animation.keys
+    start, end = playback.range
     for key, after in pairwise(keys):
-        half = (0.8 if (key.ease or player.animation.ease) == "hold" else 3) * scale
+        half = (0.8 if (key.ease or playback.animation.ease) == "hold" else 3) * scale
         inside = start <= key.time and after.time <= end
         color = packed(ACCENT, 0.5) if inside else packed(FRAME)
         drawer.add_rect_filled(
             ImVec2(track.x(key.time), middle - half), ImVec2(track.x(after.time), middle + half), color
         )
-    shown = player.shown_chosen
+    shown = playback.shown_chosen
     for key in keys:
         center, size = ImVec2(track.x(key.time), middle), 8 * scale
         drawer.add_ngon_filled(center, size + 1.5 * scale, packed(DARK), 4)
         drawer.add_ngon_filled(center, size, packed(ACCENT if key.time in shown else TEXT), 4)
 
 
-def _draw_head(drawer: imgui.ImDrawList, player: KeyPlayer, track: Scale, top: float, scale: float) -> None:
+def _draw_head(
+    drawer: imgui.ImDrawList, playback: KeyframePlayback, track: TimeScale, top: float, scale: float
+) -> None:
     """Where one looks; quiet while the present pose is seen in place of that moment's."""
-    x, half = track.x(player.at), 5 * scale
-    color = packed(TEXT if player.following else QUIET, 1.0 if player.following else 0.6)
+    x, half = track.x(playback.at), 5 * scale
+    color = packed(TEXT if playback.following else QUIET, 1.0 if playback.following else 0.6)
     drawer.add_line(ImVec2(x, top), ImVec2(x, top + _BOTTOM * scale), color, 2 * scale)
     drawer.add_triangle_filled(
         ImVec2(x - half, top), ImVec2(x + half, top), ImVec2(x, top + 1.4 * half), color

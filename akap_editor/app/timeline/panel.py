@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from .. import widgets
-from ..app_state import Workspace
+from ..app_state import AppState
 from ..dialogs import animating
 from ..theme import ACCENT, FRAME, QUIET, TEXT, packed
 from . import keyframe_track as key_track
@@ -13,39 +13,39 @@ from .keyframe_track import RED
 HEIGHT, KEYED_HEIGHT = 44, 64  # design points, as all sizes here
 
 
-def draw(space: Workspace, scale: float) -> None:
+def draw(state: AppState, scale: float) -> None:
     """The bar; nothing without a drawing, or where it is switched off."""
-    if space.document is None or not space.show_timeline:
-        space.show_present()
+    if state.document is None or not state.show_timeline:
+        state.show_present()
         return
-    keyed = space.timeline == "keyframes"
+    keyed = state.timeline == "keyframes"
     if keyed:
-        space.key_player.watch()
-    space.transport.advance()
+        state.keyframe_playback.watch()
+    state.playback.advance()
     height = (KEYED_HEIGHT if keyed else HEIGHT) * scale
     if widgets.side_bar("Timeline", imgui.Dir.down, height, ImVec2(10 * scale, 8 * scale)):
         if keyed:
             imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + 10 * scale)
-        _which(space, scale)
+        _which(state, scale)
         imgui.same_line(0, 12 * scale)
-        _buttons(space, scale)
+        _buttons(state, scale)
         imgui.same_line(0, 12 * scale)
         if keyed:
             imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 10 * scale)
-            key_track.draw(space, scale)
+            key_track.draw(state, scale)
         else:
-            _track(space, scale)
+            _track(state, scale)
     imgui.end()
 
 
-def _which(space: Workspace, scale: float) -> None:
+def _which(state: AppState, scale: float) -> None:
     """Two buttons that choose what the timeline holds."""
-    if _button(icons.ICON_FA_CLOCK_ROTATE_LEFT, "session", scale, space.timeline == "session"):
-        space.show_in_timeline("session")
+    if _button(icons.ICON_FA_CLOCK_ROTATE_LEFT, "session", scale, state.timeline == "session"):
+        state.show_in_timeline("session")
     widgets.explain("Session: all that was done, to look back and go on from there")
     imgui.same_line(0, 2 * scale)
-    if _button(icons.ICON_FA_DIAMOND, "keyframes", scale, space.timeline == "keyframes"):
-        space.show_in_timeline("keyframes")
+    if _button(icons.ICON_FA_DIAMOND, "keyframes", scale, state.timeline == "keyframes"):
+        state.show_in_timeline("keyframes")
     widgets.explain("Keyframes: poses at times, and the motion between them")
 
 
@@ -57,18 +57,18 @@ def _button(icon: str, name: str, scale: float, on: bool, color: tuple[float, ..
     return bool(pressed)
 
 
-def _buttons(space: Workspace, scale: float) -> None:
-    player, playing = space.player, space.transport
-    if space.timeline == "session":
-        recording = player.taking is not None
+def _buttons(state: AppState, scale: float) -> None:
+    playback, playing = state.session_playback, state.playback
+    if state.timeline == "session":
+        recording = playback.taking is not None
         icon = icons.ICON_FA_STOP if recording else icons.ICON_FA_CIRCLE
         if _button(icon, "record", scale, True, ACCENT if recording else RED):
-            player.take(not recording)
+            playback.take(not recording)
         widgets.explain(
             "Record: what you do from here to the next click is the part that is played and exported"
         )
     else:
-        key_track.buttons(space, scale)
+        key_track.buttons(state, scale)
     imgui.same_line(0, 4 * scale)
     if _button(icons.ICON_FA_PAUSE if playing.playing else icons.ICON_FA_PLAY, "play", scale, True, TEXT):
         playing.play()
@@ -80,50 +80,57 @@ def _buttons(space: Workspace, scale: float) -> None:
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(playing.range[1] <= playing.range[0])
     if _button(icons.ICON_FA_FILM, "export", scale, True, TEXT):
-        animating.ask(space)
+        animating.ask(state)
     imgui.end_disabled()
     widgets.explain("Export the part between the marks as an animation, a video or sprites")
 
 
-def _track(space: Workspace, scale: float) -> None:
+def _track(state: AppState, scale: float) -> None:
     """The time from start to end: what is played in amber, two marks that cut it, and where one is."""
-    player, drawer = space.player, imgui.get_window_draw_list()
-    label = f"{player.at if player.at is not None else player.duration:.1f} / {player.duration:.1f} s"
+    playback, drawer = state.session_playback, imgui.get_window_draw_list()
+    label = f"{playback.at if playback.at is not None else playback.duration:.1f} / {playback.duration:.1f} s"
     room = imgui.calc_text_size("000.0 / 000.0 s").x + 12 * scale
     corner, rim = imgui.get_cursor_screen_pos(), 8 * scale  # so that both ends can be taken hold of
     width, height = max(imgui.get_content_region_avail().x - room, 40 * scale), 28 * scale
     imgui.invisible_button("##track", ImVec2(width, height))
     corner.x, width = corner.x + rim, width - 2 * rim
     held, hovered = imgui.is_item_active(), imgui.is_item_hovered()
-    player.view.fit(player.duration or 1.0)
-    track = key_track.Scale(corner.x, width, player.view)
+    playback.view.fit(playback.duration or 1.0)
+    track = key_track.TimeScale(corner.x, width, playback.view)
     if hovered and not held:
-        key_track.zoom(player.view, track)
+        key_track.zoom(playback.view, track)
     moment = track.time(imgui.get_mouse_pos().x)
     if imgui.is_item_activated():
         near, below = 8 * scale, imgui.get_mouse_pos().y > corner.y + 0.6 * height
-        start, end = (abs(imgui.get_mouse_pos().x - track.x(mark)) for mark in player.range)
+        start, end = (abs(imgui.get_mouse_pos().x - track.x(mark)) for mark in playback.range)
         on_mark = below and min(start, end) < near
-        space.grip = ("start" if start < end else "end") if on_mark else "head"
-    if held and player.shots:
-        if space.grip == "start":
-            player.cut_to(start=moment)
-        elif space.grip == "end":
-            player.cut_to(end=moment)
+        state.grip = ("start" if start < end else "end") if on_mark else "head"
+    if held and playback.snapshots:
+        if state.grip == "start":
+            playback.cut_to(start=moment)
+        elif state.grip == "end":
+            playback.cut_to(end=moment)
         else:
-            player.scrub(moment)
+            playback.scrub(moment)
     middle = corner.y + height / 2
-    low, high = (track.x(mark) for mark in player.range)
+    low, high = (track.x(mark) for mark in playback.range)
     drawer.push_clip_rect(
         ImVec2(corner.x - rim, corner.y), ImVec2(corner.x + width + rim, corner.y + height), True
     )
-    key_track.draw_part(drawer, player.view, corner, width, scale)
+    key_track.draw_part(drawer, playback.view, corner, width, scale)
     _bar(drawer, corner.x, corner.x + width, middle, scale, packed(FRAME))
     _bar(drawer, low, high, middle, scale, packed(ACCENT, 0.55))
     key_track.draw_marks(drawer, [low, high], corner.y + height, scale)
-    if player.taking is not None:
-        _bar(drawer, track.x(player.taking), track.x(player.duration), middle, scale, packed(RED))
-    head = track.x(player.at if player.at is not None else player.view.whole)
+    if playback.taking is not None:
+        _bar(
+            drawer,
+            track.x(playback.taking),
+            track.x(playback.duration),
+            middle,
+            scale,
+            packed(RED),
+        )
+    head = track.x(playback.at if playback.at is not None else playback.view.whole)
     thickness = (2.5 if held or hovered else 2) * scale
     drawer.add_line(ImVec2(head, corner.y), ImVec2(head, corner.y + height), packed(TEXT), thickness)
     drawer.pop_clip_rect()

@@ -17,7 +17,7 @@ from ..cholesky import SparseCholesky
 from ..deformer import StepReport, StepResult
 from .killing_field import KillingSystem
 from .log_spiral import LogSpirals, linear_flow
-from .pin_rotation import Turning
+from .pin_rotation import PinRotationConstraints
 from .preconditioned_cholesky import dot
 from .rest_energy import SymmetricDirichlet, descend
 
@@ -44,7 +44,7 @@ _CUT = 0.05  # a step of memory shorter than this share of its length was in the
 
 
 @dataclass(frozen=True, eq=False)
-class _Aims:
+class _PinGoals:
     """Where pins should be, (k,), and how far they should be turned, (k,) radians or NaN."""
 
     places: Complexes
@@ -137,14 +137,14 @@ class AkapDeformer:
     def _hold(self, holding: NDArray[np.bool_]) -> None:
         """Choose which pins (k,) hold an angle."""
         self._holding = holding
-        self._turning = Turning(self._mesh, self._points, holding) if holding.any() else None
+        self._turning = PinRotationConstraints(self._mesh, self._points, holding) if holding.any() else None
         self._system.set_pins(self._points, self._turning)
         self._exact_system = None
 
     def angles(self, positions: ArrayLike) -> Floats:
         """How far the surroundings of each pin are turned from rest at a pose (n, 2), (k,), in (−π, π]."""
         pose = to_complex(as_points(positions, "positions", len(self._mesh.vertices)))
-        every = Turning(self._mesh, self._points, np.ones(len(self._points), dtype=bool))
+        every = PinRotationConstraints(self._mesh, self._points, np.ones(len(self._points), dtype=bool))
         return every.angles(pose)
 
     def vector_field(self, positions: ArrayLike, velocities: ArrayLike) -> Floats:
@@ -192,7 +192,7 @@ class AkapDeformer:
             for index in range(1, count + 1):
                 share = index / count
                 places = goals if index == count else starts + share * (goals - starts)
-                aims = _Aims(places, wanted - (1 - share) * turns)
+                aims = _PinGoals(places, wanted - (1 - share) * turns)
                 for _ in range(1 + _RETRIES):  # where faces stood in the way, they were opened
                     way.append(self._substep(way[-1].end, aims))
                     if way[-1].share == 1:
@@ -233,7 +233,7 @@ class AkapDeformer:
         off = angles - self._turning.angles(pose)
         return np.asarray(np.angle(np.exp(1j * off)), dtype=np.float64)
 
-    def _substep(self, pose: Complexes, aims: _Aims) -> _Substep:
+    def _substep(self, pose: Complexes, aims: _PinGoals) -> _Substep:
         """One field and one move: section 2.4, with velocities towards ``aims`` from where the pins are."""
         velocities = aims.places - self._pin_positions(pose)
         rates = None
@@ -247,7 +247,9 @@ class AkapDeformer:
             field, _ = self._system.field(velocities, self._dirichlet, "motion", rates)
             moved, share = self._move(pose, field, velocities)
         if share < 1:  # faces at their limit open again, or the pins could not even go back
-            here = _Aims(self._pin_positions(moved), aims.angles - self._still_to_turn(moved, aims.angles))
+            here = _PinGoals(
+                self._pin_positions(moved), aims.angles - self._still_to_turn(moved, aims.angles)
+            )
             moved = self._remember(moved, here, 1.0, False)
         if self._memory:
             moved = self._remember(moved, aims, self._memory, moving)
@@ -299,7 +301,7 @@ class AkapDeformer:
             t /= 2
         return pose, 0.0
 
-    def _remember(self, pose: Complexes, aims: _Aims, length: float, moving: bool) -> Complexes:
+    def _remember(self, pose: Complexes, aims: _PinGoals, length: float, moving: bool) -> Complexes:
         """One step towards the rest shape, pins held softly at ``aims``.
 
         Near an isometry the Hessian of the energy is 2 (K + λ² WᵀW), and while pins are moving that matrix is

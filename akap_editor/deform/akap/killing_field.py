@@ -9,8 +9,8 @@ from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints
 from ..cholesky import SymmetricPattern
-from .pin_rotation import Turning
-from .preconditioned_cholesky import ReusedCholesky
+from .pin_rotation import PinRotationConstraints
+from .preconditioned_cholesky import PreconditionedCholesky
 
 _SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
 
@@ -26,9 +26,9 @@ class KillingSystem:
     has none, could turn freely and make (7) singular: the vertices of one of its faces are then held to the
     mean velocity of its pins, or to zero, which moves it without turning.
 
-    With ``exact`` both matrices are factorized at every pose; otherwise now and then (see `ReusedCholesky`),
-    and fields are as near as ``tolerance``, in pixels. ``stiffness`` (m,) multiplies the
-    energies of faces. With ``hard`` U° has exactly the
+    With ``exact`` both matrices are factorized at every pose; otherwise now and then (see
+    `PreconditionedCholesky`), and fields are as near as ``tolerance``, in pixels.
+    ``stiffness`` (m,) multiplies the energies of faces. With ``hard`` U° has exactly the
     pins' velocities, and (7) is always factorized, since many solves go into one field.
     """
 
@@ -47,25 +47,25 @@ class KillingSystem:
         self._weight = pin_weight**2
         size = 2 * len(mesh.vertices)
         self._tolerance, self._stiffness = tolerance, stiffness
-        self._turning: Turning | None = None
+        self._turning: PinRotationConstraints | None = None
         self._killing = KillingMatrix(mesh)
         self.blocks = self._killing.blocks
         self.pattern = SymmetricPattern(self.blocks.rows, self.blocks.columns, size)
-        self._pinned = ReusedCholesky(self.pattern, exact or hard)
+        self._pinned = PreconditionedCholesky(self.pattern, exact or hard)
         on_boundary = np.zeros(len(mesh.vertices), dtype=bool)
         on_boundary[mesh.boundary_vertices] = True
         self._interior = np.flatnonzero(~on_boundary).astype(np.int32)
-        self._inner: ReusedCholesky | None = None
+        self._inner: PreconditionedCholesky | None = None
         if len(self._interior):
             kept = (2 * self._interior[:, None] + np.arange(2)).ravel()
             inner, self._inner_nonzeros = self.pattern.restricted(kept)
-            self._inner = ReusedCholesky(inner, exact)
+            self._inner = PreconditionedCholesky(inner, exact)
         self._first_faces = np.unique(mesh.component[mesh.faces[:, 0]], return_index=True)[1]
         self._same_place = _SAME_PLACE * length
         self._frames = _VertexFrames(mesh)
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
-    def set_pins(self, points: MeshPoints, turning: Turning | None = None) -> None:
+    def set_pins(self, points: MeshPoints, turning: PinRotationConstraints | None = None) -> None:
         """Choose the constraints C of eq. 3, and faces whose turning is constrained."""
         self._points, self._turning = points, turning
         self._pin_components = self._mesh.component[self._mesh.faces[points.faces, 0]]
@@ -138,7 +138,7 @@ class KillingSystem:
             self._constrain(free)
 
     def solve(self, right: Complexes, tolerance: float, like: str) -> Complexes:
-        """(K + λ² WᵀW)⁻¹ applied to a vector (n,), at the pose last prepared; see `ReusedCholesky.solve`."""
+        """(K + λ² WᵀW)⁻¹ applied to a vector (n,), at the pose last prepared."""
         return self._pinned.solve(right, tolerance, like)
 
     def pull(self, offsets: Complexes) -> Complexes:
@@ -150,7 +150,7 @@ class KillingSystem:
     ) -> tuple[Complexes, Complexes]:
         """U_opt of (8) and U° of (7), (n,) each, for pin velocities (k,), at the pose last prepared.
 
-        rates: (q,) how fast the faces of the `Turning` are to turn, radians per unit of time; 0 without it.
+        rates: (q,) radians per unit of time by which the faces of the `PinRotationConstraints` rotate.
 
         Hard pins are the limit of (7) for λ → ∞: U° = A⁻¹ Wᵀ (W A⁻¹ Wᵀ)⁻¹ ũ, one solve for each pin.
         (8) is solved as U_opt = U° + K_II⁻¹ f_I on interior vertices, f = −K U°: by (7) λ² Wᵀ(W U° − ũ),

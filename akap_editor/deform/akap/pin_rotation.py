@@ -11,7 +11,7 @@ _RADIUS = 0.04  # share of √area: how far around a pin faces turn with it
 _WEIGHT = 1e4  # c of the energy c A ω² of a face that turns too fast or too slowly by ω
 
 
-class Turning:
+class PinRotationConstraints:
     """The faces that turn with pins, and how far they are turned.
 
     On each such face f the field of eq. 3 has a further energy c A_f (ω_f − ω̃)², where ω is the rate at which

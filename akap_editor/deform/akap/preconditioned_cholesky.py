@@ -22,7 +22,7 @@ _KEPT = 2  # earlier solutions from which the next one begins
 _SAME = 1e-11  # of two that differ by less than this share of their energies one is enough
 
 
-class ReusedCholesky:
+class PreconditionedCholesky:
     """Solves A x = b for a matrix that changes a little from pose to pose.
 
     Unknowns are complex, one for each vertex; the matrix is real, with interleaved x and y, and where two

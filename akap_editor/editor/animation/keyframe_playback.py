@@ -5,18 +5,18 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ...deform.pose_interpolation import Ways
+from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats
 from ..document.depth import face_order
 from ..document.document import Document
 from ..document.keyframes import LATEST_KEY, NO_ANIMATION, Animation, key_time
-from ..document.pin_angles import stopped
+from ..document.pin_angles import pins_fixed_at_pose
 from ..editor import Editor
 from ..session.session import Session
 from .motion import Frame
-from .playback import Transport
-from .time_view import TimeView
+from .playback import Playback
+from .time_view import VisibleRange
 
 GAP = 0.5  # seconds between a keyframe and one that is put after it without a time
 STEP = 0.05  # seconds: what times snap to, and what keys move by
@@ -27,7 +27,7 @@ Edge = Literal["keyframes", "frames"]
 
 
 @dataclass
-class Onion:
+class OnionSkin:
     """Neighbors of the pose that is seen, shown translucently.
 
     of: whether keyframes before and after, or moments a ``step`` of seconds apart; count: on each side.
@@ -39,7 +39,7 @@ class Onion:
     step: float = 0.1
 
 
-class KeyPlayer(Transport):
+class KeyframePlayback(Playback):
     """Shows the keyframes of an editor's drawing at the moment ``at``; see `Session.visit`.
 
     Looking edits nothing. The next gesture takes the pose that is seen, and then it is the present one, until
@@ -49,9 +49,9 @@ class KeyPlayer(Transport):
 
     def __init__(self, editor: Editor, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__(clock)
-        self.onion = Onion()
+        self.onion = OnionSkin()
         self._editor = editor
-        self._ways = Ways()
+        self._ways = InterpolationCache()
         self._session: Session | None = None
         self._forget()
 
@@ -59,7 +59,7 @@ class KeyPlayer(Transport):
         self.at: float = 0.0
         self.cut = self._played = None
         self.chosen: frozenset[float] = frozenset()
-        self.view = TimeView(SHORTEST_VIEW)
+        self.view = VisibleRange(SHORTEST_VIEW)
         self._moved: tuple[dict[float, float], bool] | None = None  # of a drag: times to times, as copies
         self._beneath: Floats | None = None  # the present pose while another one is followed
 
@@ -171,7 +171,7 @@ class KeyPlayer(Transport):
             return
         present = session.present
         self._beneath = present.positions
-        pins = stopped(session.drawing.mesh, present.pins, pose)
+        pins = pins_fixed_at_pose(session.drawing.mesh, present.pins, pose)
         session.visit(replace(present, positions=pose, pins=pins), take=True)
 
     def leave(self) -> None:
@@ -278,23 +278,23 @@ class KeyPlayer(Transport):
             self._show()
 
 
-def pose_at(ways: Ways, mesh: TriMesh, animation: Animation, moment: float) -> Floats:
+def pose_at(ways: InterpolationCache, mesh: TriMesh, animation: Animation, moment: float) -> Floats:
     """The pose (n, 2) of an animation of a mesh at a time; there must be keyframes."""
     start, end, share = animation.between(moment)
     return ways.pose(mesh, start.positions, end.positions, share)
 
 
-def keyed_frame(document: Document, ways: Ways, moment: float) -> Frame:
+def keyed_frame(document: Document, ways: InterpolationCache, moment: float) -> Frame:
     """What is seen of a document's keyframes at a time; there must be some."""
     pose = pose_at(ways, document.drawing.mesh, document.state.animation, moment)
     return Frame(document.drawing, pose, document.order)
 
 
-def stretched(times: Iterable[float], pulled: float, to: float) -> dict[float, float]:
-    """Where keyframes go when that at ``pulled`` is pulled to a time, and the first or the last one stays."""
+def stretched(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:
+    """New times of keyframes when the one at ``dragged`` moves, and the first or the last one stays."""
     ordered = sorted(times)
-    fixed = ordered[-1] if pulled == ordered[0] else ordered[0]
-    span = pulled - fixed
+    fixed = ordered[-1] if dragged == ordered[0] else ordered[0]
+    span = dragged - fixed
     share = (to - fixed) / span if span else 1.0
     least = STEP / max(abs(span), STEP)
     return {time: fixed + max(share, least) * (time - fixed) for time in ordered}

@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ...deform.deformer import StepResult
-from ...deform.pose_interpolation import Ways
+from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.validation import Floats, Ints, as_number
 from ..document.depth import face_order
 from ..document.drawing import Drawing
 from ..document.easing import easing
 from ..session.recording import LATEST, Recording
-from ..session.replay import Moment
+from ..session.replay import ReplayedEvent
 
 
 class Frame(NamedTuple):
@@ -65,7 +65,7 @@ def closed(first: Frame, last: Frame) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class _Stretch:
+class _Segment:
     """From ``start``, where ``steps`` begin, to ``end``, where it is ``after``; earlier it is ``before``.
 
     steps: each with the pose that it began with, and with the share of the time that it takes, which is that
@@ -83,16 +83,16 @@ class Motion:
     """What is seen of a recording of ``drawing`` that is done again, at times that do not fall.
 
     Between two recorded times the drawing moves along its trajectories (`StepResult.at`); of methods that
-    know none, each edge turns at a constant rate (`Inbetween`). So a few recorded steps a second play as many
-    frames along arcs. A pose that was set, and not reached by steps, comes at once, and so does another mesh.
+    know none, each edge turns at a constant rate (`PoseInterpolation`). So a few recorded steps a second play
+    as many frames along arcs. A pose that was set, and not reached by steps, comes at once, and so does another mesh.
     """
 
-    def __init__(self, drawing: Drawing, moments: Iterable[Moment]) -> None:
+    def __init__(self, drawing: Drawing, moments: Iterable[ReplayedEvent]) -> None:
         self._drawing = drawing
         self._groups = (list(group) for _, group in groupby(moments, key=attrgetter("time")))
         rest = Frame(drawing, drawing.mesh.vertices)
-        self._stretch = _Stretch(0.0, 0.0, rest, (), rest)
-        self._ways = Ways()
+        self._stretch = _Segment(0.0, 0.0, rest, (), rest)
+        self._ways = InterpolationCache()
 
     def frames(self, times: Iterable[float]) -> Iterator[Frame]:
         """Drawing and pose at each of ``times``, in seconds, ascending."""
@@ -101,13 +101,13 @@ class Motion:
                 self._stretch = self._next(group)
             yield self._frame(time)
 
-    def _next(self, group: list[Moment]) -> _Stretch:
+    def _next(self, group: list[ReplayedEvent]) -> _Segment:
         before, last = self._stretch.after, group[-1]
         drawing, pose, _ = before
         bent = last.state.drawing or self._drawing
         after = Frame(bent, last.state.positions, face_order(bent.mesh, last.state.pins))
         if bent is not drawing or any(moment.jumped for moment in group):
-            return _Stretch(last.time, last.time, before, (), after)
+            return _Segment(last.time, last.time, before, (), after)
         moved: list[tuple[Floats, StepResult, float]] = []
         for moment in group:
             if moment.step is not None:
@@ -116,7 +116,7 @@ class Motion:
         way = sum(length for *_, length in moved)
         steps = tuple((began, step, length / way) for began, step, length in moved if length)
         start = max(self._stretch.end, last.time - LONGEST_MOVE) if steps else last.time
-        return _Stretch(start, last.time, before, steps, after)
+        return _Segment(start, last.time, before, steps, after)
 
     def _frame(self, time: float) -> Frame:
         stretch = self._stretch

@@ -4,16 +4,16 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 
-from .time_view import TimeView
+from .time_view import VisibleRange
 
 
-class Transport(ABC):
+class Playback(ABC):
     """at: the moment that is looked at, in seconds, None where none is; loop: whether playing starts over;
     cut: the part that is played and exported, all of it where None; view: the part that the timeline shows.
     """
 
     loop = True
-    view: TimeView
+    view: VisibleRange
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock

@@ -2,19 +2,19 @@
 
 from dataclasses import replace
 
-from ...deform.pose_interpolation import Ways
+from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.validation import Floats
 from ..document.named_poses import NamedPose
 from ..session.session import Session
 
 
-class Mixer:
+class PoseBlend:
     """start, end: names of poses; share: how far from one to the other, 0 to 1."""
 
     def __init__(self) -> None:
         self.start = self.end = ""
         self.share = 0.0
-        self._ways = Ways()
+        self._ways = InterpolationCache()
 
     def chosen(self, session: Session) -> tuple[NamedPose, NamedPose] | None:
         """The two poses; the first and the last one where none was chosen; None with less than two poses."""

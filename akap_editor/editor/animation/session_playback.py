@@ -5,21 +5,21 @@ from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ...deform.pose_interpolation import Ways
+from ...deform.pose_interpolation import InterpolationCache
 from ..document.depth import face_order
 from ..document.document import EditState
 from ..document.drawing import Drawing
 from ..session.session import Session
 from .motion import LONGEST_MOVE, Frame
-from .playback import Transport
-from .time_view import TimeView
+from .playback import Playback
+from .time_view import VisibleRange
 
 LONGEST_PAUSE = 1.0  # seconds: pauses between edits are not shown for longer
 MOST_BYTES = 2**28  # of poses; beyond, every second of the older ones is forgotten
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class Snapshot:
     """A state of the session.
 
     time: in seconds, with pauses shortened; line: of the recording before it; jumps: as the session had them.
@@ -32,7 +32,7 @@ class Shot:
     jumps: int = 0
 
 
-class Player(Transport):
+class SessionPlayback(Playback):
     """Watches a session and shows it again; see `Session.visit`.
 
     Times are seconds since the session began, pauses shortened. Going on from an earlier moment starts a new
@@ -42,20 +42,20 @@ class Player(Transport):
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__(clock)
         self._session: Session | None = None
-        self._ways = Ways()
+        self._ways = InterpolationCache()
         self._forget()
 
     def _forget(self) -> None:
-        self.shots: list[Shot] = []
+        self.snapshots: list[Snapshot] = []
         self.at = self.cut = self._played = None  # at None is now
-        self.view = TimeView(1.0)  # the part of it that the timeline shows
+        self.view = VisibleRange(1.0)  # the part of it that the timeline shows
         self.taking: float | None = None  # since when a take is recorded
         self._seen = self._clock()
 
     @property
     def duration(self) -> float:
         """Seconds from the first to the last shot."""
-        return self.shots[-1].time if self.shots else 0.0
+        return self.snapshots[-1].time if self.snapshots else 0.0
 
     def watch(self, session: Session | None) -> None:
         """Note the session's state, where it is another than before; to be called once a frame."""
@@ -65,32 +65,34 @@ class Player(Transport):
         if session is None or session.visiting or not session.recorded:
             return
         if self.at is not None:  # a gesture went on from there
-            self.shots = self.shots[: self._index(self.at) + 1]
+            self.snapshots = self.snapshots[: self._index(self.at) + 1]
             self.at = self._played = None
             self.taking = self.duration if self.taking is not None else None
             self.cut = None if self.cut is not None and self.cut[1] > self.duration else self.cut
             self._seen = self._clock()
-        if self.shots and self.shots[-1].state is session.state:
+        if self.snapshots and self.snapshots[-1].state is session.state:
             return
         now = self._clock()
-        passed = min(now - self._seen, LONGEST_PAUSE) if self.shots else 0.0
+        passed = min(now - self._seen, LONGEST_PAUSE) if self.snapshots else 0.0
         self._seen = now
         line = len(session.recording.events) + 1
-        self.shots.append(Shot(self.duration + passed, line, session.state, session.drawing, session.jumps))
-        if len(self.shots) * session.state.positions.nbytes > MOST_BYTES:
-            half = len(self.shots) // 2
-            self.shots = self.shots[:half:2] + self.shots[half:]
+        self.snapshots.append(
+            Snapshot(self.duration + passed, line, session.state, session.drawing, session.jumps)
+        )
+        if len(self.snapshots) * session.state.positions.nbytes > MOST_BYTES:
+            half = len(self.snapshots) // 2
+            self.snapshots = self.snapshots[:half:2] + self.snapshots[half:]
 
     def _index(self, moment: float) -> int:
-        return max(0, bisect_right(self.shots, moment, key=lambda shot: shot.time) - 1)
+        return max(0, bisect_right(self.snapshots, moment, key=lambda shot: shot.time) - 1)
 
-    def shot(self, moment: float) -> Shot:
+    def shot(self, moment: float) -> Snapshot:
         """What was seen at a time."""
-        return self.shots[self._index(moment)]
+        return self.snapshots[self._index(moment)]
 
     def scrub(self, moment: float) -> None:
         """Show the session as it was at a time; at its end, as it is. While it plays, also between shots."""
-        if self._session is None or self._session.history.is_open or not self.shots:
+        if self._session is None or self._session.history.is_open or not self.snapshots:
             return
         if moment >= self.duration:
             self.now()
@@ -125,8 +127,8 @@ class Player(Transport):
         After a longer pause, the motion takes the last of it. What was not reached by steps comes at once.
         """
         index = self._index(moment)
-        shot = self.shots[index]
-        after = self.shots[min(index + 1, len(self.shots) - 1)]
+        shot = self.snapshots[index]
+        after = self.snapshots[min(index + 1, len(self.snapshots) - 1)]
         start = max(shot.time, after.time - LONGEST_MOVE)
         pose = shot.state.positions
         if moment > start and after.jumps == shot.jumps and after.drawing is shot.drawing:

@@ -3,7 +3,7 @@
 SHORTEST = 0.5  # seconds
 
 
-class TimeView:
+class VisibleRange:
     """start, seconds: of what is shown; whole: how long all of it is, from 0 on."""
 
     def __init__(self, whole: float) -> None:

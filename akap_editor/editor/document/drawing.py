@@ -87,18 +87,18 @@ def make_drawing(
         raise InputError(f"image: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
     if mask is not None:
         image = masked(image, mask)
-    return drawing_from(image, Meshing(vertices, expand, threshold, background), name)
+    return remove_background_and_mesh(image, Meshing(vertices, expand, threshold, background), name)
 
 
-def drawing_from(image: NDArray[np.uint8], meshing: Meshing, name: str) -> Drawing:
+def remove_background_and_mesh(image: NDArray[np.uint8], meshing: Meshing, name: str) -> Drawing:
     """A picture (h, w, 4) uint8 as a drawing, without its background if so wanted. Raises InputError."""
     if meshing.background is None:
-        return drawing_on(image, meshing, name)
+        return mesh_drawing(image, meshing, name)
     original = image if not image.flags.writeable else frozen(image.copy())
-    return drawing_on(remove_background(image, meshing.background), meshing, name, original)
+    return mesh_drawing(remove_background(image, meshing.background), meshing, name, original)
 
 
-def drawing_on(
+def mesh_drawing(
     image: NDArray[np.uint8], meshing: Meshing, name: str, original: NDArray[np.uint8] | None = None
 ) -> Drawing:
     """A picture (h, w, 4) uint8 as it is with a mesh of what is visible of it. Raises InputError."""

@@ -27,7 +27,7 @@ def frame_box(drawing: Drawing, poses: Sequence[ArrayLike]) -> Box:
     return _around([*corners, *(as_points(pose, "poses", len(drawing.mesh.vertices)) for pose in poses)])
 
 
-def joined(boxes: Sequence[Box]) -> Box:
+def union_of_boxes(boxes: Sequence[Box]) -> Box:
     """The rectangle that holds all of some, of which there is one at least."""
     x0, y0 = np.min(boxes, axis=0)[:2].tolist()
     x1, y1 = np.max(boxes, axis=0)[2:].tolist()

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...deform.akap.pin_rotation import Turning
+from ...deform.akap.pin_rotation import PinRotationConstraints
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.operators import to_complex
 from ...geometry.validation import Floats
@@ -28,13 +28,13 @@ def pin_angles(mesh: TriMesh, pins: Sequence[Pin], positions: Floats, also: Cont
 
 
 @lru_cache(maxsize=8)
-def _turning(mesh: TriMesh, places: tuple[tuple[int, bytes, bool], ...]) -> Turning:
-    faces, weights, holding = zip(*places, strict=True)
+def _turning(mesh: TriMesh, places: tuple[tuple[int, bytes, bool], ...]) -> PinRotationConstraints:
+    faces, weights, holds = zip(*places, strict=True)
     points = MeshPoints(np.array(faces, dtype=np.int32), np.array([np.frombuffer(each) for each in weights]))
-    return Turning(mesh, points, np.array(holding))
+    return PinRotationConstraints(mesh, points, np.array(holds))
 
 
-def stopped(mesh: TriMesh, pins: Sequence[Pin], positions: Floats) -> tuple[Pin, ...]:
+def pins_fixed_at_pose(mesh: TriMesh, pins: Sequence[Pin], positions: Floats) -> tuple[Pin, ...]:
     """Pins that are to stay as they are in a pose (n, 2), also turned so where they hold an angle."""
     points = MeshPoints(
         np.array([pin.face for pin in pins], dtype=np.int32),
@@ -47,7 +47,7 @@ def stopped(mesh: TriMesh, pins: Sequence[Pin], positions: Floats) -> tuple[Pin,
     )
 
 
-def holding(
+def with_held_angles(
     mesh: TriMesh, pins: Sequence[Pin], positions: Floats, ids: Container[int], hold: bool
 ) -> tuple[Pin, ...]:
     """Pins of which those with these ids hold the angles that they have in a pose (n, 2), or none."""
@@ -58,7 +58,7 @@ def holding(
     )
 
 
-class Turns:
+class FullTurnCounter:
     """Counts full turns, of which a pose says nothing, from one step to the next."""
 
     def __init__(self) -> None:

@@ -6,11 +6,11 @@ import numpy as np
 import shapely
 
 from ...errors import InputError
-from ...geometry.area_bounds import pulled
+from ...geometry.area_bounds import grow_faces
 from ...geometry.mesh import TriMesh, barycentric, signed_areas
 from ...geometry.validation import Complexes, Floats, Ints
 from .document import EditState
-from .drawing import Drawing, Meshing, drawing_from, drawing_on
+from .drawing import Drawing, Meshing, mesh_drawing, remove_background_and_mesh
 from .pin import Pin
 
 _ON_PICTURE = 0.5  # pixels by which vertices may be beside where their texture coordinates say
@@ -34,9 +34,9 @@ def remeshed(drawing: Drawing, meshing: Meshing) -> Drawing:
             f"but a vertex is {away:.1f} pixels away from its place there"
         )
     if meshing.background == made.background:
-        return drawing_on(drawing.image, meshing, drawing.name, drawing.original)
+        return mesh_drawing(drawing.image, meshing, drawing.name, drawing.original)
     before = drawing.original if drawing.original is not None else drawing.image
-    return drawing_from(before, meshing, drawing.name)
+    return remove_background_and_mesh(before, meshing, drawing.name)
 
 
 def carried_over(state: EditState, old: TriMesh, drawing: Drawing) -> EditState:
@@ -90,12 +90,12 @@ def _carried(points: Floats, old: TriMesh, pose: Floats) -> Floats:
     """Where the map from the mesh ``old`` at rest to its ``pose`` takes points (k, 2)."""
     faces, on_face, weights = _nearest(points, old)
     corners, moved = old.vertices[old.faces[faces]], pose[old.faces[faces]]
-    beside = np.abs(points - on_face).max(axis=1) > 0
+    outside = np.abs(points - on_face).max(axis=1) > 0
     result = np.einsum("kc,kcd->kd", weights, moved)
     arms = (corners - corners.mean(axis=1, keepdims=True)) @ _COMPLEX
     turn = _unit((arms.conj() * ((moved - moved.mean(axis=1, keepdims=True)) @ _COMPLEX)).sum(axis=1))
     offset = turn * ((points - on_face) @ _COMPLEX)
-    result[beside] += np.stack([offset.real, offset.imag], axis=1)[beside]
+    result[outside] += np.stack([offset.real, offset.imag], axis=1)[outside]
     return result
 
 
@@ -125,7 +125,7 @@ def _unfolded(positions: Floats, mesh: TriMesh) -> Floats:
         if areas.min() > 0:
             break
         thin = np.flatnonzero(areas < least)
-        pose = pulled(pose, mesh.faces[thin], least[thin] - areas[thin], least[thin])
+        pose = grow_faces(pose, mesh.faces[thin], least[thin] - areas[thin], least[thin])
     return np.stack([pose.real, pose.imag], axis=1)
 
 

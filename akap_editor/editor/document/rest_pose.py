@@ -6,7 +6,7 @@ from ...errors import InputError
 from ...geometry.mesh import signed_areas
 from .document import Document, EditState
 from .drawing import Drawing
-from .pin_angles import stopped
+from .pin_angles import pins_fixed_at_pose
 
 
 def baked_state(state: EditState, drawing: Drawing) -> EditState:
@@ -22,7 +22,7 @@ def baked_state(state: EditState, drawing: Drawing) -> EditState:
             f"{flipped} of {len(drawing.mesh.faces)} are flipped or flat"
         )
     mesh = replace(drawing.mesh, vertices=state.positions)
-    pins = stopped(mesh, state.pins, mesh.vertices)
+    pins = pins_fixed_at_pose(mesh, state.pins, mesh.vertices)
     return replace(state, pins=pins, positions=mesh.vertices, drawing=replace(drawing, mesh=mesh))
 
 

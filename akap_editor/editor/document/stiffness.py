@@ -29,7 +29,7 @@ def as_stiffness(values: ArrayLike, faces: int) -> Floats:
     return factors
 
 
-def coverage(mesh: TriMesh, dabs: ArrayLike, radius: float) -> Floats:
+def stroke_coverage(mesh: TriMesh, dabs: ArrayLike, radius: float) -> Floats:
     """How much of each face, (m,) from 0 to 1, brushes at ``dabs`` (d, 2) with this radius cover at rest.
 
     All of it near a dab, softly less towards the rim. A brush is never smaller than the face it is on.
@@ -56,7 +56,7 @@ def _faces(mesh: TriMesh) -> tuple[Floats, Floats, Floats]:
     return centers[:, 0].copy(), centers[:, 1].copy(), sizes
 
 
-def painted(stiffness: Floats | None, covered: Floats, factor: float) -> Floats | None:
+def apply_stroke(stiffness: Floats | None, covered: Floats, factor: float) -> Floats | None:
     """Factors (m,) after a stroke with ``factor`` that covers faces so far, (m,); None is 1 everywhere.
 
     What is half covered comes half-way, in equal ratios. A factor of 1 erases. Raises InputError.

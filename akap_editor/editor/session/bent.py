@@ -10,9 +10,9 @@ from ...errors import SolverError
 from ...geometry.validation import Floats
 from ..document.document import Document, EditState
 from ..document.drawing import Drawing
-from ..document.pin_angles import pin_angles, stopped
+from ..document.pin_angles import pin_angles, pins_fixed_at_pose
 from .stepper import Bending
-from .worker import AT_ONCE
+from .worker import INLINE
 
 PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
 STILL = 0.02  # pixels: a step that moves no vertex farther has come to rest
@@ -111,7 +111,7 @@ class Bent:
 
     def step(self) -> StepResult:
         """The step under way, or else a new one; waits for it. On SolverError the pose is as it was."""
-        self.start_step(AT_ONCE)
+        self.start_step(INLINE)
         way, self._under_way = self._under_way, None
         assert way is not None
         try:
@@ -164,7 +164,7 @@ class Bent:
 
     def _put(self, pose: Floats) -> None:
         self.jumps += 1
-        pins = stopped(self.drawing.mesh, self.state.pins, pose)
+        pins = pins_fixed_at_pose(self.drawing.mesh, self.state.pins, pose)
         self._set_state(replace(self.state, pins=pins, positions=pose))
         self._settling = 0
 

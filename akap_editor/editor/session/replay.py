@@ -31,7 +31,7 @@ _SAME_PLACE = 1e-6  # pixels
 _SAME_SHAPE = 0.01  # pictures whose proportions differ by less show the same
 
 
-class Moment(NamedTuple):
+class ReplayedEvent(NamedTuple):
     """What one event of a recording led to.
 
     time: in seconds since the start; state: after the event; step: its result where the event was a step;
@@ -45,7 +45,7 @@ class Moment(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Stage:
+class _ReplayTarget:
     """Where a recording is done again: whether on its own mesh, and how much larger than it was."""
 
     mesh: TriMesh
@@ -74,7 +74,7 @@ class Replay:
         self._now = 0.0
         self._ended: float | None = None  # by the clock
 
-    def moments(self) -> Iterator[Moment]:
+    def moments(self) -> Iterator[ReplayedEvent]:
         """Do it, event by event. Raises InputError with the number of the event's line, SolverError."""
         stage = _stage(self._recording, self._drawing)
         returns = {event["line"] for event in self._recording.events if event["do"] == "return"}
@@ -92,9 +92,11 @@ class Replay:
             if line in returns:
                 kept[line] = self.session.state, len(self.session.recording.events) + 1
             jumped = step is None and before is not None and self.session.state.positions is not before
-            yield Moment(self._now, self.session.state, step, jumped)
+            yield ReplayedEvent(self._now, self.session.state, step, jumped)
 
-    def _do(self, event: Event, stage: _Stage, kept: dict[int, tuple[EditState, int]]) -> StepResult | None:
+    def _do(
+        self, event: Event, stage: _ReplayTarget, kept: dict[int, tuple[EditState, int]]
+    ) -> StepResult | None:
         opens = event["do"] == "settings"
         if opens and self._change is not None:
             event = {**event, **settings_to_json(self._change(_settings(event)))}
@@ -121,7 +123,7 @@ class Replay:
 
 def replay(
     recording: Recording, drawing: Drawing, change: Callable[[Settings], Settings] | None = None
-) -> Iterator[Moment]:
+) -> Iterator[ReplayedEvent]:
     """Do a recording again on a drawing: what each event led to.
 
     On the mesh that it was made on, poses are those of the session. On another mesh of the same picture, also
@@ -131,12 +133,12 @@ def replay(
     yield from Replay(recording, drawing, change).moments()
 
 
-def _stage(recording: Recording, drawing: Drawing) -> _Stage:
+def _stage(recording: Recording, drawing: Drawing) -> _ReplayTarget:
     """Raises InputError where a recording was made on a picture of other proportions."""
     header = recording.header
     same_mesh = header.get("mesh") == mesh_digest(drawing.mesh)
     if same_mesh or "size" not in header:
-        return _Stage(drawing.mesh, same_mesh, 1.0)
+        return _ReplayTarget(drawing.mesh, same_mesh, 1.0)
     width, height = drawing.size
     try:
         recorded_width, recorded_height = map(float, header["size"])
@@ -150,14 +152,14 @@ def _stage(recording: Recording, drawing: Drawing) -> _Stage:
             f"{recorded_height:g} pixels, and fits drawings of these proportions only, but {drawing.name!r} "
             f"has {width} x {height}"
         )
-    return _Stage(drawing.mesh, same_mesh, scale)
+    return _ReplayTarget(drawing.mesh, same_mesh, scale)
 
 
 def _settings(event: Event) -> Settings:
     return Settings(str(event["method"]), tuple(sorted(dict(event["parameters"]).items())))
 
 
-def _meshing(event: Event, stage: _Stage) -> Meshing:
+def _meshing(event: Event, stage: _ReplayTarget) -> Meshing:
     tolerance = event["background"]
     return Meshing(
         int(event["vertices"]),
@@ -167,7 +169,7 @@ def _meshing(event: Event, stage: _Stage) -> Meshing:
     )
 
 
-def _pins(event: Event, stage: _Stage, mesh: TriMesh) -> tuple[Pin, ...]:
+def _pins(event: Event, stage: _ReplayTarget, mesh: TriMesh) -> tuple[Pin, ...]:
     pins = event["pins"]
     if len({int(pin["id"]) for pin in pins}) < len(pins):
         raise InputError("expected pins with ids of their own, got one id twice")
@@ -197,7 +199,7 @@ def _fit(pins: list[Any], mesh: TriMesh) -> bool:
     return bool(np.abs(away).max(initial=0.0) < _SAME_PLACE)
 
 
-def _stiffen(session: Session, event: Event, stage: _Stage) -> None:
+def _stiffen(session: Session, event: Event, stage: _ReplayTarget) -> None:
     if event["do"] == "paint":
         dabs = stage.places(event["dabs"], "dabs", len(event["dabs"]))
         session.paint_stiffness(dabs, stage.scale * float(event["radius"]), event["factor"])
@@ -208,7 +210,7 @@ def _stiffen(session: Session, event: Event, stage: _Stage) -> None:
 
 
 def _apply(
-    session: Session, event: Event, stage: _Stage, kept: dict[int, tuple[EditState, int]]
+    session: Session, event: Event, stage: _ReplayTarget, kept: dict[int, tuple[EditState, int]]
 ) -> StepResult | None:
     """Do one event; the result where it is a step."""
     do = event["do"]

@@ -20,11 +20,11 @@ from ..document.depth import check_depths, depth_at
 from ..document.document import Document, EditState
 from ..document.drawing import Drawing
 from ..document.pin import Pin
-from ..document.pin_angles import MOST_ANGLE, holding
+from ..document.pin_angles import MOST_ANGLE, with_held_angles
 from ..document.remesh import carried_over
 from ..document.rest_pose import baked_state
 from ..document.settings import Settings
-from ..document.stiffness import as_stiffness, coverage, painted
+from ..document.stiffness import apply_stroke, as_stiffness, stroke_coverage
 from .bent import PIN_TOLERANCE, Bent
 from .event_log import EventLog
 from .history import History
@@ -37,7 +37,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
-class _Visit:
+class _Preview:
     """What is shown in place of the ``present``, with what goes on once it is left; see `Session.visit`."""
 
     present: EditState
@@ -80,7 +80,7 @@ class Session(Bent):
         super().__init__(document)
         self.history = History()
         self._saved: EditState | None = document.state
-        self._visit: _Visit | None = None
+        self._visit: _Preview | None = None
         self._taken: EditState | None = None  # as the open gesture began, where it took over a visited pose
         self._clock, self._started = clock, clock() if started is None else started
         self._asked: list[tuple[str, dict[str, object]]] = []  # edits to be recorded after the step under way
@@ -127,7 +127,7 @@ class Session(Bent):
         that goes on from the present; take: but takes over the pose, as a part of it. seen: a pose (n, 2)
         that is shown in place of the state's. `leave` returns to the present, and so do undo and redo.
         """
-        before = self._visit or _Visit(self.state, self._bending, self._settling, state, line, take)
+        before = self._visit or _Preview(self.state, self._bending, self._settling, state, line, take)
         self._visit = replace(before, there=state, line=line, taken=take)
         self._set_state(state if seen is None else replace(state, positions=seen))
         self._settling = 0
@@ -274,7 +274,9 @@ class Session(Bent):
     @_after_step
     def hold_angles(self, ids: Iterable[int], hold: bool = True) -> None:
         """Let pins hold the angles that they have, or turn as they will again; moves nothing."""
-        self.set_pins(holding(self.drawing.mesh, self.state.pins, self.state.positions, set(ids), hold))
+        self.set_pins(
+            with_held_angles(self.drawing.mesh, self.state.pins, self.state.positions, set(ids), hold)
+        )
 
     @_after_step
     def hold_pins(self) -> None:
@@ -303,7 +305,9 @@ class Session(Bent):
         radius: in pixels; factor: from 1, as without, to 1000. Raises InputError.
         """
         places = as_points(dabs, "dabs")
-        stiffness = painted(self.state.stiffness, coverage(self.drawing.mesh, places, radius), factor)
+        stiffness = apply_stroke(
+            self.state.stiffness, stroke_coverage(self.drawing.mesh, places, radius), factor
+        )
         self._bend_by(replace(self.state, stiffness=stiffness))
         self._record("paint", dabs=places.tolist(), radius=radius, factor=factor)
 

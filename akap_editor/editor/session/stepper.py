@@ -10,7 +10,7 @@ from ...deform.deformer import StepResult, holds_angles, make_deformer, takes_st
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats
 from ..document.document import EditState
-from ..document.pin_angles import Turns, pin_angles
+from ..document.pin_angles import FullTurnCounter, pin_angles
 
 REACH = 0.035  # longest way of a pin in one step, as a share of √area; longer steps cost as much a pixel
 MOST_TURN = 0.2  # radians that a pin turns in one step
@@ -33,7 +33,7 @@ class Bending:
         self.deformer: Any = make_deformer(method, mesh, **parameters)
         self.set_pins(state)
         self.holds_angles = holds_angles(method)
-        self.turns = Turns()
+        self.turns = FullTurnCounter()
         self.last_way: tuple[Floats, Floats] | None = None
         self._reach = REACH * float(np.sqrt(mesh.rest_areas.sum()))
 

@@ -5,7 +5,7 @@ from concurrent.futures import Executor, Future
 from typing import Any
 
 
-class AtOnce(Executor):
+class InlineExecutor(Executor):
     """Does what is submitted before it returns: in scripts and tests, no window waits for an answer."""
 
     def submit(self, job: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
@@ -18,4 +18,4 @@ class AtOnce(Executor):
         return future
 
 
-AT_ONCE = AtOnce()
+INLINE = InlineExecutor()

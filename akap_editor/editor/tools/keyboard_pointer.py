@@ -14,7 +14,7 @@ MARGIN = 32.0  # points of the screen to the edge of the canvas
 _LEAVES = "arrows move on, Esc ends"
 
 
-class Crosshair(Idle):
+class KeyboardPointer(Idle):
     """Nothing is pressed, and keys move the pointer; it begins where the mouse was last, or in the middle."""
 
     def __init__(self, editor: "Editor") -> None:
@@ -108,14 +108,14 @@ def reveal(editor: "Editor", place: Point) -> Point:
     return place[0] + ways[0], place[1] + ways[1]
 
 
-def toggle_crosshair(editor: "Editor") -> None:
+def toggle_keyboard_pointer(editor: "Editor") -> None:
     """Begin to move the pointer by keys, or end it; the hand is laid aside, as it has nothing to click."""
-    if isinstance(editor.tool, Crosshair):
+    if isinstance(editor.tool, KeyboardPointer):
         editor.rest()
     elif editor.session is not None and not editor.busy:
         if editor.chosen_tool == "hand":
             editor.chosen_tool = "pins"
-        editor.enter(Crosshair(editor))
+        editor.enter(KeyboardPointer(editor))
 
 
 def select_next(editor: "Editor", forward: bool = True) -> None:
@@ -127,7 +127,7 @@ def select_next(editor: "Editor", forward: bool = True) -> None:
     at = max(chosen, default=-1) + 1 if forward else min(chosen, default=0) - 1
     pin = ids[at % len(ids)]
     editor.select({pin})
-    if isinstance(editor.tool, Crosshair):
+    if isinstance(editor.tool, KeyboardPointer):
         editor.tool.go_to_pin(pin)
     else:
         reveal(editor, editor.pins_on_screen()[pin])

@@ -7,7 +7,7 @@ import numpy as np
 from ..camera import Point
 from ..events import PointerEvent
 from .base import Pointing, Tool
-from .rotate import PointingRing, hovered_ring, ring_at
+from .rotate import PointingRotationRing, hovered_ring, ring_at
 from .stiffness_brush import Painting
 
 if TYPE_CHECKING:
@@ -59,13 +59,13 @@ class Idle(Tool):
         ring = ring_at(editor, event.position) if event.alt else None
         if event.button == "right":
             if pin is not None:
-                editor.enter(AskingForMenu(editor, event, pin))
+                editor.enter(OpeningPinMenu(editor, event, pin))
         elif ring is not None:
-            editor.enter(PointingRing(editor, event, ring))
+            editor.enter(PointingRotationRing(editor, event, ring))
         elif pin is None:
             self._press_beside_pins(event)
         elif event.alt:
-            editor.enter(CuttingPin(editor, event, pin))
+            editor.enter(RemovingPin(editor, event, pin))
         elif event.clicks == 2 and pin != editor.newest_pin:
             editor.ask("values", pin)
         else:
@@ -127,7 +127,7 @@ class PointingPin(Pointing):
         super().cancel()
 
 
-class CuttingPin(Pointing):
+class RemovingPin(Pointing):
     """Pressed on a pin with Alt."""
 
     hint = "Release to remove this pin, Escape to keep it"
@@ -141,7 +141,7 @@ class CuttingPin(Pointing):
         self.editor.remove_pins({self.pin})
 
 
-class AskingForMenu(Pointing):
+class OpeningPinMenu(Pointing):
     """Pressed on a pin with the right button; a drag with that button does nothing."""
 
     hint = "Release for the menu of this pin"

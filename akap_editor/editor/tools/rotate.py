@@ -17,7 +17,7 @@ SNAP = math.radians(15.0)
 
 def ring_pin(editor: "Editor") -> int | None:
     """The pin whose ring is shown: with Alt the one near the pointer, or the only one that is selected."""
-    if isinstance(editor.tool, TurningPin):
+    if isinstance(editor.tool, RotatingPin):
         return editor.tool.pin
     session = editor.session
     idle = session is not None and session.turns and not editor.busy and editor.chosen_tool == "pins"
@@ -64,7 +64,7 @@ def set_angle(editor: "Editor", pin: int, angle: float | None) -> None:
         editor.edit("Turn", lambda session: session.turn_pins({pin: angle}))
 
 
-class PointingRing(Pointing):
+class PointingRotationRing(Pointing):
     """Pressed on a ring, not dragged yet."""
 
     hint = "Drag to turn the drawing around this pin"
@@ -74,7 +74,7 @@ class PointingRing(Pointing):
         self.pin = pin
 
     def dragged(self, event: PointerEvent) -> None:
-        turning = TurningPin(self.editor, self.start, self.pin)
+        turning = RotatingPin(self.editor, self.start, self.pin)
         self.editor.enter(turning)
         turning.move(event)
 
@@ -82,7 +82,7 @@ class PointingRing(Pointing):
         self.editor.rest()
 
 
-class TurningPin(Tool):
+class RotatingPin(Tool):
     """The drawing turns around a pin with the pointer; in the end the pin holds that angle."""
 
     def __init__(self, editor: "Editor", start: Point, pin: int) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...geometry.validation import Floats
-from ..document.stiffness import SOFTEST, STIFFEST, coverage, painted
+from ..document.stiffness import SOFTEST, STIFFEST, apply_stroke, stroke_coverage
 from ..events import PointerEvent
 from .base import Tool
 
@@ -81,9 +81,9 @@ class Painting(Tool):
         session = self.editor.session
         if dabs and session is not None:
             self._dabs += dabs
-            more = coverage(session.drawing.mesh, dabs, self._radius)
+            more = stroke_coverage(session.drawing.mesh, dabs, self._radius)
             self._covered = np.maximum(self._covered, more)
-            self.stiffness = painted(session.state.stiffness, self._covered, self._factor)
+            self.stiffness = apply_stroke(session.state.stiffness, self._covered, self._factor)
 
     def _at_rest(self, position: tuple[float, float]) -> Floats | None:
         """Where in the rest pose that is which is seen at a point of the screen, (2,)."""

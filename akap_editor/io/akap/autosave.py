@@ -35,14 +35,14 @@ def state_folder() -> Path:
 
 
 @dataclass(frozen=True)
-class Copy:
+class RecoveryCopy:
     """A copy that belongs to this program as long as it holds the lock; a dead one's is free."""
 
     path: Path
     lock: FileLock
 
     @classmethod
-    def claim(cls, path: Path) -> "Copy | None":
+    def claim(cls, path: Path) -> "RecoveryCopy | None":
         """The copy at ``path``, unless another running program has it. Raises OSError."""
         lock = FileLock(
             path.with_suffix(".lock"), thread_local=False
@@ -98,7 +98,7 @@ class Autosave:
         self._clock = clock
         self._worker = ThreadPoolExecutor(1, "autosave")  # one job after the other, so none overtakes
         self._job: Future[None] | None = None
-        self._copy: Copy | None = None  # belongs to the worker
+        self._copy: RecoveryCopy | None = None  # belongs to the worker
         self._has_copy = False  # or will have, once the worker is done
         self._kept: EditState | None = None  # the state in the copy
         self._changed_at: float | None = None  # since when there is something that is not in the copy
@@ -158,7 +158,7 @@ class Autosave:
     def _write(self, document: Document) -> None:
         if self._copy is None:
             self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-            self._copy = Copy.claim(self._folder / f"{secrets.token_hex(8)}{PROJECT_SUFFIX}")
+            self._copy = RecoveryCopy.claim(self._folder / f"{secrets.token_hex(8)}{PROJECT_SUFFIX}")
             assert self._copy is not None, "nobody else has this name"
         self._copy.write(document)
 
@@ -169,22 +169,22 @@ class Autosave:
 
     # -- after a crash ---------------------------------------------------------------------------------------
 
-    def lost(self) -> list[Copy]:
+    def lost(self) -> list[RecoveryCopy]:
         """The copies of programs that have ended by mistake, the newest first.
 
-        They belong to this program until it calls `adopt`, or `Copy.discard` or `Copy.leave`.
+        They belong to this program until it calls `adopt`, or `RecoveryCopy.discard` or `RecoveryCopy.leave`.
         """
         copies = []
         with suppress(OSError, NotImplementedError):  # without a folder, or without locks, there is nothing
             for path in self._folder.glob(f"*{PROJECT_SUFFIX}"):
-                copy = Copy.claim(path)
+                copy = RecoveryCopy.claim(path)
                 if copy is not None and path.exists():
                     copies.append(copy)
                 elif copy is not None:
                     copy.leave()
         return sorted(copies, key=lambda copy: copy.time, reverse=True)
 
-    def adopt(self, copy: Copy, document: Document) -> None:
+    def adopt(self, copy: RecoveryCopy, document: Document) -> None:
         """A lost copy becomes the one of this program, and holds what was read from it."""
         self._forget()
         self._worker.submit(setattr, self, "_copy", copy)

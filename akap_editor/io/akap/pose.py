@@ -22,7 +22,7 @@ MAX_BYTES = 2**24  # room for 400 000 vertices
 
 
 @dataclass(frozen=True, eq=False)
-class Pose:
+class SavedPose:
     """pins: where they hold the drawing; positions: (n, 2) float64, of the mesh's vertices, in pixels."""
 
     pins: tuple[Pin, ...]
@@ -39,7 +39,7 @@ def save_pose(document: Document, path: str | Path) -> None:
     write_atomic(path, data)
 
 
-def load_pose(path: str | Path, drawing: Drawing) -> Pose:
+def load_pose(path: str | Path, drawing: Drawing) -> SavedPose:
     """The pose in a file, bit for bit as it was saved, which must be one of this drawing's mesh.
 
     Raises InputError, and nothing else, on a file that is missing, damaged, malicious, of a newer version or
@@ -67,7 +67,7 @@ def encode_pose(document: Document) -> bytes:
     return data
 
 
-def decode_pose(data: bytes, drawing: Drawing) -> Pose:
+def decode_pose(data: bytes, drawing: Drawing) -> SavedPose:
     """The pose in the bytes of a .pose.json file, of this drawing's mesh. Raises InputError."""
     _check_size(data)
     record = parse_record(data)
@@ -83,7 +83,7 @@ def decode_pose(data: bytes, drawing: Drawing) -> Pose:
     positions = pairs(get(record, "positions", list), "positions")
     state = EditState(read_pins(get(record, "pins", list)), positions)
     check_state(state, vertices, faces)
-    return Pose(state.pins, state.positions)
+    return SavedPose(state.pins, state.positions)
 
 
 def _check_size(data: bytes) -> None:

@@ -150,9 +150,9 @@ def _texture(content: _Content, path: Path) -> tuple[NDArray[np.uint8] | None, b
             if len(words) == 2 and words[0] == "map_Kd":
                 return read_image(path.with_name(Path(words[1].strip().replace("\\", "/")).name)), True
     for suffix in _TEXTURE_SUFFIXES:
-        beside = path.with_suffix(suffix)
-        if beside.is_file():
-            return read_image(beside), False
+        comparison = path.with_suffix(suffix)
+        if comparison.is_file():
+            return read_image(comparison), False
     return None, False
 
 

@@ -4,7 +4,7 @@ from imgui_bundle import imgui  # isort: skip
 import numpy as np
 import pytest
 
-from akap_editor.app.commands import registry as commands
+from akap_editor.app.commands.registry import registry as commands
 from akap_editor.editor.events import PinRequest
 
 Key = imgui.Key
@@ -23,7 +23,7 @@ def test_arrows_nudge_also_after_a_click_on_a_panel(pinned):
     pinned.do(nudge)
     np.testing.assert_allclose(pinned.session.state.pin(3).target, np.add(before, (-10, -2)), atol=1e-9)
     assert pinned.session.history.labels == ["Nudge"]
-    assert pinned.space.show_mesh
+    assert pinned.state.show_mesh
 
 
 def test_backspace_removes_the_last_pin(pinned):
@@ -45,15 +45,15 @@ def test_alt_click_cuts_a_pin_off_and_the_keyboard_stays_with_the_canvas(pinned)
     assert [pin.id for pin in pinned.pins] == [1, 3]
     assert not pinned.editor.held
     pinned.key(Key.m)
-    assert pinned.space.show_mesh
+    assert pinned.state.show_mesh
 
 
 def test_h_hides_the_pins_while_it_is_held(pinned):
     shown = pinned.screenshot()
-    shots = []
+    snapshots = []
 
     def hold(hand):
-        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.beside))
+        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.comparison))
         hand.key_down(Key.h)
         hand.yield_(2)
         pinned.on_main_thread(hand, lambda: pinned.window.after_draw.append(shoot))
@@ -61,15 +61,15 @@ def test_h_hides_the_pins_while_it_is_held(pinned):
         hand.key_up(Key.h)
 
     def shoot():
-        shots.append(pinned.window.screenshot())
+        snapshots.append(pinned.window.screenshot())
         pinned.window.after_draw.clear()
 
     pinned.do(hold)
-    pinned.space.show_pins = False
+    pinned.state.show_pins = False
     hidden = pinned.screenshot()
     canvas = slice(0, round(pinned.editor.canvas[2]))
-    assert (shots[0][:, canvas] == hidden[:, canvas]).all()
-    pinned.space.show_pins = True
+    assert (snapshots[0][:, canvas] == hidden[:, canvas]).all()
+    pinned.state.show_pins = True
     assert (pinned.screenshot() == shown).all()
 
 

@@ -40,7 +40,7 @@ def test_a_click_adds_a_pin_exactly_there(ui):
 
 def test_a_click_beside_the_drawing_adds_none_and_deselects(pinned):
     pinned.editor.select({1})
-    pinned.click(pinned.beside)
+    pinned.click(pinned.comparison)
     assert len(pinned.pins) == 3
     assert not pinned.editor.selection
     assert pinned.session.history.depth == 0
@@ -161,11 +161,11 @@ def test_escape_in_a_pan_goes_back(ui):
 
 def test_space_released_where_the_canvas_does_not_hear_it_leaves_no_hand(ui):
     def actions(hand):
-        move(hand, ui.beside)
+        move(hand, ui.comparison)
         hand.key_down(Key.space)
         hand.yield_(2)
         assert ui.editor.hand
-        ui.space.error = "A message takes the keyboard."
+        ui.state.error = "A message takes the keyboard."
         hand.yield_(3)
         hand.key_up(Key.space)
         hand.yield_(2)
@@ -246,7 +246,7 @@ def undo(ui, hand):
 def open_dialog(ui, hand):
     hand.key_press(Key.mod_ctrl | Key.o)
     hand.yield_(2)
-    assert ui.space.request is not None
+    assert ui.state.request is not None
     hand.mouse_up(0)
     hand.key_press(Key.escape)
 
@@ -300,7 +300,7 @@ def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkey
         monkeypatch.setattr(pinned.session._bending.deformer, "step", fail)
         move(hand, (start[0], start[1] + 200))
         hand.yield_(2)
-        seen.append((pinned.space.error, pinned.tool))
+        seen.append((pinned.state.error, pinned.tool))
         hand.mouse_up(0)
         hand.item_click("//That did not work###dialog That did not work/OK")
 
@@ -310,7 +310,7 @@ def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkey
     pinned.do(actions)
     assert seen == [("the pose became infinite", "Idle")]
     assert pinned.session.state is before
-    assert not pinned.space.error
+    assert not pinned.state.error
     monkeypatch.undo()
     pinned.drag(start, (start[0], start[1] + 50))
     assert pinned.session.posed
@@ -328,7 +328,7 @@ def marker_pixels(shot, at, radius):
 def test_pins_are_drawn_where_they_are_and_only_when_shown(pinned):
     at = pinned.screen(pinned.pin_place(2))
     shown = pinned.screenshot()
-    pinned.space.show_pins = False
+    pinned.state.show_pins = False
     hidden = pinned.screenshot()
     on_canvas = slice(0, round(pinned.editor.canvas[2]))
     changed = np.argwhere((shown != hidden).any(axis=2)[:, on_canvas])
@@ -344,8 +344,8 @@ def test_pins_are_drawn_where_they_are_and_only_when_shown(pinned):
 
 
 def test_the_drawing_is_shown_where_the_camera_says(ui, image):
-    background = ui.screenshot()[int(ui.beside[1]) + 2, int(ui.beside[0]) + 2]
-    ui.space.checker = False
+    background = ui.screenshot()[int(ui.comparison[1]) + 2, int(ui.comparison[0]) + 2]
+    ui.state.checker = False
     shot = ui.screenshot().astype(int)
     inside = ui.screen((70.0, 80.0))
     np.testing.assert_allclose(shot[round(inside[1]), round(inside[0])], [90, 140, 200], atol=1)

@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from akap_editor.app.commands import registry as commands
+from akap_editor.app.commands.registry import registry as commands
 from akap_editor.editor.tools.rotate import RING, ring_pin
-from akap_editor.render.overlays import Heat
+from akap_editor.render.overlays import FaceColors
 from tests.app.canvas.test_pin_markers import at_pin
 
 Key = imgui.Key
@@ -33,7 +33,7 @@ def test_an_alt_drag_of_the_ring_turns_and_holds(pinned):
 
 
 def test_the_ring_is_seen_while_alt_is_held(pinned):
-    shots, places = [], ring_places(pinned, 2, 0)
+    snapshots, places = [], ring_places(pinned, 2, 0)
 
     def look(hand):
         hand.mouse_move_to_pos(imgui.ImVec2(*places[0]))
@@ -46,11 +46,11 @@ def test_the_ring_is_seen_while_alt_is_held(pinned):
         hand.key_up(Key.mod_alt)
 
     def shoot():
-        shots.append((ring_pin(pinned.editor), pinned.window.screenshot()))
+        snapshots.append((ring_pin(pinned.editor), pinned.window.screenshot()))
         pinned.window.after_draw.clear()
 
     pinned.do(look)
-    (no_pin, before), (pin, after) = shots
+    (no_pin, before), (pin, after) = snapshots
     assert (no_pin, pin) == (None, 2)
     assert all((after != before)[round(y), round(x)].any() for x, y in ring_places(pinned, 2, 90, 180, 270))
 
@@ -85,12 +85,12 @@ def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned)
     stiffness = pinned.session.state.stiffness
     assert stiffness.max() == 100.0
     assert len(pinned.pins) == 3
-    assert isinstance(pinned.space.overlays(1.0).heat, Heat)
+    assert isinstance(pinned.state.overlays(1.0).heat, FaceColors)
     tinted = pinned.screenshot()
     x, y = map(round, pinned.screen((140.0, 70.0)))
     assert (tinted[y, x] != plain[y, x]).any()
     pinned.key(Key.p)
-    assert pinned.space.overlays(1.0).heat is None
+    assert pinned.state.overlays(1.0).heat is None
     assert (pinned.screenshot()[y, x] == plain[y, x]).all()
     pinned.key(Key.s)
     pinned.drag(start, end, button=1)

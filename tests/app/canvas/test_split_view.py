@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app.canvas.split_view import halves
-from akap_editor.deform.methods import VARIANTS
+from akap_editor.deform.methods import PRESETS
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Drawing
 from akap_editor.geometry.mesh import TriMesh
@@ -25,7 +25,7 @@ def split(pinned):
 
 def choose(ui, label):
     def click(hand):
-        hand.set_ref("Beside")
+        hand.set_ref("Comparison")
         hand.combo_click(f"##beside/{label}")
 
     ui.do(click)
@@ -35,24 +35,24 @@ def test_menu_cuts_the_canvas_in_two_and_makes_it_whole_again(pinned):
     whole = pinned.editor.canvas
     pinned.menu(*MENU)
     assert pinned.editor.canvas == halves(whole)[0]
-    assert pinned.space.beside.session is not None
+    assert pinned.state.comparison.session is not None
     pinned.menu(*MENU)
     assert pinned.editor.canvas == whole
-    assert pinned.space.beside.session is None
+    assert pinned.state.comparison.session is None
 
 
 def test_a_drag_bends_both_to_the_same_targets(split):
-    beside = split.space.beside
-    assert beside.session.state.settings.method == "arap"
-    assert beside.session.state.targets.tolist() == split.session.state.targets.tolist()
-    assert beside.session.pin_error() < 0.25
-    assert np.abs(beside.session.state.positions - split.session.state.positions).max() > 0.1
+    comparison = split.state.comparison
+    assert comparison.session.state.settings.method == "arap"
+    assert comparison.session.state.targets.tolist() == split.session.state.targets.tolist()
+    assert comparison.session.pin_error() < 0.25
+    assert np.abs(comparison.session.state.positions - split.session.state.positions).max() > 0.1
 
 
 def test_every_method_can_be_seen_beside(split):
-    for variant in VARIANTS:
+    for variant in PRESETS:
         choose(split, variant.label)
-        session = split.space.beside.session
+        session = split.state.comparison.session
         assert session.state.settings.method == variant.method
         assert variant.settings.items() <= dict(session.state.settings.parameters).items()
         assert session.pin_error() < 2.0
@@ -60,12 +60,12 @@ def test_every_method_can_be_seen_beside(split):
 
 def test_right_half_shows_the_second_pose(split):
     """The same picture as the left half shows once both methods are one."""
-    split.space.show_pins = False
+    split.state.show_pins = False
     split.session.begin("Method")
-    split.session.set_settings(split.space.beside.session.state.settings)
+    split.session.set_settings(split.state.comparison.session.state.settings)
     split.session.commit()
     split.session.begin("Step")
-    split.session.set_pose(split.space.beside.session.state.positions)
+    split.session.set_pose(split.state.comparison.session.state.positions)
     split.session.commit()
     picture = split.screenshot().astype(int)
     left, right = halves(
@@ -103,7 +103,7 @@ def test_a_click_on_the_right_adds_no_pin_and_the_wheel_zooms_both(split):
 def test_undo_takes_both_back(split):
     split.menu("Edit", "Undo")
     assert not split.session.posed
-    assert not split.space.beside.session.posed
+    assert not split.state.comparison.session.posed
 
 
 def test_a_drawing_that_the_second_method_refuses_closes_the_half(ui):
@@ -115,9 +115,9 @@ def test_a_drawing_that_the_second_method_refuses_closes_the_half(ui):
     mesh = TriMesh(np.concatenate(rim), faces)
     image = np.full((120, 120, 4), 255, dtype=np.uint8)
     ui.reset(new_document(Drawing(image, mesh, (mesh.vertices / 120).astype(np.float32))))
-    ui.space.beside.spec = "cauchy-green"
+    ui.state.comparison.spec = "cauchy-green"
     ui.menu(*MENU)
-    assert not ui.space.split
-    assert "does not overlap itself" in ui.space.error
-    ui.space.error = ""
+    assert not ui.state.split
+    assert "does not overlap itself" in ui.state.error
+    ui.state.error = ""
     ui.settle()

@@ -64,7 +64,7 @@ def test_slow_places_show():
 
 
 def exported(ui):
-    return ui.space.exporter.render(ui.document.drawing, ui.session.state.positions)
+    return ui.state.exporter.render(ui.document.drawing, ui.session.state.positions)
 
 
 def bend(ui):
@@ -78,21 +78,21 @@ def test_an_overlay_is_seen_and_gone_again_and_never_exported(pinned, name):
     plain = canvas(pinned, pinned.screenshot())
     before = exported(pinned)
     if name == "reference":
-        pinned.space.view.set_reference(np.full((30, 30, 4), (200, 0, 0, 255), dtype=np.uint8))
+        pinned.state.view.set_reference(np.full((30, 30, 4), (200, 0, 0, 255), dtype=np.uint8))
     else:
-        setattr(pinned.space.view, name, "area" if name == "heat" else True)
+        setattr(pinned.state.view, name, "area" if name == "heat" else True)
     shown = canvas(pinned, pinned.screenshot())
     assert (shown != plain).any(axis=2).sum() > 300
     assert (exported(pinned) == before).all()
     if name == "reference":
-        pinned.space.view.show_reference = False
+        pinned.state.view.show_reference = False
     else:
-        setattr(pinned.space.view, name, None if name == "heat" else False)
+        setattr(pinned.state.view, name, None if name == "heat" else False)
     assert (canvas(pinned, pinned.screenshot()) == plain).all()
 
 
 def test_the_fields_are_seen_during_a_drag_only(pinned):
-    pinned.space.view.vectors = True
+    pinned.state.view.vectors = True
     start = pinned.screen(pinned.pin_place(3))
     counts = []
 
@@ -100,33 +100,33 @@ def test_the_fields_are_seen_during_a_drag_only(pinned):
         pinned.begin_drag(hand, start)
         hand.mouse_move_to_pos(imgui.ImVec2(start[0] - 30, start[1] - 100))
         hand.yield_(5)
-        counts.append([len(s.segments) for s in pinned.space.overlays(1.0).strokes])
+        counts.append([len(s.segments) for s in pinned.state.overlays(1.0).strokes])
         hand.mouse_up(0)
 
     pinned.do(actions)
     (rim, blue, green) = counts[0]
     assert rim == blue == green > 30
-    assert pinned.space.overlays(1.0).strokes == ()
+    assert pinned.state.overlays(1.0).strokes == ()
 
 
 def test_a_click_on_the_scale_chooses_another_range(pinned):
-    pinned.space.view.heat = "angle"
+    pinned.state.view.heat = "angle"
     pinned.settle()
-    before = pinned.space.view.heat_range
+    before = pinned.state.view.heat_range
     pinned.do(lambda hand: hand.item_click("//##legend/##range"))
-    assert pinned.space.view.heat_range == (before + 1) % len(RANGES)
+    assert pinned.state.view.heat_range == (before + 1) % len(RANGES)
 
 
 def test_a_reference_picture_is_chosen_by_its_file(pinned, tmp_path, image):
     write_png(tmp_path / "behind.png", image)
-    reference.ask(pinned.space)
+    reference.ask(pinned.state)
     pinned.settle()
     pinned.type_name("Choose reference picture", str(tmp_path / "behind.png"))
-    assert (pinned.space.view.reference.image == image).all()
-    reference.ask(pinned.space)
+    assert (pinned.state.view.reference.image == image).all()
+    reference.ask(pinned.state)
     pinned.settle()
     (tmp_path / "broken.png").write_bytes(b"no picture")
     pinned.type_name("Choose reference picture", str(tmp_path / "broken.png"))
-    assert "broken.png" in pinned.space.error
-    assert (pinned.space.view.reference.image == image).all()
-    pinned.space.error = ""
+    assert "broken.png" in pinned.state.error
+    assert (pinned.state.view.reference.image == image).all()
+    pinned.state.error = ""

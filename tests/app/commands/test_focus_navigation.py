@@ -60,7 +60,7 @@ def test_arrows_move_the_crosshair_on_the_screen(ui):
 @pytest.mark.parametrize("key", [Key.enter, Key.keypad_enter, Key.space])
 def test_these_keys_click_once(ui, key):
     tools = keys(ui, Key.c, key, key, look=lambda: ui.tool)
-    assert tools == ["Crosshair"] * 3
+    assert tools == ["KeyboardPointer"] * 3
     assert len(ui.pins) == 1
     assert ui.editor.request is None, "Enter opens no values meanwhile"
 
@@ -77,19 +77,19 @@ def test_shift_and_alt_mean_what_they_do_with_a_click(pinned):
 
 
 def test_escape_and_the_key_again_leave_it(ui):
-    assert keys(ui, Key.c, Key.escape, Key.c, Key.c, look=lambda: ui.tool) == ["Crosshair", "Idle"] * 2
+    assert keys(ui, Key.c, Key.escape, Key.c, Key.c, look=lambda: ui.tool) == ["KeyboardPointer", "Idle"] * 2
 
 
 def test_it_stays_through_menus_and_palette(ui):
     tools = keys(ui, Key.c, Key.f10, Key.escape, Key.f3, Key.escape, Key.z, look=lambda: ui.tool)
-    assert tools == ["Crosshair"] * 6
+    assert tools == ["KeyboardPointer"] * 6
 
 
 def test_the_mouse_takes_over_where_it_really_moves(ui):
     tools = []
 
     def act(hand):
-        x, y = ui.beside
+        x, y = ui.comparison
         hand.mouse_move_to_pos(imgui.ImVec2(x, y))
         hand.key_press(Key.c)
         for way in (2, 60):
@@ -98,15 +98,15 @@ def test_the_mouse_takes_over_where_it_really_moves(ui):
             tools.append(ui.tool)
 
     ui.do(act)
-    assert tools == ["Crosshair", "Idle"]
+    assert tools == ["KeyboardPointer", "Idle"]
 
 
 def test_it_is_seen(ui):
-    shots = []
-    ui.window.after_draw.append(lambda: shots.append(ui.window.screenshot()))
+    snapshots = []
+    ui.window.after_draw.append(lambda: snapshots.append(ui.window.screenshot()))
     ((x, y),) = keys(ui, Key.c, look=lambda: tuple(map(round, ui.editor.pointer)))
     arm = slice(y - 1, y + 2), slice(x + 15, x + 28)
-    drawn = [(shot[arm] != shots[0][arm]).any(axis=2).mean() for shot in shots]
+    drawn = [(shot[arm] != snapshots[0][arm]).any(axis=2).mean() for shot in snapshots]
     assert max(drawn) > 0.9
 
 
@@ -145,14 +145,14 @@ def test_the_menu_of_a_pin_is_walked_by_keys(pinned):
 @pytest.fixture
 def keyed(pinned):
     """Keyframes at 0 and at 1 second."""
-    player = pinned.space.key_player
-    pinned.space.show_timeline, pinned.space.timeline = True, "keyframes"
+    playback = pinned.state.keyframe_playback
+    pinned.state.show_timeline, pinned.state.timeline = True, "keyframes"
     pinned.settle()
-    player.put(0.0)
+    playback.put(0.0)
     pinned.editor.place_pin(3, (210.0, 50.0))
     pinned.settle()
-    player.put(1.0)
-    player.scrub(0.0)
+    playback.put(1.0)
+    playback.scrub(0.0)
     pinned.editor.select(())
     pinned.settle()
     return pinned
@@ -171,27 +171,27 @@ def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
 
 
 def test_stepping_stops_what_plays(keyed):
-    keyed.space.transport.play()
+    keyed.state.playback.play()
     keys(keyed, Key.page_down)
-    assert not keyed.space.transport.playing
+    assert not keyed.state.playback.playing
 
 
 def test_the_session_is_looked_back_at_by_keys(pinned):
-    pinned.space.show_timeline = True
+    pinned.state.show_timeline = True
     pinned.editor.place_pin(3, (210.0, 50.0))
     pinned.settle()
-    player = pinned.space.player
+    playback = pinned.state.session_playback
     keys(pinned, Key.home)
-    assert player.at == 0.0
+    assert playback.at == 0.0
     assert pinned.session.visiting
     keys(pinned, Key.end)
-    assert player.at is None
+    assert playback.at is None
 
 
 def test_keys_that_walk_a_panel_move_no_time(keyed):
-    keyed.space.key_player.scrub(0.5)
+    keyed.state.keyframe_playback.scrub(0.5)
     keys(keyed, Key.tab, Key.page_down, Key.end, Key.home)
-    assert keyed.space.key_player.at == 0.5
+    assert keyed.state.keyframe_playback.at == 0.5
 
 
 # -- around the canvas --------------------------------------------------------------------------------------
@@ -203,10 +203,10 @@ def pane():
 
 
 def test_f6_goes_to_every_pane_and_back_to_the_canvas(keyed):
-    keyed.space.split, keyed.space.first_steps = True, True
-    keyed.space.view.heat = "area"
+    keyed.state.split, keyed.state.first_steps = True, True
+    keyed.state.view.heat = "area"
     keyed.settle()
-    panes = ["Panel", "Tools", "Timeline", "Beside", "##legend", "First steps", ""]
+    panes = ["Panel", "Tools", "Timeline", "Comparison", "##legend", "First steps", ""]
     assert keys(keyed, *[Key.f6] * 7, look=pane) == panes
     assert keys(keyed, *[SHIFT | Key.f6] * 7, look=pane) == [*panes[-2::-1], ""]
 
@@ -216,29 +216,29 @@ def test_f6_stops_nowhere_else(ui):
 
 
 def test_the_second_method_is_chosen_by_keys(pinned):
-    pinned.space.split = True
+    pinned.state.split = True
     pinned.settle()
-    before = pinned.space.beside.spec
+    before = pinned.state.comparison.spec
     keys(pinned, *[Key.f6] * 3, Key.space, Key.down_arrow, Key.space)
-    assert pinned.space.beside.spec != before
+    assert pinned.state.comparison.spec != before
 
 
 def test_the_range_of_the_scale_is_chosen_by_keys(ui):
-    ui.space.view.heat = "area"
+    ui.state.view.heat = "area"
     ui.settle()
     keys(ui, Key.r)
-    assert RANGES[ui.space.view.heat_range] == 2.0
+    assert RANGES[ui.state.view.heat_range] == 2.0
     keys(ui, *[Key.f6] * 3, Key.space)
-    assert RANGES[ui.space.view.heat_range] == 4.0
+    assert RANGES[ui.state.view.heat_range] == 4.0
     walk_to(ui, "##range", Key.space, Key.up_arrow, Key.space)
-    assert RANGES[ui.space.view.heat_range] == 2.0
+    assert RANGES[ui.state.view.heat_range] == 2.0
 
 
 def test_first_steps_are_put_away_by_keys(ui):
-    ui.space.first_steps = True
+    ui.state.first_steps = True
     ui.settle()
     keys(ui, *[Key.f6] * 3, Key.space)
-    assert not ui.space.first_steps
+    assert not ui.state.first_steps
 
 
 def test_lists_of_the_panel_are_walked_into(pinned):

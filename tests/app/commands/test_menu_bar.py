@@ -52,12 +52,12 @@ def test_arrows_walk_through_all_menus(pinned):
 
 
 def test_a_command_is_run_from_a_menu_by_keys(pinned):
-    assert not pinned.space.show_mesh
-    place = [item.label for item in dict(MENUS)["View"] if item is not None and item.enabled(pinned.space)]
+    assert not pinned.state.show_mesh
+    place = [item.label for item in dict(MENUS)["View"] if item is not None and item.enabled(pinned.state)]
     down = [Key.down_arrow] * place.index("Show Mesh")
     seen = after_each(pinned, ALT | Key.v, *down, Key.enter)
     assert seen[-2:] == [["View"], []]
-    assert pinned.space.show_mesh
+    assert pinned.state.show_mesh
 
 
 def test_arrows_in_a_menu_of_files_stay_there(pinned):
@@ -69,7 +69,7 @@ def test_arrows_in_a_menu_of_files_stay_there(pinned):
 
 
 def test_while_a_name_is_typed_alt_opens_nothing(pinned):
-    pinned.space.ask_open()
+    pinned.state.ask_open()
     pinned.settle()
     (menus,) = after_each(pinned, Key.f10)
     assert menus == ["Open picture or drawing"]
@@ -113,7 +113,7 @@ def test_the_places_are_those_of_the_letters():
 
 
 def test_without_a_query_all_is_listed_in_the_order_of_the_menus(pinned):
-    found = entries(pinned.space)
+    found = entries(pinned.state)
     listed = [entry for entry, _ in ranked(" ", found)]
     assert len(listed) == len(found)
     assert [e for e in listed if e.enabled] == [e for e in found if e.enabled]
@@ -122,7 +122,7 @@ def test_without_a_query_all_is_listed_in_the_order_of_the_menus(pinned):
 
 
 def test_every_command_is_in_the_palette_with_its_key(pinned):
-    found = {entry.label: entry for entry in entries(pinned.space)}
+    found = {entry.label: entry for entry in entries(pinned.state)}
     for command in COMMANDS:
         assert found[command.label.rstrip(".")].key == command.key_name
     assert "Open Bundled Drawing: Cat" in found
@@ -147,17 +147,17 @@ def type_into_palette(ui, chord, text, *keys):
 @pytest.mark.parametrize("chord", [CTRL | Key.k, Key.f3])
 def test_a_command_is_found_and_run(pinned, chord):
     type_into_palette(pinned, chord, "shmesh", Key.enter)
-    assert pinned.space.palette is None
-    assert pinned.space.show_mesh
+    assert pinned.state.palette is None
+    assert pinned.state.show_mesh
     pinned.key(Key.m)
-    assert not pinned.space.show_mesh, "the keys are the canvas' again"
+    assert not pinned.state.show_mesh, "the keys are the canvas' again"
 
 
 def test_arrows_choose_another_line(pinned):
-    lines = [entry.label for entry, _ in ranked("sel", entries(pinned.space))]
+    lines = [entry.label for entry, _ in ranked("sel", entries(pinned.state))]
     pinned.editor.select({2})
     assert lines.index("Select All Pins") == 0
-    lines = [entry.label for entry, _ in ranked("sel", entries(pinned.space))]
+    lines = [entry.label for entry, _ in ranked("sel", entries(pinned.state))]
     wanted = lines.index("Remove Selected Pins")
     assert 0 < wanted < len(lines) - 1
     keys = (Key.up_arrow, *[Key.down_arrow] * (wanted + 1), Key.up_arrow)
@@ -168,16 +168,16 @@ def test_arrows_choose_another_line(pinned):
 def test_escape_and_a_click_beside_it_close_it_and_run_nothing(pinned):
     before = pinned.document
     type_into_palette(pinned, Key.f3, "reset", Key.escape)
-    assert pinned.space.palette is None
+    assert pinned.state.palette is None
 
     def click_beside(hand):
         hand.key_press(Key.f3)
         hand.yield_(3)
-        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.beside))
+        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.comparison))
         hand.mouse_click(0)
 
     pinned.do(click_beside)
-    assert pinned.space.palette is None
+    assert pinned.state.palette is None
     assert pinned.document is before
 
 
@@ -191,7 +191,7 @@ def test_what_makes_no_sense_now_is_listed_but_not_run(pinned):
         hand.yield_(2)
         hand.key_press(Key.enter)
         hand.yield_(2)
-        still_open.append(pinned.space.palette is not None)
+        still_open.append(pinned.state.palette is not None)
 
     pinned.do(act)
     assert still_open == [True]
@@ -201,8 +201,8 @@ def test_what_makes_no_sense_now_is_listed_but_not_run(pinned):
 def test_no_query_breaks_it(pinned):
     for query in ("zzzz", "\\", "%s", "ÄÖ", "a" * 300, " ", "##"):
         type_into_palette(pinned, Key.f3, query, Key.down_arrow, Key.page_down, Key.page_up, Key.escape)
-        assert pinned.space.palette is None
-        assert not pinned.space.error
+        assert pinned.state.palette is None
+        assert not pinned.state.error
 
 
 def test_a_drawing_is_opened_by_its_name(pinned):

@@ -7,12 +7,12 @@ import pytest
 
 from akap_editor.app import glfw_key_order as key_order
 from akap_editor.app.canvas.view_options import RANGES
-from akap_editor.app.commands import registry as commands
 from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
 from akap_editor.app.commands.registry import COMMANDS, MENUS
-from akap_editor.app.panels import side_panel as panels
+from akap_editor.app.commands.registry import registry as commands
+from akap_editor.app.panels.side_panel import side_panel as panels
 from akap_editor.deform.deformer import method_names
-from akap_editor.deform.methods import VARIANTS, variant_of
+from akap_editor.deform.methods import PRESETS, preset_of
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.events import PinRequest
 from akap_editor.editor.tools.stiffness_brush import Brush
@@ -63,7 +63,7 @@ def moved_camera(ui):
 def watch_palette(ui):
     """Test Engine closes popups at the end of its tests, so each frame is looked at."""
     ui.palettes = []
-    ui.window.after_draw[:] = [lambda: ui.palettes.append(ui.space.palette)]
+    ui.window.after_draw[:] = [lambda: ui.palettes.append(ui.state.palette)]
 
 
 def is_rest(ui):
@@ -82,43 +82,43 @@ def zoom_is(factor):
 
 def keyed(ui):
     """Two keyframes, at 0 and at 1 second, the second one chosen."""
-    player = ui.space.key_player
-    ui.space.show_timeline, ui.space.timeline = True, "keyframes"
+    playback = ui.state.keyframe_playback
+    ui.state.show_timeline, ui.state.timeline = True, "keyframes"
     ui.settle()
-    player.put(0.0)
+    playback.put(0.0)
     bend(ui)
-    player.put(1.0)
-    player.scrub(1.0)
-    player.chosen = frozenset({1.0})
+    playback.put(1.0)
+    playback.scrub(1.0)
+    playback.chosen = frozenset({1.0})
     ui.settle()
 
 
 def looking_between(ui):
     keyed(ui)
-    ui.space.key_player.scrub(0.5)
+    ui.state.keyframe_playback.scrub(0.5)
 
 
 def once_keyed(ui):
     """Playing takes a tenth of a second, and then the range is over."""
     keyed(ui)
-    ui.space.key_player.loop = False
-    ui.space.key_player.cut_to(0.1, 0.2)
+    ui.state.keyframe_playback.loop = False
+    ui.state.keyframe_playback.cut_to(0.1, 0.2)
 
 
 def looked_at(ui):
     """Three seconds, the first and the last one cut off, looked at after a half second of the rest."""
     keyed(ui)
-    ui.space.key_player.put(3.0)
-    ui.space.key_player.cut_to(1.0, 2.5)
-    ui.space.key_player.scrub(1.5)
+    ui.state.keyframe_playback.put(3.0)
+    ui.state.keyframe_playback.cut_to(1.0, 2.5)
+    ui.state.keyframe_playback.scrub(1.5)
 
 
 def look_is(moment):
-    return lambda ui: ui.space.key_player.at == pytest.approx(moment)
+    return lambda ui: ui.state.keyframe_playback.at == pytest.approx(moment)
 
 
 def range_is(start, end):
-    return lambda ui: ui.space.key_player.range == pytest.approx((start, end))
+    return lambda ui: ui.state.keyframe_playback.range == pytest.approx((start, end))
 
 
 def watch_requests(ui):
@@ -160,13 +160,13 @@ CASES = {
     "Start Range Here": (looked_at, range_is(1.5, 2.5)),
     "End Range Here": (looked_at, range_is(1.0, 1.5)),
     "Range Is Everything": (looked_at, range_is(0.0, 3.0)),
-    "Zoom into Timeline": (keyed, lambda ui: ui.space.key_player.view.zoomed),
+    "Zoom into Timeline": (keyed, lambda ui: ui.state.keyframe_playback.view.zoomed),
     "Zoom out of Timeline": (
-        lambda ui: [keyed(ui), ui.space.key_player.view.zoom(1.4, 0.0)],
-        lambda ui: not ui.space.key_player.view.zoomed,
+        lambda ui: [keyed(ui), ui.state.keyframe_playback.view.zoom(1.4, 0.0)],
+        lambda ui: not ui.state.keyframe_playback.view.zoomed,
     ),
-    "Select All Keyframes": (keyed, lambda ui: ui.space.key_player.chosen == {0.0, 1.0}),
-    "Crosshair": (watch_tools, lambda ui: "Crosshair" in ui.tools),
+    "Select All Keyframes": (keyed, lambda ui: ui.state.keyframe_playback.chosen == {0.0, 1.0}),
+    "Crosshair": (watch_tools, lambda ui: "KeyboardPointer" in ui.tools),
     "Next Pin": (one_selected, lambda ui: ui.editor.selection == {3}),
     "Previous Pin": (one_selected, lambda ui: ui.editor.selection == {1}),
     "Pin Values...": (watch_requests, asked_for("values")),
@@ -176,29 +176,29 @@ CASES = {
     "Look Up": (moved_camera, looks(0, -1)),
     "Look Down": (moved_camera, looks(0, 1)),
     "Next Range of Distortion": (
-        lambda ui: setattr(ui.space.view, "heat", "area"),
-        lambda ui: RANGES[ui.space.view.heat_range] == 2.0,
+        lambda ui: setattr(ui.state.view, "heat", "area"),
+        lambda ui: RANGES[ui.state.view.heat_range] == 2.0,
     ),
-    "Play": (once_keyed, lambda ui: ui.space.key_player.at == 0.2),
-    "Export Animation...": (keyed, lambda ui: ui.space.animating),
+    "Play": (once_keyed, lambda ui: ui.state.keyframe_playback.at == 0.2),
+    "Export Animation...": (keyed, lambda ui: ui.state.animating),
     "Keyframe Here": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
     "Remove Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
     "Duplicate Keyframe": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5)),
-    "Next Keyframe": (looking_between, lambda ui: ui.space.key_player.at == 1.0),
-    "Previous Keyframe": (looking_between, lambda ui: ui.space.key_player.at == 0.0),
+    "Next Keyframe": (looking_between, lambda ui: ui.state.keyframe_playback.at == 1.0),
+    "Previous Keyframe": (looking_between, lambda ui: ui.state.keyframe_playback.at == 0.0),
     "Move Keyframe Earlier": (keyed, lambda ui: times(ui) == (0.0, 0.95)),
     "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
-    "Onion Skin": (keyed, lambda ui: ui.space.key_player.onion.shown),
-    "Open...": (nothing, lambda ui: ui.space.request is not None and not ui.space.request.saving),
+    "Onion Skin": (keyed, lambda ui: ui.state.keyframe_playback.onion.shown),
+    "Open...": (nothing, lambda ui: ui.state.request is not None and not ui.state.request.saving),
     "Cut Out with Mask...": (
         nothing,
-        lambda ui: ui.space.request is not None and not ui.space.request.saving,
+        lambda ui: ui.state.request is not None and not ui.state.request.saving,
     ),
-    "Save": (bent, lambda ui: ui.space.request is not None and ui.space.request.saving),
-    "Save As...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
-    "Export...": (nothing, lambda ui: ui.space.export.shown),
-    "Close": (nothing, lambda ui: ui.space.document is None),
-    "Quit": (nothing, lambda ui: ui.space.closing),
+    "Save": (bent, lambda ui: ui.state.request is not None and ui.state.request.saving),
+    "Save As...": (nothing, lambda ui: ui.state.request is not None and ui.state.request.saving),
+    "Export...": (nothing, lambda ui: ui.state.export.shown),
+    "Close": (nothing, lambda ui: ui.state.document is None),
+    "Quit": (nothing, lambda ui: ui.state.closing),
     "Undo": (bent, is_rest),
     "Redo": (undone, lambda ui: ui.session.posed),
     "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
@@ -211,7 +211,7 @@ CASES = {
     "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.posed and ui.editor.modified),
     "Remember the Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
     "Default Parameters": (
-        lambda ui: ui.space.change_settings(
+        lambda ui: ui.state.change_settings(
             ui.session.state.settings.with_parameter("memory", 0.25).with_parameter("exact", True)
         ),
         lambda ui: (
@@ -222,30 +222,30 @@ CASES = {
     "100 %": (moved_camera, lambda ui: ui.editor.camera.zoom == pytest.approx(1.0)),
     "Zoom In": (moved_camera, zoom_is(1.25)),
     "Zoom Out": (moved_camera, zoom_is(0.8)),
-    "Show Mesh": (nothing, lambda ui: ui.space.show_mesh),
-    "Show Pins": (nothing, lambda ui: not ui.space.show_pins),
-    "Checkerboard": (nothing, lambda ui: not ui.space.checker),
-    "Vector Field of the Drag": (nothing, lambda ui: ui.space.view.vectors),
-    "Distortion of Areas": (nothing, lambda ui: ui.space.view.heat == "area"),
+    "Show Mesh": (nothing, lambda ui: ui.state.show_mesh),
+    "Show Pins": (nothing, lambda ui: not ui.state.show_pins),
+    "Checkerboard": (nothing, lambda ui: not ui.state.checker),
+    "Vector Field of the Drag": (nothing, lambda ui: ui.state.view.vectors),
+    "Distortion of Areas": (nothing, lambda ui: ui.state.view.heat == "area"),
     "Distortion of Angles": (
-        lambda ui: setattr(ui.space.view, "heat", "area"),
-        lambda ui: ui.space.view.heat == "angle",
+        lambda ui: setattr(ui.state.view, "heat", "area"),
+        lambda ui: ui.state.view.heat == "angle",
     ),
-    "Rest Pose": (nothing, lambda ui: ui.space.view.ghost),
-    "Pin Trails": (nothing, lambda ui: ui.space.view.trails),
-    "Reference Picture...": (nothing, lambda ui: ui.space.request is not None),
+    "Rest Pose": (nothing, lambda ui: ui.state.view.ghost),
+    "Pin Trails": (nothing, lambda ui: ui.state.view.trails),
+    "Reference Picture...": (nothing, lambda ui: ui.state.request is not None),
     "Show Reference Picture": (
-        lambda ui: ui.space.view.set_reference(ui.document.drawing.image),
-        lambda ui: not ui.space.view.show_reference,
+        lambda ui: ui.state.view.set_reference(ui.document.drawing.image),
+        lambda ui: not ui.state.view.show_reference,
     ),
-    "Save Pose...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
-    "Apply Pose...": (nothing, lambda ui: ui.space.request is not None and not ui.space.request.saving),
-    "Save Recording...": (nothing, lambda ui: ui.space.request is not None and ui.space.request.saving),
-    "Two Methods Side by Side": (nothing, lambda ui: ui.space.split),
-    "Timeline": (nothing, lambda ui: ui.space.show_timeline),
+    "Save Pose...": (nothing, lambda ui: ui.state.request is not None and ui.state.request.saving),
+    "Apply Pose...": (nothing, lambda ui: ui.state.request is not None and not ui.state.request.saving),
+    "Save Recording...": (nothing, lambda ui: ui.state.request is not None and ui.state.request.saving),
+    "Two Methods Side by Side": (nothing, lambda ui: ui.state.split),
+    "Timeline": (nothing, lambda ui: ui.state.show_timeline),
     "Find Command...": (watch_palette, lambda ui: any(ui.palettes)),
-    "Keys and Mouse": (nothing, lambda ui: ui.space.keys),
-    "About akap-editor": (nothing, lambda ui: ui.space.about),
+    "Keys and Mouse": (nothing, lambda ui: ui.state.keys),
+    "About akap-editor": (nothing, lambda ui: ui.state.about),
     "Pins": (with_tool("hand"), lambda ui: ui.editor.chosen_tool == "pins"),
     "Move Canvas": (nothing, lambda ui: ui.editor.chosen_tool == "hand"),
     "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool == "brush"),
@@ -274,7 +274,7 @@ def check(ui, command, run):
     assert not holds(ui), "the law must not hold before"
     run()
     assert holds(ui)
-    assert not ui.space.error
+    assert not ui.state.error
 
 
 @pytest.mark.parametrize(("menu", "command"), ITEMS, ids=[command.label for _, command in ITEMS])
@@ -326,9 +326,9 @@ def test_chord_name(chord, name):
     assert chord_name(chord) == name
 
 
-@pytest.mark.parametrize("command", [commands.UNDO, commands.REDO, commands.REMOVE, commands.RESET])
+@pytest.mark.parametrize("command", [commands.UNDO, commands.REDO, commands.REMOVE, commands.RESET_POSE])
 def test_commands_that_have_nothing_to_do_are_disabled(pinned, command):
-    assert not command.enabled(pinned.space)
+    assert not command.enabled(pinned.state)
     revision = pinned.document.revision
     pinned.key(*command.chords)
     assert pinned.document.revision == revision
@@ -357,7 +357,7 @@ def test_a_shortcut_within_one_frame_is_not_its_key_alone(pinned):
     io.add_key_event(Key.d, False)
     pinned.settle()
     assert not pinned.editor.selection
-    assert pinned.space.overlays(1.0).heat is None
+    assert pinned.state.overlays(1.0).heat is None
     assert not io.key_ctrl
 
 
@@ -367,7 +367,7 @@ def test_space_presses_no_button_that_was_clicked_before(pinned):
     camera = pinned.editor.camera
     pinned.drag(start, (start[0] + 30, start[1]), held=Key.space)
     assert pinned.editor.camera != camera
-    assert pinned.space.show_mesh
+    assert pinned.state.show_mesh
 
 
 def test_keys_do_nothing_while_a_name_is_typed(pinned):
@@ -375,11 +375,11 @@ def test_keys_do_nothing_while_a_name_is_typed(pinned):
     pinned.key(CTRL | Key.o)
     pinned.type_name("Open picture or drawing", "mfb", enter=False)
     pinned.key(Key.delete)
-    assert pinned.space.request.name == "mfb"
-    assert not pinned.space.show_mesh
+    assert pinned.state.request.name == "mfb"
+    assert not pinned.state.show_mesh
     assert len(pinned.pins) == 3
     pinned.key(Key.escape)
-    assert pinned.space.request is None
+    assert pinned.state.request is None
 
 
 # -- side panel ---------------------------------------------------------------------------------------------
@@ -389,14 +389,14 @@ def test_keys_do_nothing_while_a_name_is_typed(pinned):
     ("label", "name"), [("Mesh", "show_mesh"), ("Pins", "show_pins"), ("Checkerboard", "checker")]
 )
 def test_view_switches(pinned, label, name):
-    before = getattr(pinned.space, name)
+    before = getattr(pinned.state, name)
     picture = pinned.screenshot()
     pinned.panel(label)
-    assert getattr(pinned.space, name) != before
+    assert getattr(pinned.state, name) != before
     left, top, right, bottom = map(round, pinned.editor.canvas)
     assert (pinned.screenshot() != picture)[top:bottom, left:right].any()
     pinned.panel(label)
-    assert getattr(pinned.space, name) == before
+    assert getattr(pinned.state, name) == before
     assert not pinned.editor.modified
 
 
@@ -450,17 +450,17 @@ def test_the_pin_list_selects(pinned):
     ],
 )
 def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd, error, message):
-    def fail(space, scale):
+    def fail(state, scale):
         raise error
 
     with monkeypatch.context() as patch:
         patch.setattr(panels, "SECTIONS", (*panels.SECTIONS, panels.Section("Broken", fail)))
         pinned.frame()
-        assert pinned.space.error == message
+        assert pinned.state.error == message
     assert ("Traceback" in capfd.readouterr().err) == isinstance(error, KeyError)
     pinned.settle()
     pinned.dialog("That did not work", "OK")
-    assert not pinned.space.error
+    assert not pinned.state.error
     bend(pinned)
     pinned.menu("Edit", "Undo")
     assert not pinned.session.posed
@@ -476,12 +476,12 @@ def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd
 @pytest.mark.parametrize("close", ["Close", "escape", "enter"])
 def test_help_opens_and_closes(pinned, label, name, title, close):
     pinned.menu("Help", label)
-    assert getattr(pinned.space, name)
+    assert getattr(pinned.state, name)
     if close == "Close":
         pinned.dialog(title, "Close")
     else:
         pinned.key(Key.escape if close == "escape" else Key.enter)
-    assert not getattr(pinned.space, name)
+    assert not getattr(pinned.state, name)
     pinned.click(pinned.screen((100.0, 80.0)))
     assert len(pinned.pins) == 4, "the canvas is free again"
 
@@ -490,10 +490,10 @@ def test_help_opens_and_closes(pinned, label, name, title, close):
 
 
 def test_every_method_can_be_chosen():
-    assert {variant.method for variant in VARIANTS} == set(method_names())
+    assert {variant.method for variant in PRESETS} == set(method_names())
 
 
-@pytest.mark.parametrize("variant", [each for each in VARIANTS if each.settings], ids=lambda each: each.spec)
+@pytest.mark.parametrize("variant", [each for each in PRESETS if each.settings], ids=lambda each: each.spec)
 def test_a_variant_is_chosen_and_keeps_its_memory(pinned, variant):
     def choose(hand):
         hand.set_ref("Panel")
@@ -504,7 +504,7 @@ def test_a_variant_is_chosen_and_keeps_its_memory(pinned, variant):
     assert settings.method == variant.method
     memory = {"memory": 1.0} if variant.method == "akap" else {}
     assert dict(settings.parameters) == {**variant.settings, **memory}
-    assert variant_of(settings.method, dict(settings.parameters)) is variant
+    assert preset_of(settings.method, dict(settings.parameters)) is variant
 
 
 def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):

@@ -10,8 +10,8 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
-from akap_editor.app.dialogs import animating
-from akap_editor.app.dialogs.animating import FORMATS, Choice, remember, remembered
+from akap_editor.app.dialogs.animating import FORMATS, AnimationExportOptions, remember, remembered
+from akap_editor.app.dialogs.dialogs import animating
 from akap_editor.app.preferences import Preferences
 from akap_editor.errors import InputError
 from akap_editor.io.animation.animated_images import _ENCODERS
@@ -23,13 +23,13 @@ TITLE = "Export animation"
 @pytest.fixture
 def keyed(pinned):
     """Keyframes at 0 and 0.4 seconds."""
-    space = pinned.space
-    space.show_timeline, space.timeline = True, "keyframes"
+    state = pinned.state
+    state.show_timeline, state.timeline = True, "keyframes"
     pinned.settle()
-    space.key_player.put(0.0)
+    state.keyframe_playback.put(0.0)
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0] - 20, start[1] - 80))
-    space.key_player.put(0.4)
+    state.keyframe_playback.put(0.4)
     pinned.settle()
     return pinned
 
@@ -42,24 +42,24 @@ def frames_of(path):
 
 
 def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
-    keyed.space.folder = tmp_path
+    keyed.state.folder = tmp_path
     keyed.key(imgui.Key.mod_ctrl | imgui.Key.mod_shift | imgui.Key.e)
     keyed.dialog(TITLE, "**/APNG", "**/60", "Export...")
     keyed.type_name(TITLE, "wave")
     keyed.settle()
-    assert not keyed.space.error
-    assert keyed.space.notice == "Exported wave.apng, 25 frames, at 60 frames per second"
+    assert not keyed.state.error
+    assert keyed.state.notice == "Exported wave.apng, 25 frames, at 60 frames per second"
     frames = list(frames_of(tmp_path / "wave.apng"))
     assert len(frames) == 25
     assert all((one != other).any() for one, other in pairwise(frames))
-    assert remembered(keyed.space).format == "APNG"
-    assert remembered(keyed.space).fps == 60
+    assert remembered(keyed.state).format == "APNG"
+    assert remembered(keyed.state).fps == 60
 
 
 def test_asking_does_not_change_what_is_seen(keyed):
-    keyed.space.key_player.leave()
+    keyed.state.keyframe_playback.leave()
     before = keyed.session.state
-    animating.ask(keyed.space)
+    animating.ask(keyed.state)
     keyed.dialog(TITLE, "Cancel")
     assert keyed.session.state is before
     assert not keyed.session.visiting
@@ -69,11 +69,14 @@ def test_asking_does_not_change_what_is_seen(keyed):
 def test_every_format_is_written(keyed, tmp_path, kind):
     if kind.suffix in (".mp4", ".webm"):
         pytest.importorskip("av")
-    remember(keyed.space, Choice(kind.label, fps=10, size=60, speed=2.0, ease="in-out", ping_pong=True))
-    animating.export(keyed.space, tmp_path / f"out{kind.suffix}")
+    remember(
+        keyed.state,
+        AnimationExportOptions(kind.label, fps=10, size=60, speed=2.0, ease="in-out", ping_pong=True),
+    )
+    animating.export(keyed.state, tmp_path / f"out{kind.suffix}")
     keyed.settle()
-    assert not keyed.space.error
-    assert "4 frames" in keyed.space.notice
+    assert not keyed.state.error
+    assert "4 frames" in keyed.state.notice
     if kind.sheet:
         index = json.loads((tmp_path / "out.json").read_text())
         assert len(index["frames"]) == 4
@@ -84,38 +87,43 @@ def test_every_format_is_written(keyed, tmp_path, kind):
 
 
 def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
-    space = keyed.space
-    space.show_in_timeline("session")
-    shots = space.player.shots
+    state = keyed.state
+    state.show_in_timeline("session")
+    snapshots = state.session_playback.snapshots
     index = next(
         k
-        for k in range(1, len(shots))
-        if shots[k].jumps == shots[k - 1].jumps
-        and (shots[k].state.positions != shots[k - 1].state.positions).any()
+        for k in range(1, len(snapshots))
+        if snapshots[k].jumps == snapshots[k - 1].jumps
+        and (snapshots[k].state.positions != snapshots[k - 1].state.positions).any()
     )
-    before, after = shots[index - 1].state.positions, shots[index].state.positions
-    start = max(shots[index - 1].time, shots[index].time - 0.25)
-    middle = animating.frame_at(space, 0.5 * (start + shots[index].time)).pose
+    before, after = snapshots[index - 1].state.positions, snapshots[index].state.positions
+    start = max(snapshots[index - 1].time, snapshots[index].time - 0.25)
+    middle = animating.frame_at(state, 0.5 * (start + snapshots[index].time)).pose
     assert (middle != before).any()
     assert (middle != after).any()
     assert np.abs(middle - 0.5 * (before + after)).max() < 0.2 * np.abs(after - before).max()
 
 
 def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
-    player = keyed.space.key_player
-    player.put(0.8, player.animation.keys[0].positions)
-    for choice, count in ((Choice("APNG", fps=10), 8), (Choice("APNG", fps=10, loop=False), 9)):
-        remember(keyed.space, choice)
-        animating.export(keyed.space, tmp_path / "out.apng")
+    playback = keyed.state.keyframe_playback
+    playback.put(0.8, playback.animation.keys[0].positions)
+    for choice, count in (
+        (AnimationExportOptions("APNG", fps=10), 8),
+        (AnimationExportOptions("APNG", fps=10, loop=False), 9),
+    ):
+        remember(keyed.state, choice)
+        animating.export(keyed.state, tmp_path / "out.apng")
         keyed.settle()
-        assert f"{count} frames" in keyed.space.notice
-    player.cut_to(end=0.4)
-    assert len(animating.chosen_times(keyed.space, Choice("APNG", fps=10))) == 5
+        assert f"{count} frames" in keyed.state.notice
+    playback.cut_to(end=0.4)
+    assert len(animating.chosen_times(keyed.state, AnimationExportOptions("APNG", fps=10))) == 5
 
 
 def test_background_and_size(keyed, tmp_path):
-    remember(keyed.space, Choice("APNG", fps=5, size=40, opaque=True, background=(1.0, 0.0, 0.0)))
-    animating.export(keyed.space, tmp_path / "out.apng")
+    remember(
+        keyed.state, AnimationExportOptions("APNG", fps=5, size=40, opaque=True, background=(1.0, 0.0, 0.0))
+    )
+    animating.export(keyed.state, tmp_path / "out.apng")
     keyed.settle()
     first, *_ = frames_of(tmp_path / "out.apng")
     assert max(first.shape[:2]) == 40
@@ -124,13 +132,13 @@ def test_background_and_size(keyed, tmp_path):
 
 def test_an_export_is_cancelled_and_leaves_no_file(keyed, tmp_path, monkeypatch):
     monkeypatch.setattr("akap_editor.app.jobs.task.Task.advance", one_step)
-    animating.export(keyed.space, tmp_path / "out.webp")
+    animating.export(keyed.state, tmp_path / "out.webp")
     for _ in range(8):
         keyed.frame()
-    assert keyed.space.task is not None
+    assert keyed.state.task is not None
     keyed.dialog("Exporting out.webp", "Cancel")
-    assert keyed.space.task is None
-    assert "cancelled" in keyed.space.notice
+    assert keyed.state.task is None
+    assert "cancelled" in keyed.state.notice
     assert list(tmp_path.iterdir()) == []
 
 
@@ -143,11 +151,11 @@ def test_an_export_is_cancelled_while_all_of_it_is_encoded(keyed, tmp_path, monk
         return b"late"
 
     monkeypatch.setitem(_ENCODERS, ".webp", (slow, 16383))
-    animating.export(keyed.space, tmp_path / "out.webp")
-    while not at_work.is_set() or not keyed.space.task.progress.text.startswith("Writing"):
+    animating.export(keyed.state, tmp_path / "out.webp")
+    while not at_work.is_set() or not keyed.state.task.progress.text.startswith("Writing"):
         keyed.frame()
     keyed.dialog("Exporting out.webp", "Cancel")
-    assert keyed.space.task is None
+    assert keyed.state.task is None
     go_on.set()
     for thread in enumerate_threads():
         if thread.name.startswith("encoder"):
@@ -159,19 +167,19 @@ def test_where_a_picture_cannot_be_drawn_the_export_ends_with_one_sentence(keyed
     def fails(*_):
         raise InputError("no memory for a picture")
 
-    monkeypatch.setattr(keyed.space.exporter, "render", fails)
-    animating.export(keyed.space, tmp_path / "out.webp")
+    monkeypatch.setattr(keyed.state.exporter, "render", fails)
+    animating.export(keyed.state, tmp_path / "out.webp")
     keyed.settle()
-    assert keyed.space.error == "no memory for a picture"
-    assert keyed.space.task is None
+    assert keyed.state.error == "no memory for a picture"
+    assert keyed.state.task is None
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_that_is_not_there_is_one_sentence(keyed, tmp_path):
-    animating.export(keyed.space, tmp_path / "no" / "such" / "out.webp")
+    animating.export(keyed.state, tmp_path / "no" / "such" / "out.webp")
     keyed.settle()
-    assert "out.webp" in keyed.space.error
-    assert keyed.space.task is None
+    assert "out.webp" in keyed.state.error
+    assert keyed.state.task is None
 
 
 @pytest.mark.parametrize(
@@ -182,11 +190,11 @@ def test_a_folder_that_is_not_there_is_one_sentence(keyed, tmp_path):
     ],
 )
 def test_preferences_that_make_no_sense_are_as_at_first(keyed, values):
-    keyed.space.preferences = Preferences()
-    keyed.space.preferences.put(animating.REMEMBERED, values)
-    assert remembered(keyed.space) == Choice()
+    keyed.state.preferences = Preferences()
+    keyed.state.preferences.put(animating.REMEMBERED, values)
+    assert remembered(keyed.state) == AnimationExportOptions()
 
 
 def test_numbers_are_kept_in_their_limits(keyed):
-    keyed.space.preferences.put(animating.REMEMBERED, {"fps": 1e9, "size": -4, "speed": 0})
-    assert remembered(keyed.space) == Choice(fps=120.0, size=16, speed=0.01)
+    keyed.state.preferences.put(animating.REMEMBERED, {"fps": 1e9, "size": -4, "speed": 0})
+    assert remembered(keyed.state) == AnimationExportOptions(fps=120.0, size=16, speed=0.01)

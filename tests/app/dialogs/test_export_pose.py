@@ -19,7 +19,7 @@ def bent(pinned, tmp_path):
     """Three pins, one of them dragged; dialogs begin in an empty folder."""
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0], start[1] - 120))
-    pinned.space.folder = tmp_path
+    pinned.state.folder = tmp_path
     return pinned
 
 
@@ -31,10 +31,10 @@ def expected_picture(ui, crop="none", scale=1.0, background=None):
 
 def export_as(ui, name):
     ui.dialog(EXPORT, "Export...")
-    assert not ui.space.export.shown
+    assert not ui.state.export.shown
     ui.type_name(FILE, name)
     ui.settle()
-    assert not ui.space.waiting
+    assert not ui.state.waiting
 
 
 def option(label):
@@ -43,14 +43,14 @@ def option(label):
 
 def test_enter_twice_writes_the_picture_as_it_is_seen(bent, tmp_path):
     bent.key(CTRL | Key.e)
-    assert bent.space.export.shown
+    assert bent.state.export.shown
     bent.key(Key.enter)
-    assert bent.space.request.name == "figure-posed.png"
+    assert bent.state.request.name == "figure-posed.png"
     bent.key(Key.enter)
     bent.settle()
     expected = expected_picture(bent)
     np.testing.assert_array_equal(read_image(tmp_path / "figure-posed.png"), expected)
-    assert bent.space.notice == f"Exported figure-posed.png, {expected.shape[1]} × {expected.shape[0]} pixels"
+    assert bent.state.notice == f"Exported figure-posed.png, {expected.shape[1]} × {expected.shape[0]} pixels"
     assert bent.editor.modified, "an export is not the drawing's file"
 
 
@@ -63,7 +63,7 @@ def test_all_that_can_be_chosen_about_a_picture(bent, tmp_path):
         hand.combo_click("##crop/Pose alone")
 
     bent.do(crop)
-    choice = bent.space.export
+    choice = bent.state.export
     assert (choice.scale, choice.opaque, choice.crop) == (2.0, True, "pose")
     size = choice.size(bent.document)
     export_as(bent, "large")
@@ -79,17 +79,17 @@ def test_all_that_can_be_chosen_about_a_picture(bent, tmp_path):
 def test_every_format(bent, tmp_path, suffix):
     bent.menu("File", "Export...")
     bent.dialog(EXPORT, option(BY_SUFFIX[suffix].label))
-    assert bent.space.export.format is BY_SUFFIX[suffix]
+    assert bent.state.export.format is BY_SUFFIX[suffix]
     export_as(bent, "cat")
     assert (tmp_path / f"cat{suffix}").stat().st_size
     for path in tmp_path.iterdir():
-        assert path.name in bent.space.notice
+        assert path.name in bent.state.notice
 
 
 def test_the_drawing_at_rest(bent, tmp_path):
     bent.menu("File", "Export...")
     bent.dialog(EXPORT, option("glTF binary"), option("At rest"), "Export...")
-    assert bent.space.request.name == "figure-rest.glb"
+    assert bent.state.request.name == "figure-rest.glb"
     bent.key(Key.enter)
     bent.settle()
     gltf = pygltflib.GLTF2().load(str(tmp_path / "figure-rest.glb"))
@@ -99,14 +99,14 @@ def test_the_drawing_at_rest(bent, tmp_path):
 
 def test_too_large_a_picture_cannot_be_asked_for(bent):
     bent.menu("File", "Export...")
-    bent.space.export.scale = 60.0
+    bent.state.export.scale = 60.0
     bent.settle()
     bent.key(Key.enter)
-    assert bent.space.export.shown
-    assert bent.space.request is None
+    assert bent.state.export.shown
+    assert bent.state.request is None
     bent.dialog(EXPORT, option("glTF binary"))
     bent.key(Key.enter)
-    assert bent.space.request.suffixes == (".glb",), "a mesh has no size in pixels"
+    assert bent.state.request.suffixes == (".glb",), "a mesh has no size in pixels"
     bent.key(Key.escape)
 
 
@@ -118,28 +118,28 @@ def test_a_scale_can_be_typed(bent):
         hand.key_chars_replace_enter("37.5")
 
     bent.do(type_)
-    assert bent.space.export.shown, "Enter ended the typing only"
-    assert bent.space.export.scale == pytest.approx(0.375)
+    assert bent.state.export.shown, "Enter ended the typing only"
+    assert bent.state.export.scale == pytest.approx(0.375)
     bent.key(Key.escape)
-    assert not bent.space.export.shown
+    assert not bent.state.export.shown
 
 
 def test_cancel_and_escape_write_nothing(bent, tmp_path):
     bent.key(CTRL | Key.e)
     bent.key(Key.escape)
-    assert not bent.space.export.shown
+    assert not bent.state.export.shown
     bent.key(CTRL | Key.e)
     bent.dialog(EXPORT, "Cancel")
     bent.key(CTRL | Key.e, Key.enter)
     bent.dialog(FILE, "Cancel")
-    assert bent.space.request is None
+    assert bent.state.request is None
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_file_that_cannot_be_written_is_told(bent, tmp_path):
     bent.key(CTRL | Key.e)
     export_as(bent, "no-such-folder/cat")
-    assert str(tmp_path / "no-such-folder" / "cat.png") in bent.space.error
+    assert str(tmp_path / "no-such-folder" / "cat.png") in bent.state.error
     bent.dialog(MESSAGE, "OK")
 
 
@@ -148,5 +148,5 @@ def test_only_files_of_the_format_are_listed(bent, tmp_path):
         (tmp_path / name).write_bytes(b"")
     bent.menu("File", "Export...")
     bent.dialog(EXPORT, option("Spine skeleton"), "Export...")
-    assert bent.space.request.entries() == [("b.spine.json", False)]
+    assert bent.state.request.entries() == [("b.spine.json", False)]
     bent.key(Key.escape)

@@ -32,14 +32,14 @@ def restart(ui, tmp_path):
     """The window as it starts with this folder of copies."""
 
     def start():
-        ui.space.autosave = Autosave(tmp_path)
-        ui.space.lost = ui.space.autosave.lost()
+        ui.state.autosave = Autosave(tmp_path)
+        ui.state.lost = ui.state.autosave.lost()
         ui.settle()
         return ui
 
     yield start
-    ui.space.autosave._worker.shutdown()
-    for copy in ui.space.lost:
+    ui.state.autosave._worker.shutdown()
+    for copy in ui.state.lost:
         copy.leave()
 
 
@@ -52,12 +52,12 @@ def bent(pinned):
 
 
 def wait(ui):
-    ui.space.autosave._worker.submit(int).result()
+    ui.state.autosave._worker.submit(int).result()
 
 
 def test_nothing_is_offered_where_nothing_was_lost(restart):
     restart()
-    assert not restart().space.lost
+    assert not restart().state.lost
 
 
 def test_recovering_brings_the_drawing_back_unsaved(bent, crash, restart, tmp_path):
@@ -70,13 +70,13 @@ def test_recovering_brings_the_drawing_back_unsaved(bent, crash, restart, tmp_pa
     assert ui.document.state.positions.tobytes() == bent.state.positions.tobytes()
     assert [pin.id for pin in ui.pins] == [1, 2, 3]
     assert ui.editor.modified
-    assert ui.space.title == "figure * - akap-editor"
-    assert ui.space.notice == "Recovered figure, which is not saved yet"
-    ui.space.protect()
+    assert ui.state.title == "figure * - akap-editor"
+    assert ui.state.notice == "Recovered figure, which is not saved yet"
+    ui.state.protect()
     wait(ui)
     assert list(tmp_path.glob("*.akap")), "a second crash would lose it otherwise"
-    ui.space._write(tmp_path / "saved.pose", None)
-    ui.space.protect()
+    ui.state._write(tmp_path / "saved.pose", None)
+    ui.state.protect()
     wait(ui)
     assert os.listdir(tmp_path) == ["saved.pose"]
 
@@ -88,7 +88,7 @@ def test_a_recovered_drawing_belongs_to_its_file(bent, crash, restart, tmp_path)
     crash(saved.with_state(bent.state))
     ui = restart()
     ui.dialog(TITLE, "Recover")
-    assert ui.space.title == "figure.akap * - akap-editor"
+    assert ui.state.title == "figure.akap * - akap-editor"
     ui.menu("File", "Save")
     assert not ui.editor.modified
     assert (load(folder / "figure.akap").state.positions == bent.state.positions).all()
@@ -98,12 +98,12 @@ def test_discarding_removes_the_copy_and_goes_to_the_next(bent, document, crash,
     crash(bent)
     crash(document)
     ui = restart()
-    assert len(ui.space.lost) == 2
+    assert len(ui.state.lost) == 2
     ui.dialog(TITLE, "Discard")
-    assert len(ui.space.lost) == 1
+    assert len(ui.state.lost) == 1
     assert len(list(tmp_path.glob("*.akap"))) == 1
     ui.dialog(TITLE, "Discard")
-    assert not ui.space.lost
+    assert not ui.state.lost
     assert os.listdir(tmp_path) == []
 
 
@@ -112,9 +112,9 @@ def test_later_means_the_next_start(bent, crash, restart, tmp_path):
     ui = restart()
     before = ui.document
     ui.dialog(TITLE, "Later")
-    assert not ui.space.lost
+    assert not ui.state.lost
     assert ui.document is before
-    assert len(restart().space.lost) == 1
+    assert len(restart().state.lost) == 1
 
 
 def test_recovering_one_leaves_the_others_for_the_next_start(bent, document, crash, restart):
@@ -122,7 +122,7 @@ def test_recovering_one_leaves_the_others_for_the_next_start(bent, document, cra
     crash(document)
     restart().dialog(TITLE, "Recover")
     ui = restart()
-    assert len(ui.space.lost) == 1
+    assert len(ui.state.lost) == 1
 
 
 def test_a_damaged_copy_is_told_and_kept(bent, crash, restart, tmp_path):
@@ -130,19 +130,19 @@ def test_a_damaged_copy_is_told_and_kept(bent, crash, restart, tmp_path):
     (path,) = tmp_path.glob("*.akap")
     path.write_bytes(path.read_bytes()[:-100])
     ui = restart()
-    assert ui.space.error.startswith("Unsaved work could not be recovered: ")
-    assert not ui.space.lost
+    assert ui.state.error.startswith("Unsaved work could not be recovered: ")
+    assert not ui.state.lost
     assert path.exists()
     ui.dialog("That did not work", "OK")
 
 
 def test_a_crash_of_the_program_itself_keeps_the_work(bent, ui, tmp_path):
-    ui.space.show(bent)
+    ui.state.show(bent)
     ui.session.mark_unsaved()
-    ui.space.autosave = Autosave(tmp_path)
-    ui.space.rescue()
-    ui.space.autosave._worker.shutdown()
-    ui.space.autosave._copy.lock.release()
+    ui.state.autosave = Autosave(tmp_path)
+    ui.state.rescue()
+    ui.state.autosave._worker.shutdown()
+    ui.state.autosave._copy.lock.release()
     (copy,) = Autosave(tmp_path).lost()
     assert np.array_equal(copy.read().state.positions, bent.state.positions)
     copy.leave()

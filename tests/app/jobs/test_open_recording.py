@@ -8,7 +8,7 @@ from tests.support.window_driver import one_step
 
 
 def test_what_was_done_by_hand_is_saved_and_done_again_to_the_last_bit(ui, tmp_path):
-    ui.space.folder = tmp_path
+    ui.state.folder = tmp_path
     for place in ((50.0, 80.0), (130.0, 80.0), (210.0, 80.0)):
         ui.click(ui.screen(place))
     start = ui.screen((210.0, 80.0))
@@ -18,7 +18,7 @@ def test_what_was_done_by_hand_is_saved_and_done_again_to_the_last_bit(ui, tmp_p
     ui.menu("File", "Save Recording...")
     ui.type_name("Save recording", "wave")
     ui.settle()
-    assert ui.space.notice.startswith("Saved wave.akaprec")
+    assert ui.state.notice.startswith("Saved wave.akaprec")
     recording = read_recording(tmp_path / "wave.akaprec")
     *_, last = replay(recording, recorded_drawing(recording))
     np.testing.assert_array_equal(last.state.positions, ui.session.state.positions)
@@ -27,7 +27,7 @@ def test_what_was_done_by_hand_is_saved_and_done_again_to_the_last_bit(ui, tmp_p
 
 def recorded(ui, tmp_path):
     """A recording of three pins, a drag, an undo and a drag; and the session that it was made of."""
-    ui.space.player.watch(ui.session)
+    ui.state.session_playback.watch(ui.session)
     for place in ((50.0, 80.0), (130.0, 80.0), (210.0, 80.0)):
         ui.click(ui.screen(place))
     start = ui.screen((210.0, 80.0))
@@ -43,26 +43,26 @@ def test_a_recording_opens_in_its_final_pose_with_all_of_it_on_the_timeline(ui, 
     session = recorded(ui, tmp_path)
     ui.editor.mark_saved(None)
     ui.drop(tmp_path / "wave.akaprec")
-    again, player = ui.session, ui.space.player
+    again, playback = ui.session, ui.state.session_playback
     assert again is not session
-    assert not ui.space.error
+    assert not ui.state.error
     np.testing.assert_array_equal(again.state.positions, session.state.positions)
     assert list(again.recording.events) == list(session.recording.events)
     assert again.history.labels == session.history.labels
     assert not ui.editor.modified
-    assert ui.space.show_timeline
-    assert player.shots[-1].state is again.state
-    player.scrub(0.0)
+    assert ui.state.show_timeline
+    assert playback.snapshots[-1].state is again.state
+    playback.scrub(0.0)
     np.testing.assert_array_equal(again.state.positions, again.drawing.mesh.vertices)
-    player.now()
+    playback.now()
 
 
 def test_a_recording_that_was_opened_is_gone_on_with_and_branched(ui, tmp_path):
     recorded(ui, tmp_path)
     ui.editor.mark_saved(None)
     ui.drop(tmp_path / "wave.akaprec")
-    player = ui.space.player
-    player.scrub(0.5 * player.duration)
+    playback = ui.state.session_playback
+    playback.scrub(0.5 * playback.duration)
     ui.settle()
     start = ui.screen(ui.pin_place(1))
     ui.drag(start, (start[0] + 20, start[1] + 30))
@@ -80,14 +80,14 @@ def test_opening_a_recording_is_stopped_half_way_or_cancelled(ui, tmp_path, monk
     ui.editor.mark_saved(None)
     monkeypatch.setattr("akap_editor.app.jobs.task.SLICE", 0.0)
     monkeypatch.setattr("akap_editor.app.jobs.task.Task.advance", one_step)
-    ui.space.open_path(tmp_path / "wave.akaprec")
+    ui.state.open_path(tmp_path / "wave.akaprec")
     for _ in range(12):
         ui.frame()
-    assert 0 < ui.space.task.progress.share < 1
+    assert 0 < ui.state.task.progress.share < 1
     ui.dialog("Opening wave.akaprec", "Cancel")
-    assert ui.space.task is None
+    assert ui.state.task is None
     assert ui.session is session
-    ui.space.open_path(tmp_path / "wave.akaprec")
+    ui.state.open_path(tmp_path / "wave.akaprec")
     for _ in range(12):
         ui.frame()
     ui.dialog("Opening wave.akaprec", "Stop here")
@@ -102,12 +102,12 @@ def test_a_bad_recording_is_refused_with_its_line_and_nothing_is_lost(ui, tmp_pa
     lines = text.splitlines()
     (tmp_path / "bad.akaprec").write_text("\n".join([*lines[:5], '{"t": 0, "do": "dance"}', *lines[5:]]))
     ui.drop(tmp_path / "bad.akaprec")
-    assert "bad.akaprec: recording line 6: expected one of" in ui.space.error
+    assert "bad.akaprec: recording line 6: expected one of" in ui.state.error
     ui.dialog("That did not work", "OK")
     number = 1 + next(k for k, line in enumerate(lines) if '"targets"' in line)
     lines[number - 1] = lines[number - 1].replace('"targets":{"3"', '"targets":{"9"')
     (tmp_path / "bad.akaprec").write_text("\n".join(lines))
     ui.drop(tmp_path / "bad.akaprec")
-    assert f"recording line {number}: cannot be replayed" in ui.space.error
+    assert f"recording line {number}: cannot be replayed" in ui.state.error
     ui.dialog("That did not work", "OK")
     assert ui.session is session

@@ -6,8 +6,8 @@ from threading import Event
 import numpy as np
 import pytest
 
-from akap_editor.app.dialogs import export_pose as export_dialog
-from akap_editor.app.jobs.pose_export import Writer
+from akap_editor.app.dialogs.dialogs import export_pose as export_dialog
+from akap_editor.app.jobs.pose_export import PoseExportQueue
 from akap_editor.errors import InputError
 from akap_editor.io import export as exports
 from akap_editor.io.images import read_image
@@ -28,7 +28,7 @@ class Painter:
 
 @pytest.fixture
 def writer():
-    made = Writer()
+    made = PoseExportQueue()
     yield made
     made.close()
 
@@ -60,7 +60,7 @@ def test_what_fails_is_told_where_it_was_begun_and_the_next_is_written(writer):
 
 
 def test_a_closed_window_keeps_no_thread_waiting():
-    writer, ended, errors = Writer(), Event(), []
+    writer, ended, errors = PoseExportQueue(), Event(), []
 
     def work(painter):
         try:
@@ -82,11 +82,11 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
     gate, encode = Event(), exports.encode_png
     monkeypatch.setattr(exports, "encode_png", lambda picture: gate.wait(60) and encode(picture))
     path = tmp_path / "pose.png"
-    export_dialog.write(pinned.space, path)
+    export_dialog.write(pinned.state, path)
     x, y = pinned.pin_place(3)
     drawing, pose = pinned.session.drawing, pinned.session.state.positions
     pinned.do(lambda hand: hand.yield_(3), settle=False)
-    assert pinned.space.notice == "Exporting pose.png ..."
+    assert pinned.state.notice == "Exporting pose.png ..."
     pinned.editor.place_pin(3, (x, y - 40))
     while pinned.editor.moving:
         pinned.frame()
@@ -95,16 +95,16 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
     assert not path.exists()
     gate.set()
     pinned.settle()
-    assert pinned.space.notice.startswith("Exported pose.png, ")
+    assert pinned.state.notice.startswith("Exported pose.png, ")
     box = exports.crop_box(drawing, pose, "none")
-    expected = pinned.space.exporter.render(drawing, pose, box)
+    expected = pinned.state.exporter.render(drawing, pose, box)
     np.testing.assert_array_equal(read_image(path), expected)
 
 
 def test_a_window_that_closes_writes_the_file_first(pinned, tmp_path):
     path = tmp_path / "pose.png"
-    export_dialog.write(pinned.space, path)
-    pinned.space.closing = True
+    export_dialog.write(pinned.state, path)
+    pinned.state.closing = True
     pinned.window.run()
     assert path.exists()
-    pinned.space.closing = False
+    pinned.state.closing = False

@@ -2,7 +2,7 @@
 
 import pytest
 
-from akap_editor.app.panels.measurements import KEPT, Meter
+from akap_editor.app.panels.measurements import KEPT, Measurements
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.editor import Editor
 from akap_editor.geometry.distortion import distortion
@@ -28,62 +28,62 @@ def measuring(session, clock, cost):
     return calls, measure
 
 
-def frames(meter, session, clock, measure, count, step=1 / 60):
+def frames(measurements, session, clock, measure, count, step=1 / 60):
     for _ in range(count):
         session.step()
         session._settling = 100  # goes on moving, wherever the pins are
-        meter.look(session, measure)
+        measurements.look(session, measure)
         clock.now += step
 
 
 def test_measuring_takes_a_tenth_of_the_time_at_most_while_something_moves(session, clock):
     calls, measure = measuring(session, clock, cost=0.03)
-    meter, start = Meter(clock), clock.now
+    measurements, start = Measurements(clock), clock.now
     session.begin("Bend")
     session.set_targets({2: (190.0, 60.0)})
-    frames(meter, session, clock, measure, 120)
+    frames(measurements, session, clock, measure, 120)
     assert len(calls) >= 3
     assert 0.03 * len(calls) <= 0.1 * (clock.now - start) + 0.03
 
 
 def test_the_pose_at_rest_is_measured_at_once_and_only_once(session, clock):
     calls, measure = measuring(session, clock, cost=0.03)
-    meter = Meter(clock)
+    measurements = Measurements(clock)
     session.begin("Bend")
     session.set_targets({2: (190.0, 60.0)})
-    frames(meter, session, clock, measure, 3)
+    frames(measurements, session, clock, measure, 3)
     session._settling = 0
     before = len(calls)
     for _ in range(5):
-        meter.look(session, measure)
+        measurements.look(session, measure)
     assert len(calls) == before + 1
     expected = distortion(session.drawing.mesh, session.state.positions)
-    assert meter.distortion.area == expected.area
-    assert meter.angles[-1] == expected.angle
+    assert measurements.distortion.area == expected.area
+    assert measurements.angles[-1] == expected.angle
 
 
 def test_rates_leave_out_sleep(session, clock):
     _, measure = measuring(session, clock, cost=0.0)
-    meter = Meter(clock)
-    assert (meter.frame_rate, meter.step_seconds) == (None, None)
+    measurements = Measurements(clock)
+    assert (measurements.frame_rate, measurements.step_seconds) == (None, None)
     session.begin("Bend")
     session.set_targets({2: (190.0, 60.0)})
-    frames(meter, session, clock, measure, 10, step=0.02)
+    frames(measurements, session, clock, measure, 10, step=0.02)
     clock.now += 60.0
-    frames(meter, session, clock, measure, 10, step=0.02)
-    assert meter.frame_rate == pytest.approx(50)
-    assert meter.step_seconds > 0
+    frames(measurements, session, clock, measure, 10, step=0.02)
+    assert measurements.frame_rate == pytest.approx(50)
+    assert measurements.step_seconds > 0
 
 
 def test_it_forgets_what_is_old_and_begins_anew_with_a_drawing(session, clock, drawing):
     _, measure = measuring(session, clock, cost=0.0)
-    meter = Meter(clock)
+    measurements = Measurements(clock)
     session.begin("Bend")
     session.set_targets({2: (190.0, 60.0)})
-    frames(meter, session, clock, measure, KEPT + 9)
-    assert len(meter.areas) == len(meter.angles) == KEPT
+    frames(measurements, session, clock, measure, KEPT + 9)
+    assert len(measurements.areas) == len(measurements.angles) == KEPT
     other = Editor()
     other.open(new_document(drawing))
-    meter.look(other.session, measure)
-    assert len(meter.areas) == 1
-    assert meter.frame_rate is None
+    measurements.look(other.session, measure)
+    assert len(measurements.areas) == 1
+    assert measurements.frame_rate is None

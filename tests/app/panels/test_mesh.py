@@ -24,8 +24,8 @@ def slide(ui: WindowDriver, label: str, *shares: float) -> list[Meshing | None]:
             else:
                 hand.mouse_move_to_pos(type(rect.min)(x, middle))
             hand.yield_(8)
-            seen.append(ui.space.remesher.meshing)
-            assert number == 0 or ui.space.remesher.active
+            seen.append(ui.state.remesher.meshing)
+            assert number == 0 or ui.state.remesher.active
         hand.mouse_up(0)
 
     ui.do(drag)
@@ -35,7 +35,7 @@ def slide(ui: WindowDriver, label: str, *shares: float) -> list[Meshing | None]:
 @pytest.fixture
 def opened(pinned):
     """The window with a pinned figure and the section open."""
-    pinned.space.preferences.put("sections", {"Mesh": True})
+    pinned.state.preferences.put("sections", {"Mesh": True})
     pinned.settle()
     return pinned
 
@@ -44,7 +44,7 @@ def test_vertices_slider_gives_another_mesh_as_one_entry(opened):
     places, before = opened.session.pin_positions(), opened.document
     depth = opened.session.history.depth
     slide(opened, "##Vertices", 0.2, 0.4, 0.6)
-    assert not opened.space.remesher.active
+    assert not opened.state.remesher.active
     drawing = opened.document.drawing
     assert len(drawing.mesh.vertices) > 3 * len(before.drawing.mesh.vertices)
     assert drawing.meshing.vertices == pytest.approx(len(drawing.mesh.vertices), rel=0.1)
@@ -75,19 +75,19 @@ def test_a_pin_can_be_dragged_right_after(opened):
 def test_nothing_left_is_a_notice_and_all_stays(opened):
     faint = opened.document.drawing.image.copy()
     faint[..., 3] = np.minimum(faint[..., 3], 200)
-    opened.space.show(new_document(make_drawing(faint, vertices=200)))
+    opened.state.show(new_document(make_drawing(faint, vertices=200)))
     opened.settle()
     before = opened.document
     slide(opened, "##Edge", 0.5, 0.97)
-    assert "transparent" in opened.space.notice
-    assert not opened.space.error
+    assert "transparent" in opened.state.notice
+    assert not opened.state.error
     assert opened.document.state.positions.shape == before.state.positions.shape
 
 
 def test_the_background_goes_and_comes_back(opened):
     image = np.full((160, 240, 4), 255, np.uint8)
     image[40:120, 60:180, :3] = (200, 60, 30)
-    opened.space.show(new_document(make_drawing(image, vertices=200, name="scan")))
+    opened.state.show(new_document(make_drawing(image, vertices=200, name="scan")))
     opened.settle()
     area = 160 * 240
     assert opened.document.drawing.mesh.rest_areas.sum() == pytest.approx(area)
@@ -106,7 +106,7 @@ def test_a_mesh_from_a_file_that_is_not_on_its_picture_says_so(opened, tmp_path)
     (tmp_path / "a.obj").write_text(
         "v 0 0 0\nv 90 0 0\nv 70 80 0\nv 0 60 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
     )
-    opened.space.show(new_document(read_mesh(tmp_path / "a.obj")))
+    opened.state.show(new_document(read_mesh(tmp_path / "a.obj")))
     opened.settle()
     slide(opened, "##Expansion", 0.1, 0.5)
-    assert "cannot be made anew" in opened.space.notice
+    assert "cannot be made anew" in opened.state.notice

@@ -5,9 +5,9 @@ import json
 
 import pytest
 
-from akap_editor.app.app_state import Workspace
-from akap_editor.app.panels import method_parameters as settings_panel
+from akap_editor.app.app_state import AppState
 from akap_editor.app.panels.method_parameters import PARAMETERS, default
+from akap_editor.app.panels.side_panel import method_parameters as settings_panel
 from akap_editor.app.preferences import Preferences
 from akap_editor.deform.deformer import make_deformer, method_class, method_names
 from akap_editor.editor.document.document import new_document
@@ -21,8 +21,8 @@ def test_every_parameter_of_every_method_is_there_and_explained():
     assert list(PARAMETERS) == method_names() or set(PARAMETERS) == set(method_names())
     for method, parameters in PARAMETERS.items():
         names = list(inspect.signature(method_class(method)).parameters)[1:]
-        painted = {"stiffness"}  # not a setting: it has a brush
-        assert sorted(parameter.name for parameter in parameters) == sorted(set(names) - painted)
+        apply_stroke = {"stiffness"}  # not a setting: it has a brush
+        assert sorted(parameter.name for parameter in parameters) == sorted(set(names) - apply_stroke)
         assert all(parameter.label and parameter.tooltip.endswith(".") for parameter in parameters)
 
 
@@ -95,12 +95,12 @@ def test_a_click_on_a_step_goes_there_and_back(pinned):
         start = pinned.screen(pinned.pin_place(pin))
         pinned.drag(start, (start[0], start[1] + dy))
         poses.append(pinned.session.state)
-    pinned.space.notice = "Saved figure.akap"
+    pinned.state.notice = "Saved figure.akap"
     for index in (1, 0, 3, 2):
         name = "Bend" if index else "As opened"
         pinned.do(lambda hand, label=f"**/  {name}##step {index}": click(hand, label))
         assert pinned.session.history.depth == index
-        assert not pinned.space.notice, "it is about something else"
+        assert not pinned.state.notice, "it is about something else"
         assert pinned.session.state.positions.tobytes() == poses[index].positions.tobytes()
     assert pinned.session.history.labels == ["Bend"] * 3
 
@@ -120,13 +120,13 @@ def test_there_is_no_going_beyond_the_ends(drawing):
 
 def test_a_new_drawing_bends_as_was_chosen_last_also_in_another_run(tmp_path, document):
     path = tmp_path / "preferences.json"
-    first = Workspace(preferences=Preferences(path))
+    first = AppState(preferences=Preferences(path))
     first.show(document)
     assert first.document.state.settings == Settings()
     chosen = Settings("arap", (("iterations", 7),))
     first.change_settings(chosen)
     first.preferences.write()
-    second = Workspace(preferences=Preferences(path))
+    second = AppState(preferences=Preferences(path))
     second.show(document)
     assert second.document.state.settings == chosen
     assert second.editor.session.history.depth == 0
@@ -134,11 +134,11 @@ def test_a_new_drawing_bends_as_was_chosen_last_also_in_another_run(tmp_path, do
 
 
 def test_a_drawing_with_settings_of_its_own_keeps_them(document, drawing):
-    space = Workspace()
-    space.show(document)
-    space.change_settings(Settings("arap", ()))
-    space.show(new_document(drawing, Settings("mls", ())))
-    assert space.document.state.settings.method == "mls"
+    state = AppState()
+    state.show(document)
+    state.change_settings(Settings("arap", ()))
+    state.show(new_document(drawing, Settings("mls", ())))
+    assert state.document.state.settings.method == "mls"
 
 
 @pytest.mark.parametrize(
@@ -155,6 +155,6 @@ def test_a_drawing_with_settings_of_its_own_keeps_them(document, drawing):
 def test_remembered_settings_that_make_no_sense_are_ignored(tmp_path, document, remembered):
     path = tmp_path / "preferences.json"
     path.write_text(json.dumps({"settings": remembered}))
-    space = Workspace(preferences=Preferences(path))
-    space.show(document)
-    assert space.document.state.settings == Settings()
+    state = AppState(preferences=Preferences(path))
+    state.show(document)
+    assert state.document.state.settings == Settings()

@@ -12,14 +12,14 @@ from akap_editor.io.akap.project import load, save
 @pytest.fixture
 def keyed(pinned):
     """Keyframes of the rest pose at 0, of a bent one at 1 second; one looks at the first."""
-    space = pinned.space
-    space.show_timeline, space.timeline = True, "keyframes"
+    state = pinned.state
+    state.show_timeline, state.timeline = True, "keyframes"
     pinned.settle()
     pinned.key(imgui.Key.k)
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0] - 20, start[1] - 100))
-    space.key_player.put(1.0)
-    space.key_player.scrub(0.0)
+    state.keyframe_playback.put(1.0)
+    state.keyframe_playback.scrub(0.0)
     pinned.settle()
     return pinned
 
@@ -32,9 +32,9 @@ def on_track(ui, time, y=28):
     """A place on the track of keyframes, y points below its top."""
     found = {}
     ui.do(lambda hand: found.setdefault("rect", hand.item_info("//Timeline/##keys").rect_full))
-    rect, player = found["rect"], ui.space.key_player
+    rect, playback = found["rect"], ui.state.keyframe_playback
     left, width = rect.min.x + 8, rect.max.x - rect.min.x - 16
-    view = player.view
+    view = playback.view
     return round(left + width * (time - view.start) / view.seconds), round(rect.min.y + y)
 
 
@@ -42,7 +42,7 @@ def at_time(ui, time, share):
     """What is seen is the pose at a time, the share of the way from rest to the bent pose."""
     first, last = (ui.session.present.animation.keys[number].positions for number in (0, -1))
     seen = ui.session.state.positions
-    assert ui.space.key_player.at == pytest.approx(time)
+    assert ui.state.keyframe_playback.at == pytest.approx(time)
     far = np.abs(last - first).max()
     return np.abs(seen - first).max() == pytest.approx(share * far, abs=0.06 * far)
 
@@ -58,7 +58,7 @@ def test_a_drag_on_the_ruler_moves_along_and_edits_nothing(keyed):
 
 
 def test_a_drag_on_the_canvas_takes_what_is_seen_and_k_keeps_it(keyed):
-    keyed.space.key_player.scrub(0.5)
+    keyed.state.keyframe_playback.scrub(0.5)
     keyed.settle()
     seen, depth = keyed.session.state.positions, keyed.session.history.depth
     before = keyed.session.present
@@ -97,7 +97,7 @@ def test_keyframes_are_dragged_copied_and_stretched(keyed):
 
 
 def test_several_are_chosen_with_shift_and_moved_together(keyed):
-    keyed.space.key_player.put(0.5)
+    keyed.state.keyframe_playback.put(0.5)
     keyed.click(on_track(keyed, 0.5))
     keyed.click(on_track(keyed, 1.0), shift=True)
     keyed.drag(on_track(keyed, 0.5), on_track(keyed, 0.7))
@@ -112,7 +112,7 @@ def test_escape_takes_a_drag_of_keyframes_back(keyed):
     def drag(hand):
         keyed.begin_drag(hand, start)
         hand.mouse_move_to_pos(imgui.ImVec2(*end))
-        assert keyed.space.key_player.held
+        assert keyed.state.keyframe_playback.held
         hand.key_press(imgui.Key.escape)
         hand.mouse_move_to_pos(imgui.ImVec2(*start))
         hand.mouse_up(0)
@@ -137,7 +137,7 @@ def test_a_double_click_adds_and_delete_is_for_keyframes_where_no_pin_is_selecte
 
 def test_the_range_is_cut_by_its_marks(keyed):
     keyed.drag(on_track(keyed, 1.0, y=44), on_track(keyed, 0.8, y=44))
-    assert keyed.space.key_player.range == pytest.approx((0.0, 0.8))
+    assert keyed.state.keyframe_playback.range == pytest.approx((0.0, 0.8))
 
 
 def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
@@ -149,7 +149,7 @@ def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
     place = on_track(keyed, 0.0)
     keyed.do(choose)
     assert keyed.session.present.animation.keys[0].ease == "hold"
-    keyed.space.key_player.scrub(0.9)
+    keyed.state.keyframe_playback.scrub(0.9)
     keyed.settle()
     np.testing.assert_array_equal(
         keyed.session.state.positions, keyed.session.present.animation.keys[0].positions
@@ -160,7 +160,7 @@ def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
     for name in ("Up", "Down"):
         keyed.editor.keep_pose(name)
 
-    keyed.space.key_player.set_time(1.0, 0.5)
+    keyed.state.keyframe_playback.set_time(1.0, 0.5)
     keyed.settle()
     keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Up", "//Timeline/##keys"))
     assert times(keyed) == (0.0, 0.5, 1.0)
@@ -198,81 +198,81 @@ def test_a_pose_is_renamed_with_a_double_click(keyed):
 
     keyed.do(rename)
     assert [pose.name for pose in keyed.session.present.poses] == ["Wave"]
-    assert keyed.space.renaming is None
+    assert keyed.state.renaming is None
 
 
 def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):
-    player = keyed.space.key_player
-    player.scrub(0.5)
+    playback = keyed.state.keyframe_playback
+    playback.scrub(0.5)
     plain = keyed.screenshot().astype(int)
-    player.onion.shown = True
+    playback.onion.shown = True
     skinned = keyed.screenshot().astype(int)
     left, top, right, bottom = (round(each) for each in keyed.editor.canvas)
     differs = (skinned - plain)[top:bottom, left:right]
     redder = differs[..., 0] - differs[..., 2]
     assert (redder > 20).sum() > 200, "orange, after"
     assert (redder < -20).sum() > 200, "blue, before"
-    player.scrub(0.0)
-    assert [len(each) for each in player.neighbors()] == [0, 1]
-    player.onion.of, player.onion.count = "frames", 3
-    assert [len(each) for each in player.neighbors()] == [0, 3]
-    player.play()
-    assert player.neighbors() == ([], [])
+    playback.scrub(0.0)
+    assert [len(each) for each in playback.neighbors()] == [0, 1]
+    playback.onion.of, playback.onion.count = "frames", 3
+    assert [len(each) for each in playback.neighbors()] == [0, 3]
+    playback.play()
+    assert playback.neighbors() == ([], [])
 
 
 def test_playing_moves_on_with_the_clock_and_loops(keyed, monkeypatch):
-    player, now = keyed.space.key_player, [100.0]
-    monkeypatch.setattr(player, "_clock", lambda: now[0])
-    player.play()
+    playback, now = keyed.state.keyframe_playback, [100.0]
+    monkeypatch.setattr(playback, "_clock", lambda: now[0])
+    playback.play()
     for moment in (0.25, 0.5, 0.75):
         now[0] += 0.25
         keyed.frame()
-        assert player.at == pytest.approx(moment)
+        assert playback.at == pytest.approx(moment)
     now[0] += 0.5
     keyed.frame()
-    assert player.at == pytest.approx(0.25)
-    player.play()
-    assert not player.playing
+    assert playback.at == pytest.approx(0.25)
+    playback.play()
+    assert not playback.playing
 
 
 def test_keyframes_are_saved_and_opened(keyed, tmp_path):
-    keyed.space.key_player.scrub(0.3)
+    keyed.state.keyframe_playback.scrub(0.3)
     keyed.settle()
-    keyed.space._write(tmp_path / "a.akap", None)
-    assert not keyed.space.error
+    keyed.state._write(tmp_path / "a.akap", None)
+    assert not keyed.state.error
     again = load(tmp_path / "a.akap")
     assert [key.time for key in again.state.animation.keys] == [0.0, 1.0]
     assert save(again, tmp_path / "b.akap").path is not None
     assert (tmp_path / "a.akap").read_bytes() == (tmp_path / "b.akap").read_bytes()
     np.testing.assert_array_equal(again.state.positions, keyed.session.present.positions)
-    keyed.space.show_in_timeline("session")
-    keyed.space.show_timeline = False
-    keyed.space.show(again)
-    assert keyed.space.timeline == "keyframes"
-    assert keyed.space.show_timeline
+    keyed.state.show_in_timeline("session")
+    keyed.state.show_timeline = False
+    keyed.state.show(again)
+    assert keyed.state.timeline == "keyframes"
+    assert keyed.state.show_timeline
 
 
 def test_the_wheel_zooms_in_on_a_time_and_keyframes_are_taken_there(keyed):
-    player = keyed.space.key_player
+    playback = keyed.state.keyframe_playback
     place = on_track(keyed, 1.0)
     keyed.wheel(place, 4)
-    assert 0 < player.view.start < 1.0 < player.view.start + player.view.seconds < 2.0
+    assert 0 < playback.view.start < 1.0 < playback.view.start + playback.view.seconds < 2.0
     assert np.abs(np.subtract(on_track(keyed, 1.0), place)).max() <= 1
     keyed.drag(place, on_track(keyed, 0.85))
     assert times(keyed) == (0.0, 0.85)
     keyed.wheel(place, -20)
-    assert (player.view.start, player.view.seconds) == (0.0, 2.0)
+    assert (playback.view.start, playback.view.seconds) == (0.0, 2.0)
 
 
 def test_looping_is_a_step_of_undo(keyed):
     keyed.do(lambda hand: hand.item_click(f"//Timeline/{icons.ICON_FA_REPEAT}##loop"))
     assert not keyed.session.present.animation.loop
     keyed.editor.undo()
-    assert keyed.space.key_player.loop
+    assert keyed.state.keyframe_playback.loop
 
 
 def test_without_the_timeline_the_present_is_seen(keyed):
-    keyed.space.key_player.scrub(0.5)
+    keyed.state.keyframe_playback.scrub(0.5)
     keyed.settle()
     assert keyed.session.visiting
     keyed.key(imgui.Key.mod_shift | imgui.Key.t)

@@ -7,14 +7,14 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
-from akap_editor.app.dialogs import animating
+from akap_editor.app.dialogs.dialogs import animating
 from akap_editor.editor.session.replay import replay
 
 
 @pytest.fixture
 def bent(pinned):
     """The timeline is shown, and a drag was made."""
-    pinned.space.show_timeline = True
+    pinned.state.show_timeline = True
     pinned.settle()
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0] - 20, start[1] - 100))
@@ -47,44 +47,44 @@ def test_a_drag_on_the_track_goes_back_and_forth(bent):
 
 
 def test_the_head_is_taken_at_the_end_and_the_mark_below_it(bent):
-    player = bent.space.player
+    playback = bent.state.session_playback
     bent.drag(on_track(bent, 0.99), on_track(bent, 0.5))
-    assert player.at == pytest.approx(0.5 * player.duration, abs=0.05)
-    assert player.cut is None
+    assert playback.at == pytest.approx(0.5 * playback.duration, abs=0.05)
+    assert playback.cut is None
     bent.drag(on_track(bent, 0.995, 0.85), on_track(bent, 0.7, 0.85))
-    assert player.range == pytest.approx((0.0, 0.7 * player.duration), abs=0.05)
+    assert playback.range == pytest.approx((0.0, 0.7 * playback.duration), abs=0.05)
 
 
 def test_the_wheel_shows_a_part_of_the_time_where_the_head_goes_slower(bent):
-    player = bent.space.player
-    player.shots = [replace(shot, time=float(number)) for number, shot in enumerate(player.shots)]
+    playback = bent.state.session_playback
+    playback.snapshots = [replace(shot, time=float(number)) for number, shot in enumerate(playback.snapshots)]
     bent.wheel(on_track(bent, 0.5), 5)
-    start, seconds = player.view.start, player.view.seconds
-    assert 0 < start < start + seconds < player.duration
+    start, seconds = playback.view.start, playback.view.seconds
+    assert 0 < start < start + seconds < playback.duration
     bent.drag(on_track(bent, 0.5), on_track(bent, 0.4))
-    assert start < player.at < start + seconds
-    assert player.at == pytest.approx(start + 0.4 * seconds, abs=0.02 * seconds)
-    player.scrub(0.0)
-    assert player.view.start == 0.0
+    assert start < playback.at < start + seconds
+    assert playback.at == pytest.approx(start + 0.4 * seconds, abs=0.02 * seconds)
+    playback.scrub(0.0)
+    assert playback.view.start == 0.0
     bent.wheel(on_track(bent, 0.5), -40)
-    assert not player.view.zoomed
+    assert not playback.view.zoomed
 
 
 def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(bent):
-    player = bent.space.player
-    player.scrub(0.5 * player.duration)
+    playback = bent.state.session_playback
+    playback.scrub(0.5 * playback.duration)
     bent.settle()
-    here = player.shot(player.at).time
+    here = playback.shot(playback.at).time
     start = bent.screen(bent.pin_place(3))
     bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
     assert bent.session.history.labels[-2:] == ["Go back in time", "Bend"]
-    assert player.cut is not None
-    assert player.cut[0] == pytest.approx(here)
-    assert player.cut[0] < player.cut[1] <= player.duration
+    assert playback.cut is not None
+    assert playback.cut[0] == pytest.approx(here)
+    assert playback.cut[0] < playback.cut[1] <= playback.duration
 
 
 def test_a_drag_on_the_canvas_goes_on_from_there(bent):
-    bent.space.player.scrub(0.0)
+    bent.state.session_playback.scrub(0.0)
     bent.settle()
     start = bent.screen(bent.pin_place(3))
     bent.drag(start, (start[0] - 20, start[1] + 60))
@@ -95,26 +95,26 @@ def test_a_drag_on_the_canvas_goes_on_from_there(bent):
 
 
 def test_control_and_drag_records_that_gesture_only(bent):
-    before = bent.space.player.duration
+    before = bent.state.session_playback.duration
     start = bent.screen(bent.pin_place(3))
     bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
-    assert bent.space.player.cut is not None
-    start, end = bent.space.player.cut
-    assert before <= start < end <= bent.space.player.duration
-    assert bent.space.player.taking is None
+    assert bent.state.session_playback.cut is not None
+    start, end = bent.state.session_playback.cut
+    assert before <= start < end <= bent.state.session_playback.duration
+    assert bent.state.session_playback.taking is None
 
 
 def test_the_range_is_exported(bent, tmp_path):
-    player = bent.space.player
-    player.cut_to(0.0, min(0.5, player.duration))
-    animating.export(bent.space, tmp_path / "wave.webp")
+    playback = bent.state.session_playback
+    playback.cut_to(0.0, min(0.5, playback.duration))
+    animating.export(bent.state, tmp_path / "wave.webp")
     bent.settle()
-    assert bent.space.error == ""
+    assert bent.state.error == ""
     with Image.open(tmp_path / "wave.webp") as opened:
         assert opened.n_frames >= 1
-    animating.export(bent.space, tmp_path / "wave.avi")
+    animating.export(bent.state, tmp_path / "wave.avi")
     bent.settle()
-    assert ".avi" in bent.space.error
+    assert ".avi" in bent.state.error
 
 
 def test_poses_are_kept_and_applied_with_a_click(bent):

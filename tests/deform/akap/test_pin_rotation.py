@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.deform.akap.deformer import AkapDeformer
-from akap_editor.deform.akap.pin_rotation import Turning
+from akap_editor.deform.akap.pin_rotation import PinRotationConstraints
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.killing_matrix import KillingMatrix
@@ -22,7 +22,7 @@ def deformer_with(mesh, points, **settings):
 
 
 def turning_of(mesh, points):
-    return Turning(mesh, points, np.ones(len(points), dtype=bool))
+    return PinRotationConstraints(mesh, points, np.ones(len(points), dtype=bool))
 
 
 # -- the terms -----------------------------------------------------------------------------------------------

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from scipy.sparse import coo_array
 
-from akap_editor.deform.akap import preconditioned_cholesky as reuse
 from akap_editor.deform.akap.deformer import AkapDeformer
-from akap_editor.deform.akap.preconditioned_cholesky import ReusedCholesky
+from akap_editor.deform.akap.deformer import preconditioned_cholesky as reuse
+from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
 from akap_editor.deform.cholesky import SymmetricPattern
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.killing_matrix import KillingMatrix
@@ -56,7 +56,7 @@ def solved(system, positions, right):
 
 def prepared(system, exact=False):
     """A solver with the factorization of the rest pose."""
-    solver = ReusedCholesky(system.pattern, exact)
+    solver = PreconditionedCholesky(system.pattern, exact)
     ones = np.ones(system.size // 2, dtype=complex)
     solver.prepare(system.nonzeros(system.mesh.vertices), ones)
     return solver

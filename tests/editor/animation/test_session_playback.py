@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from akap_editor.editor.animation.pose_blend import Mixer
-from akap_editor.editor.animation.session_playback import LONGEST_PAUSE, Player
+from akap_editor.editor.animation.pose_blend import PoseBlend
+from akap_editor.editor.animation.session_playback import LONGEST_PAUSE, SessionPlayback
 from akap_editor.editor.session.recording import parse_recording
 from akap_editor.editor.session.replay import replay
 from tests.support.editor_driver import bits
@@ -15,7 +15,7 @@ END = (105.0, 40.0)
 @pytest.fixture
 def player(pinned, clock):
     """Has watched a drag, a shot every twentieth of a second after a long pause."""
-    player = Player(clock)
+    player = SessionPlayback(clock)
     player.watch(pinned.session)
     clock.now += 100
     pinned.press(END)
@@ -35,20 +35,20 @@ def recorded(session, drawing):
 
 
 def test_pauses_are_shortened_and_every_state_is_there(player, pinned, drawing):
-    times = [shot.time for shot in player.shots]
+    times = [shot.time for shot in player.snapshots]
     assert times == sorted(times)
     assert times[0] == 0
     assert times[1] == LONGEST_PAUSE
     assert len(times) > 5
     assert np.diff(times[1:]).max() <= 0.06
-    np.testing.assert_array_equal(player.shots[0].state.positions, drawing.mesh.vertices)
-    assert player.shots[-1].state is pinned.state
+    np.testing.assert_array_equal(player.snapshots[0].state.positions, drawing.mesh.vertices)
+    assert player.snapshots[-1].state is pinned.state
 
 
 def test_scrubbing_shows_every_moment_and_changes_nothing(player, pinned):
     session, now = pinned.session, bits(pinned.state)
     lines, depth, modified = len(session.recording.events), session.history.depth, session.modified
-    for shot in [*player.shots[:-1], *reversed(player.shots[:-1])]:
+    for shot in [*player.snapshots[:-1], *reversed(player.snapshots[:-1])]:
         player.scrub(shot.time)
         assert bits(session.state) == bits(shot.state)
         assert session.visiting
@@ -65,7 +65,7 @@ def test_scrubbing_shows_every_moment_and_changes_nothing(player, pinned):
 
 def test_dragging_from_an_earlier_moment_branches(player, pinned, drawing):
     session, old = pinned.session, bits(pinned.state)
-    before = player.shots[: len(player.shots) // 2 + 1]
+    before = player.snapshots[: len(player.snapshots) // 2 + 1]
     middle = before[-1]
     player.scrub(middle.time)
     start = pinned.where(3)
@@ -74,8 +74,8 @@ def test_dragging_from_an_earlier_moment_branches(player, pinned, drawing):
     pinned.settle()
     player.watch(session)
     assert player.at is None
-    assert player.shots[: len(before)] == before
-    assert len(player.shots) > len(before)
+    assert player.snapshots[: len(before)] == before
+    assert len(player.snapshots) > len(before)
     assert bits(recorded(session, drawing)) == bits(session.state)
     session.undo()
     assert bits(session.state) == bits(middle.state)
@@ -87,7 +87,7 @@ def test_dragging_from_an_earlier_moment_branches(player, pinned, drawing):
 def test_looking_does_not_change_the_last_bits_of_what_comes_after(player, pinned, drawing):
     session = pinned.session
     for number in range(4):
-        for shot in player.shots[:: 3 + number]:
+        for shot in player.snapshots[:: 3 + number]:
             player.scrub(shot.time)
         player.now()
         start = pinned.where(3)
@@ -169,7 +169,7 @@ def test_an_empty_range_is_all_there_is(player, start, end):
 
 
 def test_frames_between_shots_are_in_betweens(player):
-    before, after = player.shots[2:4]
+    before, after = player.snapshots[2:4]
     middle = player.frame(0.5 * (before.time + after.time)).pose
     np.testing.assert_array_equal(player.frame(before.time).pose, before.state.positions)
     np.testing.assert_array_equal(player.frame(after.time).pose, after.state.positions)
@@ -182,9 +182,9 @@ def test_frames_between_shots_are_in_betweens(player):
 def test_another_session_starts_anew(player, new_driver):
     other = new_driver()
     player.watch(other.session)
-    assert [shot.state for shot in player.shots] == [other.state]
+    assert [shot.state for shot in player.snapshots] == [other.state]
     player.watch(None)
-    assert player.shots == []
+    assert player.snapshots == []
 
 
 def test_long_sessions_keep_to_their_memory(player, pinned, clock, monkeypatch):
@@ -194,29 +194,29 @@ def test_long_sessions_keep_to_their_memory(player, pinned, clock, monkeypatch):
         clock.now += 0.1
         pinned.editor.set_pose(pinned.state.positions + 0.01 * step)
         player.watch(pinned.session)
-    assert len(player.shots) <= 20
-    assert player.shots[0].time == 0
-    assert player.shots[-1].state is pinned.state
+    assert len(player.snapshots) <= 20
+    assert player.snapshots[0].time == 0
+    assert player.snapshots[-1].state is pinned.state
 
 
 def test_the_pose_between_two_is_looked_at_and_taken(pinned, drawing):
-    session, mixer = pinned.session, Mixer()
-    assert mixer.pose(session) is None
+    session, pose_blend = pinned.session, PoseBlend()
+    assert pose_blend.pose(session) is None
     pinned.editor.keep_pose("Rest")
     pinned.drag(END, (90.0, 60.0))
     pinned.settle()
     pinned.editor.keep_pose("Bent")
     now, events = bits(session.state), len(session.recording.events)
     for share in (0.0, 0.4, 1.0):
-        mixer.share = share
-        mixer.show(session)
+        pose_blend.share = share
+        pose_blend.show(session)
     np.testing.assert_array_equal(session.state.positions, session.state.poses[1].positions)
     session.leave()
     assert bits(session.state) == now
     assert len(session.recording.events) == events
-    mixer.share = 0.5
-    mixer.show(session)
-    pinned.editor.set_pose(mixer.pose(session), "In-between")
+    pose_blend.share = 0.5
+    pose_blend.show(session)
+    pinned.editor.set_pose(pose_blend.pose(session), "In-between")
     assert bits(recorded(session, drawing)) == bits(session.state)
     session.undo()
     assert bits(session.state) == now

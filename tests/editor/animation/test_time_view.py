@@ -2,11 +2,11 @@
 
 import pytest
 
-from akap_editor.editor.animation.time_view import SHORTEST, TimeView
+from akap_editor.editor.animation.time_view import SHORTEST, VisibleRange
 
 
 def test_zoom_keeps_its_moment_in_place_and_ends_at_all_there_is():
-    view = TimeView(10.0)
+    view = VisibleRange(10.0)
     view.zoom(2.0, 4.0)
     assert (view.start, view.seconds) == (2.0, 5.0)
     assert view.zoomed
@@ -21,7 +21,7 @@ def test_zoom_keeps_its_moment_in_place_and_ends_at_all_there_is():
 
 
 def test_it_goes_along_to_both_ends_and_to_a_moment():
-    view = TimeView(10.0)
+    view = VisibleRange(10.0)
     view.pan(3.0)
     assert view.start == 0.0
     view.zoom(5.0, 0.0)
@@ -38,7 +38,7 @@ def test_it_goes_along_to_both_ends_and_to_a_moment():
 
 
 def test_all_grows_and_what_is_shown_stays_unless_it_was_all():
-    view = TimeView(2.0)
+    view = VisibleRange(2.0)
     view.fit(4.0)
     assert (view.start, view.seconds) == (0.0, 4.0)
     view.zoom(2.0, 4.0)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from akap_editor.deform.pose_interpolation import Ways
-from akap_editor.editor.animation.keyframe_playback import KeyPlayer, keyed_frame, pose_at, stretched
+from akap_editor.deform.pose_interpolation import InterpolationCache
+from akap_editor.editor.animation.keyframe_playback import KeyframePlayback, keyed_frame, pose_at, stretched
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing
 from akap_editor.editor.document.keyframes import Animation, Keyframe
@@ -24,7 +24,7 @@ END = (105.0, 40.0)
 @pytest.fixture
 def player(pinned, clock):
     """Keyframes of the rest pose at 0, and of a bent one at 1 second."""
-    player = KeyPlayer(pinned.editor, clock)
+    player = KeyframePlayback(pinned.editor, clock)
     player.watch()
     player.put(0.0)
     pinned.drag(END, (90.0, 60.0))
@@ -46,7 +46,7 @@ def times(pinned):
 
 def test_the_pose_between_keyframes_is_the_eased_in_between(player, pinned, drawing):
     start, end = pinned.session.present.animation.keys
-    ways = Ways()
+    ways = InterpolationCache()
     for moment, share in ((0.0, 0.0), (0.25, 0.15625), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)):
         expected = ways.pose(drawing.mesh, start.positions, end.positions, share)
         np.testing.assert_array_equal(player.pose(moment), expected)
@@ -146,11 +146,11 @@ def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(player, pinned):
 
 
 @pytest.mark.parametrize(
-    ("pulled", "to", "expected"),
+    ("dragged", "to", "expected"),
     [(2.0, 4.0, (0, 2, 4)), (0.0, 1.0, (1, 1.5, 2)), (1.0, 2.0, (0, 2, 4)), (2.0, -9.0, (0, 0.025, 0.05))],
 )
-def test_stretching_keeps_the_other_end(pulled, to, expected):
-    assert tuple(stretched((0.0, 1.0, 2.0), pulled, to).values()) == pytest.approx(expected)
+def test_stretching_keeps_the_other_end(dragged, to, expected):
+    assert tuple(stretched((0.0, 1.0, 2.0), dragged, to).values()) == pytest.approx(expected)
 
 
 def test_playing_goes_on_and_starts_over(player, pinned, clock):

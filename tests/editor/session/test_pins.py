@@ -120,7 +120,7 @@ def test_alt_click_cuts_one_off_and_undo_brings_it_back(pinned):
     pinned.editor.select({1, 3})
     before = bits(pinned.state)
     press(pinned, NECK, alt=True)
-    assert (pinned.tool, pinned.ids) == ("CuttingPin", [1, 2, 3])
+    assert (pinned.tool, pinned.ids) == ("RemovingPin", [1, 2, 3])
     pinned.release(NECK)
     assert pinned.ids == [1, 3]
     assert pinned.editor.selection == {1, 3}

@@ -302,8 +302,8 @@ def test_a_step_that_fails_is_named_by_its_line(pinned, drawing, monkeypatch):
 
 OTHER_MACHINE = """
 import sys
-from akap_editor.editor.replay import replay
-from akap_editor.io.recordings import read_recording, recorded_drawing
+from akap_editor.editor.session.replay import replay
+from akap_editor.io.akap.recording import read_recording, recorded_drawing
 recording = read_recording(sys.argv[1])
 *_, last = replay(recording, recorded_drawing(recording))
 sys.stdout.buffer.write(last.state.positions.tobytes())

@@ -8,7 +8,7 @@ import pytest
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.session.bent import STILL
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.session.worker import AT_ONCE
+from akap_editor.editor.session.worker import INLINE
 from akap_editor.errors import SolverError
 from tests.support.editor_driver import Driver, bits
 
@@ -182,7 +182,7 @@ EDITS = {
 @pytest.mark.parametrize("edit", EDITS)
 def test_other_edits_wait_for_the_step_and_follow_it(slow, edit):
     """As if the step had been done at once, in the state and in the recording."""
-    twin = Driver(new_document(slow.session.drawing), worker=AT_ONCE)
+    twin = Driver(new_document(slow.session.drawing), worker=INLINE)
     for at in ((20.0, 40.0), (62.0, 40.0), END):
         twin.click(at)
     twin.press(END)

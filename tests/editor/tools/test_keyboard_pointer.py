@@ -9,10 +9,10 @@ from akap_editor.editor.tools.keyboard_pointer import (
     BIG_STEP,
     MARGIN,
     STEP,
-    Crosshair,
+    KeyboardPointer,
     reveal,
     select_next,
-    toggle_crosshair,
+    toggle_keyboard_pointer,
 )
 from akap_editor.errors import SolverError
 from tests.support.editor_driver import BESIDE
@@ -24,8 +24,8 @@ def at(driver, place):
     """Enter the crosshair at a place of the drawing, as if the mouse had been there last."""
     driver.move(place)
     driver.editor.pointer_left()
-    toggle_crosshair(driver.editor)
-    assert driver.tool == "Crosshair"
+    toggle_keyboard_pointer(driver.editor)
+    assert driver.tool == "KeyboardPointer"
     assert driver.editor.camera.to_drawing(driver.editor.pointer) == pytest.approx(place)
 
 
@@ -39,20 +39,20 @@ def middle(editor):
 
 
 def test_it_begins_where_the_mouse_was_last_or_in_the_middle(driver):
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     assert driver.editor.pointer == middle(driver.editor)
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     assert driver.tool == "Idle"
     at(driver, NECK)
     driver.key("escape")
     assert driver.tool == "Idle"
     driver.editor.canvas = (5000.0, 0.0, 6000.0, 500.0)
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     assert driver.editor.pointer == middle(driver.editor), "where the mouse was is no canvas any more"
 
 
 def test_arrows_move_it_and_no_pin(pinned):
-    toggle_crosshair(pinned.editor)
+    toggle_keyboard_pointer(pinned.editor)
     pinned.editor.select(pinned.ids)
     before, (x, y) = pinned.everything, pinned.editor.pointer
     for name in ("left", "left", "up"):
@@ -70,7 +70,7 @@ def test_enter_adds_a_pin_exactly_there_in_one_gesture(driver):
     assert driver.editor.would_add_pin
     depth = driver.depth
     enter(driver)
-    assert driver.tool == "Crosshair"
+    assert driver.tool == "KeyboardPointer"
     assert driver.where(driver.ids[-1]) == pytest.approx(NECK, abs=0.01)
     assert driver.editor.selection == {driver.ids[-1]}
     assert driver.depth == depth + 1
@@ -86,7 +86,7 @@ def test_enter_beside_the_drawing_adds_nothing(driver):
     before = driver.everything
     enter(driver)
     assert driver.everything == before
-    assert driver.tool == "Crosshair"
+    assert driver.tool == "KeyboardPointer"
 
 
 def test_enter_selects_with_shift_several_and_alt_removes(pinned):
@@ -118,7 +118,7 @@ def test_once_it_is_left_arrows_nudge_the_pin_that_was_taken(pinned):
 
 
 def test_the_canvas_moves_to_keep_it_in_sight(driver):
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     left, top, right, bottom = driver.editor.canvas
     seen = []
     for _ in range(40):
@@ -135,7 +135,7 @@ def test_at_the_edge_it_comes_in_without_a_move_of_the_canvas(driver):
     left, top, _, _ = driver.editor.canvas
     driver.handle(PointerEvent("move", (left + 5, top + 5)))
     camera = driver.editor.camera
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     driver.key("right")
     driver.key("down")
     assert driver.editor.pointer == (left + 5 + STEP, top + 5 + STEP)
@@ -154,7 +154,7 @@ def test_nothing_is_panned_where_it_is_in_sight(driver):
 
 
 def test_the_mouse_takes_over_again(driver):
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     driver.editor.pointer_left()
     assert driver.editor.pointer is not None, "the crosshair is no mouse that could leave"
     driver.move(NECK)
@@ -163,29 +163,29 @@ def test_the_mouse_takes_over_again(driver):
 
 
 def test_it_hinders_no_edit_and_stays(pinned):
-    toggle_crosshair(pinned.editor)
+    toggle_keyboard_pointer(pinned.editor)
     pinned.editor.select({pinned.ids[0]})
     pinned.editor.remove_selected()
     pinned.undo()
     pinned.editor.cancel()
     assert len(pinned.ids) == 3
-    assert pinned.tool == "Crosshair"
+    assert pinned.tool == "KeyboardPointer"
 
 
 def test_it_ends_with_the_drawing(driver):
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     driver.editor.open(new_document(driver.session.drawing))
     assert driver.tool == "Idle"
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     driver.editor.close()
     assert type(driver.editor.tool).__name__ == "Idle"
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     assert type(driver.editor.tool).__name__ == "Idle", "there is nothing to point at"
 
 
 def test_it_waits_for_the_end_of_a_gesture(pinned):
     pinned.press(pinned.where(pinned.ids[0]))
-    toggle_crosshair(pinned.editor)
+    toggle_keyboard_pointer(pinned.editor)
     assert pinned.tool == "PointingPin"
 
 
@@ -208,7 +208,7 @@ def test_enter_dabs_with_the_brush(driver, erasing):
         assert "erases" in editor.hint
         enter(driver)
         assert driver.state.stiffness is None or driver.state.stiffness.max() < 50
-    assert driver.tool == "Crosshair"
+    assert driver.tool == "KeyboardPointer"
 
 
 def test_the_hand_is_laid_aside(driver):
@@ -275,9 +275,9 @@ def test_a_pin_out_of_sight_is_brought_there(pinned):
 
 
 def test_the_crosshair_goes_along(pinned):
-    toggle_crosshair(pinned.editor)
+    toggle_keyboard_pointer(pinned.editor)
     select_next(pinned.editor)
-    assert isinstance(pinned.editor.tool, Crosshair)
+    assert isinstance(pinned.editor.tool, KeyboardPointer)
     assert pinned.editor.hovered_pin == pinned.ids[0]
 
 
@@ -287,7 +287,7 @@ def test_without_pins_there_is_none_to_go_to(driver):
 
 
 def test_a_click_of_the_mouse_where_it_stands_ends_it(driver):
-    toggle_crosshair(driver.editor)
+    toggle_keyboard_pointer(driver.editor)
     driver.handle(PointerEvent("press", driver.editor.camera.to_screen(NECK)))
     driver.handle(PointerEvent("release", driver.editor.camera.to_screen(NECK)))
     assert driver.tool == "Idle"

@@ -76,12 +76,12 @@ def enter_panning(d):
 
 def enter_cutting_pin(d):
     d.handle(PointerEvent("press", d.editor.camera.to_screen(NECK), alt=True))
-    return "CuttingPin"
+    return "RemovingPin"
 
 
 def enter_asking_for_menu(d):
     d.press(NECK, "right")
-    return "AskingForMenu"
+    return "OpeningPinMenu"
 
 
 ENTER = [
@@ -96,7 +96,7 @@ ENTER = [
     enter_cutting_pin,
     enter_asking_for_menu,
 ]
-BUTTON = {"Panning": "middle", "AskingForMenu": "right"}  # that ends a gesture; else the left one
+BUTTON = {"Panning": "middle", "OpeningPinMenu": "right"}  # that ends a gesture; else the left one
 
 
 @pytest.mark.parametrize("enter", ENTER)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from akap_editor.editor.comparison import Beside
+from akap_editor.editor.comparison import MethodComparison
 from akap_editor.editor.document.remesh import carried_over
 from akap_editor.editor.document.rest_pose import baked_state
 from akap_editor.editor.document.settings import Settings
@@ -98,7 +98,7 @@ def test_escape_in_the_middle_restores_exactly(pinned, way):
     for direction in (20, 50):
         point(pinned, "move", on_ring(pinned, 2, direction))
         pinned.advance()
-    assert pinned.tool == "TurningPin"
+    assert pinned.tool == "RotatingPin"
     pinned.key("escape") if way == "escape" else pinned.undo()
     assert pinned.everything == before
     assert pinned.tool == "Idle"
@@ -120,14 +120,14 @@ def test_the_ring_is_that_of_the_pin_nearby_or_of_the_only_selected_one(pinned):
         point(pinned, "move", at)
         return ring_pin(pinned.editor)
 
-    beside = pinned.editor.camera.to_screen((2.0, 78.0))
+    comparison = pinned.editor.camera.to_screen((2.0, 78.0))
     assert shown(on_ring(pinned, 2, 30)) is None, "only with Alt"
     pinned.key("alt")
     assert shown(on_ring(pinned, 2, 30)) == 2
     assert shown(pinned.editor.pins_on_screen()[3]) == 3
-    assert shown(beside) is None
+    assert shown(comparison) is None
     pinned.editor.select({1})
-    assert shown(beside) == 1
+    assert shown(comparison) == 1
     assert shown(on_ring(pinned, 2, 30)) == 2
     pinned.editor.chosen_tool = "hand"
     assert shown(on_ring(pinned, 2, 30)) is None
@@ -211,17 +211,17 @@ def test_a_replay_gives_the_same_poses_to_the_last_bit(pinned, drawing):
 
 
 def test_a_second_method_beside_turns_as_well(pinned):
-    beside = Beside("akap:memory=1,no-dirichlet")
-    beside.follow(pinned.session)
+    comparison = MethodComparison("akap:memory=1,no-dirichlet")
+    comparison.follow(pinned.session)
     turn(pinned, 2, 20, 40)
-    beside.follow(pinned.session)
-    while beside.moving:
-        beside.follow(pinned.session)
-    assert beside.session is not None
-    assert beside.session.pin_angle(2) == pytest.approx(math.radians(40), abs=NEAR)
+    comparison.follow(pinned.session)
+    while comparison.moving:
+        comparison.follow(pinned.session)
+    assert comparison.session is not None
+    assert comparison.session.pin_angle(2) == pytest.approx(math.radians(40), abs=NEAR)
     set_angle(pinned.editor, 2, None)
-    beside.follow(pinned.session)
-    assert beside.session.state.pin(2).angle is None
+    comparison.follow(pinned.session)
+    assert comparison.session.state.pin(2).angle is None
 
 
 def test_held_angles_come_to_rest_soon_also_where_parts_are_stiff(pinned):

@@ -6,7 +6,7 @@ import pytest
 from akap_editor.editor.document.remesh import carried_over
 from akap_editor.editor.document.rest_pose import baked_state
 from akap_editor.editor.document.settings import Settings
-from akap_editor.editor.document.stiffness import as_stiffness, coverage, painted
+from akap_editor.editor.document.stiffness import apply_stroke, as_stiffness, stroke_coverage
 from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.tools.stiffness_brush import LARGEST, SMALLEST, Brush, shown_stiffness
@@ -64,7 +64,7 @@ def test_what_is_stiff_bends_less(new_driver):
             d.editor.chosen_tool = "pins"
         d.drag((105.0, 40.0), (70.0, 70.0))
         d.settle()
-        faces = coverage(d.session.drawing.mesh, [(x, 40.0) for x in range(62, 89, 2)], 12.0) == 1.0
+        faces = stroke_coverage(d.session.drawing.mesh, [(x, 40.0) for x in range(62, 89, 2)], 12.0) == 1.0
         found = distortion(d.session.drawing.mesh, d.state.positions)
         bent.append(float((found.face_angle[faces] - 2.0).mean()))
     assert bent[1] < 0.2 * bent[0]
@@ -127,7 +127,7 @@ def test_brushes_have_limits():
 
 
 def test_coverage_falls_softly_to_the_rim(drawing):
-    covered = coverage(drawing.mesh, [NECK], 25.0)
+    covered = stroke_coverage(drawing.mesh, [NECK], 25.0)
     away = np.hypot(*(drawing.mesh.vertices[drawing.mesh.faces].mean(axis=1) - NECK).T)
     assert (covered[away < 12.0] == 1.0).all()
     assert (covered[away > 25.0] == 0.0).all()
@@ -140,17 +140,17 @@ def test_the_smallest_brush_reaches_the_face_that_it_is_on(drawing):
     rng = np.random.default_rng(5)
     for face in rng.integers(0, len(drawing.mesh.faces), 40):
         inside = rng.dirichlet([3.0, 3.0, 3.0]) @ drawing.mesh.vertices[drawing.mesh.faces[face]]
-        assert coverage(drawing.mesh, [inside], 0.0)[face] > 0
+        assert stroke_coverage(drawing.mesh, [inside], 0.0)[face] > 0
 
 
 def test_painting_twice_is_painting_once_and_half_covered_is_the_root(drawing):
     m = len(drawing.mesh.faces)
     covered = np.linspace(0, 1, m)
-    once = painted(None, covered, 400.0)
+    once = apply_stroke(None, covered, 400.0)
     assert once[-1] == 400.0
     assert once[m // 2] == pytest.approx(20.0, rel=0.05)
-    assert painted(painted(None, np.ones(m), 9.0), np.ones(m), 9.0).tolist() == [9.0] * m
-    assert painted(once, np.ones(m), 1.0) is None
+    assert apply_stroke(apply_stroke(None, np.ones(m), 9.0), np.ones(m), 9.0).tolist() == [9.0] * m
+    assert apply_stroke(once, np.ones(m), 1.0) is None
 
 
 @pytest.mark.parametrize("bad", [[2.0], [0.5] * 3, [np.nan] * 3, [2000.0] * 3, "soft", [[1.0]] * 3])

@@ -168,8 +168,8 @@ from dataclasses import replace
 from pathlib import Path
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
-from akap_editor.io.autosave import Autosave
-from akap_editor.io.project_file import load
+from akap_editor.io.akap.autosave import Autosave
+from akap_editor.io.akap.project import load
 
 editor, autosave = Editor(), Autosave(Path(sys.argv[2]))
 editor.open(load(sys.argv[1]))
