@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app import window as window_module
-from akap_editor.app.canvas.pointer_input import scene as picture_module
+from akap_editor.app.canvas import scene as picture_module
 from akap_editor.editor.editor import FRAME_BUDGET
 from akap_editor.editor.session.worker import INLINE
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app import widgets
-from akap_editor.app.commands.registry import registry as commands
+from akap_editor.app.commands import registry as commands
 from akap_editor.app.dialogs.file_dialog import UnsavedChangesQuestion
 from akap_editor.app.window import SMALLEST
 from akap_editor.editor.document.document import new_document

@@ -9,10 +9,10 @@ import pytest
 
 from akap_editor import cli
 from akap_editor.app.app_state import AppState
+from akap_editor.app.commands import shortcuts_page as keys_overlay
 from akap_editor.app.commands.command import CTRL, Key
 from akap_editor.app.commands.registry import COMMANDS
-from akap_editor.app.commands.registry import shortcuts_page as keys_overlay
-from akap_editor.app.dialogs.dialogs import first_steps as hints
+from akap_editor.app.dialogs import first_steps as hints
 from akap_editor.app.preferences import Preferences
 from akap_editor.errors import InputError
 from akap_editor.io.images import write_png

@@ -7,7 +7,7 @@ import pytest
 from imgui_bundle import imgui
 
 from akap_editor.app import theme
-from akap_editor.app.canvas.pointer_input import view_options as overlays
+from akap_editor.app.canvas import view_options as overlays
 from akap_editor.app.panels.side_panel import numbers_panel
 from akap_editor.app.timeline import keyframe_track as key_track
 from akap_editor.render import colormaps

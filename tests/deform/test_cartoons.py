@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from akap_editor.deform.akap import deformer as akap
 from akap_editor.deform.akap.deformer import AkapDeformer
-from akap_editor.deform.akap.deformer import deformer as akap
 from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, TriMesh

@@ -56,7 +56,7 @@ class SymmetricDirichlet:
 
         With σ₁ ≥ σ₂ the singular values of J, a change of J has four eigenvectors: two scalings, with
         2 + 6 / σᵢ⁴, a flip, and a twist, whose eigenvalue is negative in compressed faces. With ``convex`` it
-        is then taken to be zero. spin: (m,) c of further energies c A |z − e^{iθ}|² (`PinRotationConstraints`).
+        is then taken to be zero. spin: (m,) the factors c of `PinRotationConstraints`.
         """
         spins = np.zeros(len(self._areas)) if spin is None else self._true_areas * spin
         result = np.zeros(len(blocks.rows))

@@ -84,7 +84,8 @@ class Motion:
 
     Between two recorded times the drawing moves along its trajectories (`StepResult.at`); of methods that
     know none, each edge turns at a constant rate (`PoseInterpolation`). So a few recorded steps a second play
-    as many frames along arcs. A pose that was set, and not reached by steps, comes at once, and so does another mesh.
+    as many frames along arcs. A pose that was set, and not reached by steps, comes at once, and so does
+    another mesh.
     """
 
     def __init__(self, drawing: Drawing, moments: Iterable[ReplayedEvent]) -> None:

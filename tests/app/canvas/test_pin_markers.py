@@ -4,7 +4,7 @@ from imgui_bundle import imgui  # isort: skip
 import numpy as np
 import pytest
 
-from akap_editor.app.commands.registry import registry as commands
+from akap_editor.app.commands import registry as commands
 from akap_editor.editor.events import PinRequest
 
 Key = imgui.Key

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from akap_editor.app.commands.registry import registry as commands
+from akap_editor.app.commands import registry as commands
 from akap_editor.editor.tools.rotate import RING, ring_pin
 from akap_editor.render.overlays import FaceColors
 from tests.app.canvas.test_pin_markers import at_pin

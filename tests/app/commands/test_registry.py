@@ -7,10 +7,10 @@ import pytest
 
 from akap_editor.app import glfw_key_order as key_order
 from akap_editor.app.canvas.view_options import RANGES
+from akap_editor.app.commands import registry as commands
 from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
 from akap_editor.app.commands.registry import COMMANDS, MENUS
-from akap_editor.app.commands.registry import registry as commands
-from akap_editor.app.panels.side_panel import side_panel as panels
+from akap_editor.app.panels import side_panel as panels
 from akap_editor.deform.deformer import method_names
 from akap_editor.deform.methods import PRESETS, preset_of
 from akap_editor.editor.camera import Camera

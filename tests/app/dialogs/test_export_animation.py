@@ -10,8 +10,8 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
+from akap_editor.app.dialogs import animating
 from akap_editor.app.dialogs.animating import FORMATS, AnimationExportOptions, remember, remembered
-from akap_editor.app.dialogs.dialogs import animating
 from akap_editor.app.preferences import Preferences
 from akap_editor.errors import InputError
 from akap_editor.io.animation.animated_images import _ENCODERS

@@ -6,7 +6,7 @@ from threading import Event
 import numpy as np
 import pytest
 
-from akap_editor.app.dialogs.dialogs import export_pose as export_dialog
+from akap_editor.app.dialogs import export_pose as export_dialog
 from akap_editor.app.jobs.pose_export import PoseExportQueue
 from akap_editor.errors import InputError
 from akap_editor.io import export as exports

@@ -6,8 +6,8 @@ import json
 import pytest
 
 from akap_editor.app.app_state import AppState
+from akap_editor.app.panels import method_parameters as settings_panel
 from akap_editor.app.panels.method_parameters import PARAMETERS, default
-from akap_editor.app.panels.side_panel import method_parameters as settings_panel
 from akap_editor.app.preferences import Preferences
 from akap_editor.deform.deformer import make_deformer, method_class, method_names
 from akap_editor.editor.document.document import new_document

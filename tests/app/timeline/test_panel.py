@@ -7,7 +7,7 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
-from akap_editor.app.dialogs.dialogs import animating
+from akap_editor.app.dialogs import animating
 from akap_editor.editor.session.replay import replay
 
 

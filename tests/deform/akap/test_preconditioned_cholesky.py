@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy.sparse import coo_array
 
+from akap_editor.deform.akap import preconditioned_cholesky as reuse
 from akap_editor.deform.akap.deformer import AkapDeformer
-from akap_editor.deform.akap.deformer import preconditioned_cholesky as reuse
 from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
 from akap_editor.deform.cholesky import SymmetricPattern
 from akap_editor.geometry.distortion import distortion

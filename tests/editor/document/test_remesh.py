@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document import remesh as remesh_module
+from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document.drawing import Drawing, Meshing, make_drawing
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.document.remesh import carried_over, remeshed

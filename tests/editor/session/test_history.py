@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.document.document import EditState
+from akap_editor.editor.session import history as history_module
 from akap_editor.editor.session.history import History
-from akap_editor.editor.session.session import history as history_module
 
 
 @pytest.fixture

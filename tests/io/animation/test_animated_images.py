@@ -3,7 +3,7 @@ import pytest
 from PIL import Image
 
 from akap_editor.errors import InputError
-from akap_editor.io.animation.animated_images import animated_images as animation
+from akap_editor.io.animation import animated_images as animation
 from akap_editor.io.animation.animated_images import write_animation
 from akap_editor.io.images import read_image
 

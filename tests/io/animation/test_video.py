@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from akap_editor.errors import InputError
-from akap_editor.io.animation.animated_images import video, write_animation
+from akap_editor.io.animation import video
+from akap_editor.io.animation.animated_images import write_animation
 from akap_editor.io.animation.video import write_video
 
 av = pytest.importorskip("av", reason="the extra [video] is not installed")
