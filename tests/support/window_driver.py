@@ -3,7 +3,9 @@
 # imgui_bundle first: its import makes pyGLFW load the libglfw that imgui's backend is linked to.
 from imgui_bundle import imgui  # isort: skip
 import ctypes
+import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -52,11 +54,12 @@ class WindowDriver:
         self.window.close()
         te.destroy_context(self._engine)  # only after ImGui's context
 
-    def reset(self, document: Document) -> None:
-        """As just started with this document, whatever was open before."""
+    def reset(self, document: Document, clock: Callable[[], float] = time.monotonic) -> None:
+        """As just started with this document, whatever was open before. clock: the editor's, in seconds."""
         if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
             imgui.internal.close_popup_to_level(0, False)
-        self.window.state = AppState(exporter=self.window.state.exporter)
+        editor = Editor(clock, ThreadPoolExecutor(1, "engine"))
+        self.window.state = AppState(editor, exporter=self.window.state.exporter)
         self.editor.ui_scale = self.window.scale
         self.state.show(document)
         self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.comparison)))

@@ -11,6 +11,7 @@ Key = imgui.Key
 
 
 def test_arrows_nudge_also_after_a_click_on_a_panel(pinned):
+    pinned.reset(pinned.document, clock=lambda: 0.0)  # one series, however slow the machine is
     pinned.editor.select({3})
     before = pinned.session.state.pin(3).target
 
@@ -19,7 +20,6 @@ def test_arrows_nudge_also_after_a_click_on_a_panel(pinned):
         for chord in (Key.up_arrow, Key.up_arrow, Key.mod_shift | Key.left_arrow):
             hand.key_press(int(chord))
 
-    pinned.editor._clock = lambda: 0.0  # however slow the machine is
     pinned.do(nudge)
     np.testing.assert_allclose(pinned.session.state.pin(3).target, np.add(before, (-10, -2)), atol=1e-9)
     assert pinned.session.history.labels == ["Nudge"]
