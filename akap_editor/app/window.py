@@ -272,13 +272,13 @@ class Window:
         if not imgui.get_io().want_text_input and not modal:
             commands.run_pressed(state)
         if modal:
-            self._canvas.let_go(state)
+            self._canvas.cancel_input(state)
         else:
             self._canvas.read_input(state)
             self._canvas.choose_cursor(state)
         state.editor.advance()
         state.session_playback.watch(state.editor.session)
-        state.editor.go_on()
+        state.editor.start_next_step()
         self._canvas.draw_overlay(state, self.scale)
         draw_legend(state.view, state.editor, self.scale)
 
@@ -326,7 +326,7 @@ class Window:
     def _watch_focus(self) -> None:
         focused = bool(glfw.get_window_attrib(self._handle, glfw.FOCUSED))
         if self._focused and not focused:
-            self._canvas.let_go(self.state)
+            self._canvas.cancel_input(self.state)
         self._focused = focused
 
     def _on_drop(self, _: Any, paths: list[str]) -> None:

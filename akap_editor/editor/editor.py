@@ -58,7 +58,7 @@ class Editor(Edits):
     def take_over(self, session: Session) -> None:
         """Go on with a session; the one before it is gone."""
         self.cancel()
-        self.rest()
+        self.return_to_idle()
         self.session = session
         self.trails.clear()
         self.select(())
@@ -67,7 +67,7 @@ class Editor(Edits):
     def close(self) -> None:
         """Nothing is open any more."""
         self.cancel()
-        self.rest()
+        self.return_to_idle()
         self.session = None
         self.select(())
 
@@ -119,13 +119,13 @@ class Editor(Edits):
         if not isinstance(self.tool, KeyboardPointer):
             self.pointer = None
 
-    def enter(self, tool: Tool) -> None:
+    def set_tool(self, tool: Tool) -> None:
         """Make a tool state the active one."""
         self.tool = tool
 
-    def rest(self) -> None:
+    def return_to_idle(self) -> None:
         """No tool is at work any more."""
-        self.enter(Idle(self))
+        self.set_tool(Idle(self))
 
     def cancel(self) -> None:
         """The one way out of a gesture: Escape, focus loss and errors all come here."""
@@ -177,7 +177,7 @@ class Editor(Edits):
             raise
         return moved
 
-    def go_on(self) -> None:
+    def start_next_step(self) -> None:
         """Let the worker begin with the next step while a frame is drawn, if steps take longer than that."""
         session = self.session
         if session is None or session.last_step is None or not session.moving:
@@ -199,7 +199,7 @@ class Editor(Edits):
         if self.request is not None and self.request.pin not in there:
             self.request = None
 
-    def ask(self, kind: Literal["values", "menu"], pin: int) -> None:
+    def request_pin_popup(self, kind: Literal["values", "menu"], pin: int) -> None:
         """Ask the window to open something for a pin, which becomes selected."""
         if pin not in self.selection or kind == "values":
             self.select({pin})
@@ -228,14 +228,16 @@ class Editor(Edits):
     @property
     def would_add_pin(self) -> bool:
         """Whether a click where the pointer is would add a pin."""
-        if self.session is None or self.pointer is None or self.hand or not isinstance(self.tool, Idle):
+        if self.session is None or self.pointer is None or not isinstance(self.tool, Idle):
             return False
-        if self.chosen_tool == "brush" or self.hovered_pin is not None or self.held & {"shift", "alt"}:
+        if self.pans_on_drag or self.chosen_tool == "brush" or self.held & {"shift", "alt"}:
+            return False
+        if self.hovered_pin is not None:
             return False
         return self._sight.sees_drawing(self.session, self.camera.to_drawing(self.pointer))
 
     @property
-    def hand(self) -> bool:
+    def pans_on_drag(self) -> bool:
         """Whether a left drag moves the canvas."""
         return self.chosen_tool == "hand" or "space" in self.held
 

@@ -56,7 +56,12 @@ def draw_ring(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
 
 def draw_brush(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
     """The rim of the brush around the pointer, and the inner circle in which it works fully."""
-    if editor.session is None or editor.chosen_tool != "brush" or editor.hand or editor.pointer is None:
+    if (
+        editor.session is None
+        or editor.chosen_tool != "brush"
+        or editor.pans_on_drag
+        or editor.pointer is None
+    ):
         return
     center, radius = ImVec2(*editor.pointer), editor.brush.radius * scale
     draw.add_circle(center, radius, packed(DARK, 0.6), 0, 3.0 * scale)

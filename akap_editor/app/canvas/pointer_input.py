@@ -66,7 +66,7 @@ class Canvas:
         if free and io.mouse_wheel:
             editor.handle_event(ScrollEvent(position, io.mouse_wheel))
 
-    def let_go(self, state: AppState) -> None:
+    def cancel_input(self, state: AppState) -> None:
         """End what is held half-way: its end goes to a dialog or another window and will not be seen here."""
         at = imgui.get_mouse_pos()
         self._last, self._interrupted = (at.x, at.y), imgui.get_frame_count()
@@ -113,7 +113,7 @@ class Canvas:
         editor = state.editor
         if imgui.get_io().want_capture_mouse:
             return
-        if editor.hand:
+        if editor.pans_on_drag:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
         elif editor.chosen_tool == "brush" and editor.session is not None:
             imgui.set_mouse_cursor(imgui.MouseCursor_.none)

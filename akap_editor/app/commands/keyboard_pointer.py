@@ -39,7 +39,7 @@ def _menu(state: AppState) -> None:
     """Of the pin that was selected, or of a keyframe."""
     imgui.set_nav_cursor_visible(True)  # so that arrows walk through it
     if state.editor.selection:
-        state.editor.ask("menu", max(state.editor.selection))
+        state.editor.request_pin_popup("menu", max(state.editor.selection))
     else:
         state.key_menu = True
 
@@ -65,7 +65,7 @@ PREVIOUS_PIN = Command(
 )
 PIN_VALUES = Command(
     "Pin Values...",
-    lambda state: state.editor.ask("values", *state.editor.selection),
+    lambda state: state.editor.request_pin_popup("values", *state.editor.selection),
     (Key.enter, Key.keypad_enter),
     "",
     _one_pin,

@@ -58,7 +58,7 @@ class PinPopup:
 
 def _menu(state: AppState, pin: Pin) -> None:
     if imgui.menu_item_simple("Values..."):
-        state.editor.ask("values", pin.id)
+        state.editor.request_pin_popup("values", pin.id)
     if len(state.editor.selection) > 1 and imgui.menu_item_simple("Select Only This Pin"):
         state.editor.select({pin.id})
     for command in _MENU:

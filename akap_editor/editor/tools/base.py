@@ -44,7 +44,7 @@ class Tool:
 
     def cancel(self) -> None:
         """Escape, focus loss or an error: back to idle, everything as it was before the press."""
-        self.editor.rest()
+        self.editor.return_to_idle()
 
 
 class Pointing(Tool):
@@ -64,7 +64,7 @@ class Pointing(Tool):
 
     def dragged(self, event: PointerEvent) -> None:
         """The pointer has left the place; by default that was not meant."""
-        self.editor.rest()
+        self.editor.return_to_idle()
 
     def clicked(self, event: PointerEvent) -> None:
         """The button went up where it went down."""

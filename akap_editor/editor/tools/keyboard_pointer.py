@@ -50,14 +50,14 @@ class KeyboardPointer(Idle):
         elif event.key == "enter":
             self._click()
         elif event.key == "escape":
-            self.editor.rest()
+            self.editor.return_to_idle()
         else:
             return False
         return True
 
     def move(self, event: PointerEvent) -> None:
         """The mouse is used again."""
-        self.editor.rest()
+        self.editor.return_to_idle()
 
     def resized(self) -> None:
         """Another part of the window is the canvas."""
@@ -93,7 +93,7 @@ class KeyboardPointer(Idle):
         shift, alt = "shift" in editor.held, "alt" in editor.held
         editor.handle_event(PointerEvent("press", place, shift=shift, alt=alt))
         editor.handle_event(PointerEvent("release", place, shift=shift, alt=alt))
-        editor.enter(self)
+        editor.set_tool(self)
 
 
 def reveal(editor: "Editor", place: Point) -> Point:
@@ -111,11 +111,11 @@ def reveal(editor: "Editor", place: Point) -> Point:
 def toggle_keyboard_pointer(editor: "Editor") -> None:
     """Begin to move the pointer by keys, or end it; the hand is laid aside, as it has nothing to click."""
     if isinstance(editor.tool, KeyboardPointer):
-        editor.rest()
+        editor.return_to_idle()
     elif editor.session is not None and not editor.busy:
         if editor.chosen_tool == "hand":
             editor.chosen_tool = "pins"
-        editor.enter(KeyboardPointer(editor))
+        editor.set_tool(KeyboardPointer(editor))
 
 
 def select_next(editor: "Editor", forward: bool = True) -> None:

@@ -25,7 +25,7 @@ class Idle(Tool):
         editor = self.editor
         if editor.session is None:
             return "Open a picture or a drawing to begin"
-        if editor.hand:
+        if editor.pans_on_drag:
             return "Drag to move the canvas, wheel to zoom"
         if editor.chosen_tool == "brush":
             return editor.brush.hint
@@ -47,44 +47,44 @@ class Idle(Tool):
 
     def press(self, event: PointerEvent) -> None:
         editor = self.editor
-        if event.button == "middle" or (event.button == "left" and editor.hand):
-            editor.enter(Panning(editor, event))
+        if event.button == "middle" or (event.button == "left" and editor.pans_on_drag):
+            editor.set_tool(Panning(editor, event))
             return
         if editor.session is None:
             return
         if editor.chosen_tool == "brush":
-            editor.enter(Painting(editor, event))
+            editor.set_tool(Painting(editor, event))
             return
         pin = editor.pin_at(event.position)
         ring = ring_at(editor, event.position) if event.alt else None
         if event.button == "right":
             if pin is not None:
-                editor.enter(OpeningPinMenu(editor, event, pin))
+                editor.set_tool(OpeningPinMenu(editor, event, pin))
         elif ring is not None:
-            editor.enter(PointingRotationRing(editor, event, ring))
+            editor.set_tool(PointingRotationRing(editor, event, ring))
         elif pin is None:
             self._press_beside_pins(event)
         elif event.alt:
-            editor.enter(RemovingPin(editor, event, pin))
+            editor.set_tool(RemovingPin(editor, event, pin))
         elif event.clicks == 2 and pin != editor.newest_pin:
-            editor.ask("values", pin)
+            editor.request_pin_popup("values", pin)
         else:
-            editor.enter(PointingPin(editor, event, pin, is_new=False))
+            editor.set_tool(PointingPin(editor, event, pin, is_new=False))
 
     def _press_beside_pins(self, event: PointerEvent) -> None:
         """A new pin where the drawing is; Shift and Alt are for pins that are there."""
         editor = self.editor
         assert editor.session is not None
         if event.shift or event.alt:
-            editor.enter(PointingCanvas(editor, event))
+            editor.set_tool(PointingCanvas(editor, event))
             return
         editor.session.begin("Add pin")
         added = editor.session.add_pin(editor.camera.to_drawing(event.position))
         if added is None:
             editor.session.abort()
-            editor.enter(PointingCanvas(editor, event))
+            editor.set_tool(PointingCanvas(editor, event))
         else:
-            editor.enter(PointingPin(editor, event, added, is_new=True))
+            editor.set_tool(PointingPin(editor, event, added, is_new=True))
 
 
 class PointingPin(Pointing):
@@ -105,7 +105,7 @@ class PointingPin(Pointing):
 
     def dragged(self, event: PointerEvent) -> None:
         drag = DraggingPin(self.editor, self.start, self._selection_before, self.is_new)
-        self.editor.enter(drag)
+        self.editor.set_tool(drag)
         drag.move(event)
 
     def clicked(self, event: PointerEvent) -> None:
@@ -118,7 +118,7 @@ class PointingPin(Pointing):
             editor.select(editor.selection - {self.pin})
         elif not event.shift:
             editor.select({self.pin})
-        editor.enter(Idle(editor))
+        editor.set_tool(Idle(editor))
 
     def cancel(self) -> None:
         if self.is_new and self.editor.session is not None:
@@ -137,7 +137,7 @@ class RemovingPin(Pointing):
         self.pin = pin
 
     def clicked(self, event: PointerEvent) -> None:
-        self.editor.enter(Idle(self.editor))
+        self.editor.set_tool(Idle(self.editor))
         self.editor.remove_pins({self.pin})
 
 
@@ -151,8 +151,8 @@ class OpeningPinMenu(Pointing):
         self.pin = pin
 
     def clicked(self, event: PointerEvent) -> None:
-        self.editor.enter(Idle(self.editor))
-        self.editor.ask("menu", self.pin)
+        self.editor.set_tool(Idle(self.editor))
+        self.editor.request_pin_popup("menu", self.pin)
 
 
 class DraggingPin(Tool):
@@ -194,7 +194,7 @@ class DraggingPin(Tool):
         if event.button == "left":
             assert self.editor.session is not None
             self.editor.session.commit()
-            self.editor.enter(Idle(self.editor))
+            self.editor.set_tool(Idle(self.editor))
 
     def cancel(self) -> None:
         if self.editor.session is not None:
@@ -215,13 +215,13 @@ class PointingCanvas(Pointing):
 
     def dragged(self, event: PointerEvent) -> None:
         band = RubberBand(self.editor, self.start, self._adds)
-        self.editor.enter(band)
+        self.editor.set_tool(band)
         band.move(event)
 
     def clicked(self, event: PointerEvent) -> None:
         if not self._adds:
             self.editor.select(())
-        self.editor.enter(Idle(self.editor))
+        self.editor.set_tool(Idle(self.editor))
 
 
 class RubberBand(Tool):
@@ -247,7 +247,7 @@ class RubberBand(Tool):
 
     def release(self, event: PointerEvent) -> None:
         if event.button == "left":
-            self.editor.enter(Idle(self.editor))
+            self.editor.set_tool(Idle(self.editor))
 
     def cancel(self) -> None:
         self.editor.select(self._before)
@@ -270,7 +270,7 @@ class Panning(Tool):
 
     def release(self, event: PointerEvent) -> None:
         if event.button == self._button:
-            self.editor.enter(Idle(self.editor))
+            self.editor.set_tool(Idle(self.editor))
 
     def cancel(self) -> None:
         self.editor.camera = self._before

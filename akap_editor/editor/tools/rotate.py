@@ -21,7 +21,7 @@ def ring_pin(editor: "Editor") -> int | None:
         return editor.tool.pin
     session = editor.session
     idle = session is not None and session.turns and not editor.busy and editor.chosen_tool == "pins"
-    if not idle or editor.hand or "alt" not in editor.held or editor.pointer is None:
+    if not idle or editor.pans_on_drag or "alt" not in editor.held or editor.pointer is None:
         return None
     pointer, places = editor.pointer, editor.pins_on_screen()
     near = min(((distance(place, pointer), pin) for pin, place in places.items()), default=None)
@@ -75,11 +75,11 @@ class PointingRotationRing(Pointing):
 
     def dragged(self, event: PointerEvent) -> None:
         turning = RotatingPin(self.editor, self.start, self.pin)
-        self.editor.enter(turning)
+        self.editor.set_tool(turning)
         turning.move(event)
 
     def clicked(self, event: PointerEvent) -> None:
-        self.editor.rest()
+        self.editor.return_to_idle()
 
 
 class RotatingPin(Tool):
@@ -123,7 +123,7 @@ class RotatingPin(Tool):
         if event.button == "left":
             assert self.editor.session is not None
             self.editor.session.commit()
-            self.editor.rest()
+            self.editor.return_to_idle()
 
     def cancel(self) -> None:
         if self.editor.session is not None:

@@ -101,7 +101,7 @@ class Painting(Tool):
         if self._dabs:
             session.paint_stiffness(self._dabs, self._radius, self._factor)
         session.commit()
-        self.editor.rest()
+        self.editor.return_to_idle()
 
     def cancel(self) -> None:
         if self.editor.session is not None:

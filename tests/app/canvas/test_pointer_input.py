@@ -142,7 +142,7 @@ def test_panning_takes_the_canvas_along_and_edits_nothing(pinned, how):
     np.testing.assert_allclose(pinned.place(end), place, atol=1e-9)
     assert not pinned.editor.modified
     assert pinned.tool == "Idle"
-    assert pinned.editor.hand == (how == "hand tool")
+    assert pinned.editor.pans_on_drag == (how == "hand tool")
 
 
 def test_escape_in_a_pan_goes_back(ui):
@@ -164,7 +164,7 @@ def test_space_released_where_the_canvas_does_not_hear_it_leaves_no_hand(ui):
         move(hand, ui.comparison)
         hand.key_down(Key.space)
         hand.yield_(2)
-        assert ui.editor.hand
+        assert ui.editor.pans_on_drag
         ui.state.error = "A message takes the keyboard."
         hand.yield_(3)
         hand.key_up(Key.space)
@@ -172,7 +172,7 @@ def test_space_released_where_the_canvas_does_not_hear_it_leaves_no_hand(ui):
         hand.item_click("//That did not work###dialog That did not work/OK")
 
     ui.do(actions)
-    assert not ui.editor.hand
+    assert not ui.editor.pans_on_drag
 
 
 # -- canvas and panels --------------------------------------------------------------------------------------

@@ -214,7 +214,7 @@ def test_a_double_click_on_the_drawing_adds_one_pin_and_opens_nothing(driver):
 
 
 def test_a_request_goes_with_its_pin(pinned):
-    pinned.editor.ask("values", 2)
+    pinned.editor.request_pin_popup("values", 2)
     pinned.undo()
     pinned.undo()
     assert pinned.ids == [1]

@@ -350,7 +350,7 @@ def test_panning_moves_the_canvas_with_the_pointer_and_nothing_else(pinned, how)
 
 def test_space_let_go_gives_the_pointer_back(pinned):
     pinned.key("space")
-    assert pinned.editor.hand
+    assert pinned.editor.pans_on_drag
     pinned.key("space", pressed=False)
     pinned.click(NECK)
     assert pinned.editor.selection == {2}
