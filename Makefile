@@ -7,7 +7,7 @@ help:
 	@echo 'make run FILE=picture.png  open that picture, or a saved project'
 	@echo 'make test                  run all tests, those of the window too; no display is needed'
 	@echo 'make test ARGS="-k mesh"   pass options on to pytest'
-	@echo 'make lint                  ruff, ruff format --check, mypy'
+	@echo 'make lint                  ruff, ruff format --check, mypy, import contracts'
 	@echo 'make format                let ruff repair and format the code'
 	@echo 'make clean                 remove .venv, caches and output'
 	@echo
@@ -27,6 +27,7 @@ lint:
 	.venv/bin/python -m ruff check .
 	.venv/bin/python -m ruff format --check .
 	.venv/bin/python -m mypy
+	.venv/bin/lint-imports --no-logo --no-cache
 
 format:
 	@sh tools/setup.sh lint

@@ -1,191 +1,103 @@
-"""Layers, held by a machine: who imports whom, what loads without OpenGL, what a wheel carries."""
+"""The architecture beyond the import contracts of pyproject.toml, and a check that these contracts work."""
 
-import ast
 import os
+import shutil
 import subprocess
 import sys
 import zipfile
-from collections.abc import Iterator
-from dataclasses import dataclass
-from importlib.util import resolve_name
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "akap_editor"
 
-WINDOW = frozenset({"glfw", "imgui_bundle"})
-OPENGL = WINDOW | {"moderngl"}
-
-BASE = frozenset({"errors", "resources"})
-EDITOR = BASE | {"geometry", "meshing", "deform", "editor"}
-ALL = EDITOR | {"io", "render", "compare", "app", "cli", "__init__"}
+OPENGL = frozenset({"glfw", "imgui_bundle", "moderngl"})
 
 
-@dataclass(frozen=True)
-class Rule:
-    """What a layer may import of ours, and must not import of others: ever, or at its own import time."""
+class PackageCopy:
+    """A copy of the package and its import contracts, where a test can break one of them."""
 
-    ours: frozenset[str]
-    never: frozenset[str] = frozenset()
-    not_at_import: frozenset[str] = frozenset()
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        shutil.copy(ROOT / "pyproject.toml", folder)
+        shutil.copytree(PACKAGE, folder / "akap_editor", ignore=shutil.ignore_patterns("__pycache__"))
 
+    def check_contracts(self, *contracts: str) -> subprocess.CompletedProcess[str]:
+        """Run lint-imports with these contracts only, or with all of them if none is named."""
+        program = "from importlinter.cli import lint_imports_command; lint_imports_command()"
+        command = [sys.executable, "-c", program, "--no-logo", "--no-cache"]
+        command += [argument for contract in contracts for argument in ("--contract", contract)]
+        environment = {**os.environ, "PYTHONPATH": str(self._folder)}
+        return subprocess.run(command, cwd=self._folder, env=environment, capture_output=True, text=True)
 
-# A layer is a package or module at the top of akap_editor; itself it may always import.
-RULES = {
-    "errors": Rule(frozenset(), never=OPENGL),
-    "resources": Rule(frozenset({"errors"}), never=OPENGL),
-    "geometry": Rule(frozenset({"errors"}), never=OPENGL),
-    "meshing": Rule(frozenset({"errors", "geometry"}), never=OPENGL),
-    "deform": Rule(BASE | {"geometry"}, never=OPENGL),
-    "editor": Rule(BASE | {"geometry", "meshing", "deform"}, never=OPENGL),
-    "io": Rule(EDITOR),
-    "render": Rule(EDITOR, never=WINDOW),
-    "compare": Rule(EDITOR | {"io", "render", "__init__"}, never=OPENGL),
-    "app": Rule(ALL),
-    "cli": Rule(ALL, not_at_import=OPENGL),
-    "__init__": Rule(ALL, not_at_import=OPENGL),
-    "__main__": Rule(frozenset({"cli"}), never=OPENGL),
-}
-
-# Libraries that one place wraps for all others.
-WRAPPED = {
-    "triangle": {"meshing/triangulate.py", "meshing/triangle_worker.py"},
-    "cvxopt": {"deform/cholesky.py"},
-    "numba": {"geometry/jit.py"},
-}
+    def check_with(self, path: str, source: str, contract: str) -> subprocess.CompletedProcess[str]:
+        """Run lint-imports with one contract while a module ends with ``source``; the module may be new."""
+        module = self._folder / "akap_editor" / path
+        original = module.read_text("utf-8") if module.exists() else None
+        module.parent.mkdir(exist_ok=True)
+        module.write_text(f"{original or ''}\n{source}\n", "utf-8")
+        try:
+            return self.check_contracts(contract)
+        finally:
+            if original is None:
+                shutil.rmtree(module.parent)
+            else:
+                module.write_text(original, "utf-8")
 
 
-@dataclass(frozen=True)
-class Import:
-    """One imported name, absolute and dotted; ``deferred``: inside a function, so not at import time."""
-
-    name: str
-    line: int
-    deferred: bool
+@pytest.fixture(scope="module")
+def package_copy(tmp_path_factory: pytest.TempPathFactory) -> PackageCopy:
+    return PackageCopy(tmp_path_factory.mktemp("package"))
 
 
-def imports(node: ast.AST, package: str, deferred: bool = False) -> Iterator[Import]:
-    """Every import below ``node``, a part of a module of ``package``; import_module("...") counts as well."""
-    for child in ast.iter_child_nodes(node):
-        names: list[str] = []
-        match child:
-            case ast.Import():
-                names = [alias.name for alias in child.names]
-            case ast.ImportFrom():
-                origin = resolve_name("." * child.level + (child.module or ""), package)
-                names = [f"{origin}.{alias.name}" for alias in child.names]
-            case ast.Call(args=[ast.Constant(str(name)), *_]):
-                if ast.unparse(child.func).split(".")[-1] in ("import_module", "__import__"):
-                    names = [resolve_name(name, package)]
-        yield from (Import(name, child.lineno, deferred) for name in names)
-        inside = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-        yield from imports(child, package, deferred or inside)
-
-
-def violations(path: str, source: str) -> list[str]:
-    """The imports that a module must not have, one sentence each; ``path`` is relative to the package."""
-    where = PurePosixPath(path)
-    layer = where.with_suffix("").parts[0]
-    if layer not in RULES:
-        return [f"{path}: the layer {layer} has no rule in this test"]
-    rule, found = RULES[layer], []
-    for item in imports(ast.parse(source), ".".join(["akap_editor", *where.parts[:-1]])):
-        top, _, rest = item.name.partition(".")
-        if top == "akap_editor":
-            target = rest.split(".")[0] if rest.split(".")[0] in RULES else "__init__"
-            wrong = target != layer and target not in rule.ours
-        else:
-            wrong = top in rule.never or (top in rule.not_at_import and not item.deferred)
-            wrong = wrong or (top in WRAPPED and path not in WRAPPED[top])
-        if wrong:
-            found.append(f"{path}:{item.line}: {layer} must not import {item.name}")
-    return found
-
-
-def test_no_module_imports_what_its_layer_must_not() -> None:
-    sources = sorted(PACKAGE.rglob("*.py"))
-    assert sources
-    found = [
-        problem
-        for source in sources
-        for problem in violations(source.relative_to(PACKAGE).as_posix(), source.read_text("utf-8"))
-    ]
-    assert not found, "\n".join(found)
+def test_package_keeps_its_import_contracts(package_copy: PackageCopy) -> None:
+    process = package_copy.check_contracts()
+    assert process.returncode == 0, process.stdout + process.stderr
 
 
 @pytest.mark.parametrize(
-    ("path", "source"),
+    ("contract", "path", "source"),
     [
-        ("errors.py", "from .resources import resource"),
-        ("resources.py", "from .geometry import mesh"),
-        ("geometry/mesh.py", "from ..deform import akap"),
-        ("geometry/mesh.py", "from .. import deform"),
-        ("geometry/mesh.py", "import akap_editor.deform.akap.deformer"),
-        ("geometry/mesh.py", "from akap_editor.resources import resource"),
-        ("geometry/mesh.py", "from akap_editor import make_drawing"),
-        ("geometry/mesh.py", "import akap_editor"),
-        ("geometry/mesh.py", "def f():\n    import moderngl"),
-        ("geometry/parts/ring.py", "from ...editor import history"),
-        ("geometry/outline.py", "import triangle"),
-        ("deform/akap.py", "from ..editor.document import Pin"),
-        ("deform/akap.py", "if True:\n    from ..io.images import read_image"),
-        ("deform/akap.py", "class A:\n    def f(self):\n        from ..render import renderer"),
-        ("deform/akap.py", "from cvxopt import cholmod"),
-        ("deform/akap.py", "import numpy, moderngl"),
-        ("editor/editor.py", "from ..io import project_file"),
-        ("editor/editor.py", "from ..render.renderer import Renderer"),
-        ("editor/editor.py", "from ..app import window"),
-        ("editor/editor.py", "try:\n    import glfw\nexcept ImportError:\n    pass"),
-        ("editor/editor.py", "def f():\n    return importlib.import_module('imgui_bundle')"),
-        ("editor/editor.py", "import_module('..io.images')"),
-        ("io/export.py", "from ..render.renderer import Renderer"),
-        ("io/export.py", "def f():\n    from ..app.window import run"),
-        ("io/export.py", "from ..cli import main"),
-        ("render/renderer.py", "def f():\n    import glfw"),
-        ("render/renderer.py", "from imgui_bundle import imgui"),
-        ("render/renderer.py", "from ..io import images"),
-        ("render/renderer.py", "from ..app import theme"),
-        ("compare/report.py", "from ..cli import main"),
-        ("compare/report.py", "import moderngl"),
-        ("app/window.py", "import triangle"),
-        ("cli/edit.py", "import moderngl"),
-        ("cli/edit.py", "try:\n    from imgui_bundle import imgui\nfinally:\n    pass"),
-        ("__init__.py", "import glfw"),
-        ("__main__.py", "from .app.window import run"),
-        ("plugins/new.py", ""),
+        ("layers", "errors.py", "from .resources import resource"),
+        ("layers", "resources.py", "from .geometry import mesh"),
+        ("layers", "geometry/mesh.py", "from ..deform import akap"),
+        ("layers", "geometry/mesh.py", "import akap_editor.deform.akap.deformer"),
+        ("layers", "meshing/outline.py", "from ..deform.deformer import make_deformer"),
+        ("layers", "deform/akap/deformer.py", "from ...editor.document.pin import Pin"),
+        ("layers", "deform/akap/deformer.py", "if True:\n    from ...io.images import read_image"),
+        ("layers", "deform/cholesky.py", "class A:\n    def f(self):\n        from ..render import renderer"),
+        ("layers", "deform/islands.py", "from ..meshing import triangulate"),
+        ("layers", "editor/editor.py", "from ..io.akap import project"),
+        ("layers", "editor/camera.py", "from ..render.renderer import Renderer"),
+        ("layers", "editor/document/pin.py", "from ...app import window"),
+        ("layers", "io/images.py", "from ..render.renderer import Renderer"),
+        ("layers", "io/images.py", "def f():\n    from ..app.window import Window"),
+        ("layers", "io/images.py", "from ..cli import main"),
+        ("layers", "render/renderer.py", "from ..io import images"),
+        ("layers", "render/renderer.py", "from ..app import theme"),
+        ("layers", "compare/report.py", "from ..cli import main"),
+        ("layers", "plugins/__init__.py", ""),
+        ("bundled-files", "geometry/mesh.py", "from akap_editor.resources import resource"),
+        ("engine-without-opengl", "geometry/mesh.py", "def f():\n    import moderngl"),
+        ("engine-without-opengl", "deform/islands.py", "import numpy, moderngl"),
+        ("engine-without-opengl", "editor/editor.py", "try:\n    import glfw\nexcept ImportError:\n    pass"),
+        ("engine-without-opengl", "io/images.py", "from imgui_bundle import imgui"),
+        ("render-without-window", "render/renderer.py", "def f():\n    import glfw"),
+        ("render-without-window", "render/renderer.py", "from imgui_bundle import imgui"),
+        ("compare-through-render", "compare/report.py", "import moderngl"),
+        ("triangle", "meshing/outline.py", "import triangle"),
+        ("triangle", "app/window.py", "import triangle"),
+        ("cvxopt", "deform/islands.py", "from cvxopt import cholmod"),
+        ("numba", "deform/islands.py", "from numba import njit"),
     ],
 )
-def test_forbidden_import_is_found(path: str, source: str) -> None:
-    assert len(violations(path, source)) == 1
-
-
-@pytest.mark.parametrize(
-    ("path", "source"),
-    [
-        (
-            "geometry/mesh.py",
-            "from ..errors import InputError\nfrom . import validation\nfrom .validation import as_points",
-        ),
-        ("geometry/__init__.py", "from .mesh import TriMesh\nimport akap_editor.geometry.mesh"),
-        ("meshing/triangle_worker.py", "import triangle"),
-        ("deform/cholesky.py", "import cvxopt.cholmod"),
-        ("deform/akap.py", "from .. import errors, geometry\nfrom ..geometry.mesh import TriMesh"),
-        ("editor/editor.py", "from ..deform.deformer import Deformer\nfrom ..resources import resource"),
-        ("io/images.py", "from ..editor.document import Drawing\nfrom PIL import Image"),
-        ("render/renderer.py", "import moderngl\nfrom ..editor.camera import Camera"),
-        (
-            "app/window.py",
-            "import glfw, imgui_bundle\nfrom ..render import renderer\nfrom .. import io, __version__",
-        ),
-        ("cli/edit.py", "def main():\n    import moderngl\n    from ..app import window"),
-        ("__init__.py", "from .io.images import read_image\nfrom .geometry.mesh import TriMesh"),
-        ("__main__.py", "from .cli import main\nfrom akap_editor.cli import main"),
-    ],
-)
-def test_allowed_import_is_let_through(path: str, source: str) -> None:
-    assert violations(path, source) == []
+def test_forbidden_import_breaks_the_contract(
+    package_copy: PackageCopy, contract: str, path: str, source: str
+) -> None:
+    process = package_copy.check_with(path, source, contract)
+    assert process.returncode == 1, process.stdout + process.stderr
+    assert "Contracts: 0 kept, 1 broken." in process.stdout
 
 
 # Run with module names as arguments: blocks OpenGL and windows, then imports the modules one by one.
