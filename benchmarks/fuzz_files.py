@@ -38,6 +38,7 @@ from akap_editor.editor.document.drawing import Drawing
 from akap_editor.editor.document.named_poses import NamedPose
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.editor import Editor
+from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.replay import replay
 from akap_editor.errors import AkapError, InputError
 from akap_editor.geometry.mesh import TriMesh
@@ -92,7 +93,7 @@ def seed_recording(document: Document) -> bytes:
     for at in ((1.0, 1.0), (1.5, 3.0)):
         editor.add_pin(at)
     session.begin("Drag")
-    session.set_targets({1: (1.2, 0.8)})
+    session.apply(SetTargets({1: (1.2, 0.8)}))
     for _ in range(3):
         session.step()
     session.commit()

@@ -29,6 +29,7 @@ from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.remesh import remeshed
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
+from akap_editor.editor.session.edits import Remesh
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError, SolverError
 from akap_editor.io.akap.autosave import Autosave
@@ -168,7 +169,7 @@ class Soak:
         self.editor.cancel()
         made = remeshed(drawing, meshing)
         self.session.begin("Change density")
-        self.session.set_drawing(made)
+        self.session.apply(Remesh.to(made))
         self.session.commit()
 
     def _save(self) -> None:

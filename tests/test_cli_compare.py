@@ -16,6 +16,8 @@ from akap_editor.compare.run import bend, run
 from akap_editor.deform.deformer import make_deformer
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.editor.session.edits import SetTargets
+from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.session import Session
 from akap_editor.geometry.distortion import distortion
 from akap_editor.io.akap.recording import read_recording, recorded_drawing, write_recording
@@ -36,12 +38,12 @@ def recorded(drawing, places, ways, steps=12):
     """A session in which pins at ``places`` go along ``ways`` in a few moves."""
     session = Session(new_document(drawing), clock=iter(np.arange(1e4) / 30).__next__)
     session.begin("Add pins")
-    pins = [session.add_pin(place) for place in places]
+    pins = [add_pin(session, place) for place in places]
     session.commit()
     session.begin("Drag")
     for step in range(1, steps + 1):
         goals = np.add(places, np.multiply(ways, step / steps)).tolist()
-        session.set_targets({pin: tuple(goal) for pin, goal in zip(pins, goals, strict=True)})
+        session.apply(SetTargets({pin: tuple(goal) for pin, goal in zip(pins, goals, strict=True)}))
         session.step()
     session.commit()
     return session.recording

@@ -15,6 +15,8 @@ from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document.drawing import Drawing, make_drawing
 from akap_editor.editor.document.framing import frame_box
 from akap_editor.editor.document.settings import Settings
+from akap_editor.editor.session.edits import SetTargets
+from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import Recording
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
@@ -49,7 +51,7 @@ class Stage:
     def pin(self, at: tuple[float, float]) -> int:
         """Put a pin on the drawing."""
         self.session.begin("Add pin")
-        pin = self.session.add_pin(at)
+        pin = add_pin(self.session, at)
         assert pin is not None, at
         self.session.commit()
         return pin
@@ -60,7 +62,7 @@ class Stage:
         moves = round(seconds * MOVES_PER_SECOND)
         for move in range(1, moves + 1):
             self.now += 1 / MOVES_PER_SECOND
-            self.session.set_targets({pin: curve(move / moves)})
+            self.session.apply(SetTargets({pin: curve(move / moves)}))
             for _ in range(STEPS_PER_MOVE):
                 self.session.step()
         self.session.commit()

@@ -12,6 +12,7 @@ from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
+from akap_editor.editor.session.edits import SetTargets
 from akap_editor.io.akap.recording import write_recording
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
@@ -64,7 +65,7 @@ class Hand:
         session.begin("Move Pins")
         steps = round(seconds * MOVES_PER_SECOND)
         for step in range(1, steps + 1):
-            session.set_targets(way(step / steps))
+            session.apply(SetTargets(way(step / steps)))
             self.pause(1 / MOVES_PER_SECOND)
         session.commit()
         self.pause(0.2)

@@ -21,6 +21,8 @@ from akap_editor.app.window import SIZE, Window
 from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
+from akap_editor.editor.session.edits import PaintStiffness
+from akap_editor.editor.session.pin_edits import hold_angles
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.tools.keyboard_pointer import toggle_keyboard_pointer
 from akap_editor.editor.tools.rotate import RING
@@ -122,7 +124,7 @@ def ring(window: Window) -> None:
     """The drawing while it is turned around a pin, and another pin that holds its angle."""
     editor = window.state.editor
     pins = [pin.id for pin in posed_elephant().state.pins]
-    editor.edit("Hold angle", lambda session: session.hold_angles(pins[:1]))
+    editor.edit("Hold angle", lambda session: hold_angles(session, pins[:1]))
     x, y = editor.pins_on_screen()[pins[-1]]
     way = [(RING * np.cos(turn), RING * np.sin(turn)) for turn in np.radians((0, 15, 30, 35))]
     at = [(x + window.scale * dx, y + window.scale * dy) for dx, dy in way]
@@ -145,7 +147,7 @@ def brush(window: Window) -> None:
         (10.0, [(0.70, 0.55), (0.78, 0.50)]),
     ):
         dabs = [(x * width, y * height) for x, y in places]
-        editor.edit("Stiffen", lambda session, f=factor, d=dabs: session.paint_stiffness(d, 110.0, f))
+        editor.edit("Stiffen", lambda session, f=factor, d=dabs: session.apply(PaintStiffness(d, 110.0, f)))
     editor.handle_event(PointerEvent("move", editor.camera.to_screen((0.5 * width, 0.4 * height))))
 
 

@@ -282,7 +282,7 @@ class AppState:
             return
         try:
             last = session.history.last if session is not None else None
-            kept = session.kept if session is not None else None
+            kept = session.present_document if session is not None else None
             self.autosave.watch(kept, self.editor.modified, last)
         except InputError as error:
             self.notice = str(error)
@@ -291,7 +291,7 @@ class AppState:
         """The program is about to end by mistake: keep what is not saved, if that is still possible."""
         session = self.editor.session
         if self.autosave is not None and session is not None and self.editor.modified:
-            self.attempt(partial(self.autosave.rescue, session.kept))
+            self.attempt(partial(self.autosave.rescue, session.present_document))
 
     def save(self, go_on: Callable[[], None] | None = None) -> None:
         """Write to the document's own file, or ask for one; then ``go_on``."""
@@ -319,7 +319,7 @@ class AppState:
     def _write(self, path: Path, go_on: Callable[[], None] | None) -> None:
         def write() -> None:
             assert self.editor.session is not None
-            project_file.save(self.editor.session.kept, path)
+            project_file.save(self.editor.session.present_document, path)
             self.editor.mark_saved(path)
             self.used(path)
             self.notice = f"Saved {path.name}"

@@ -10,6 +10,7 @@ from ..deform.methods import parse_method
 from ..editor.document.document import Document, EditState
 from ..editor.document.drawing import Drawing
 from ..editor.document.settings import Settings
+from ..editor.session.edits import SetTargets
 from ..editor.session.recording import Recording
 from ..editor.session.replay import replay
 from ..editor.session.session import Session
@@ -128,7 +129,8 @@ def _settled(drawing: Drawing, state: EditState) -> Floats:
     """The pose (n, 2) once the drawing has come to rest under its pins."""
     session = Session(Document(drawing, state))
     session.begin("Settle")
-    session.set_targets({pin.id: (float(pin.target[0]), float(pin.target[1])) for pin in state.pins})
+    targets = {pin.id: (float(pin.target[0]), float(pin.target[1])) for pin in state.pins}
+    session.apply(SetTargets(targets))
     session.settle()
     return session.state.positions
 

@@ -7,6 +7,7 @@ from .document.document import EditState
 from .document.drawing import Drawing, Meshing
 from .document.remesh import carried_over, remeshed
 from .editor import Editor
+from .session.edits import Remesh
 from .session.history import Entry
 from .session.session import Session
 
@@ -114,7 +115,7 @@ class BackgroundRemesh:
         as_begun = session.state is series.start
         session.begin(LABEL)
         try:
-            session.set_drawing(drawing, state if as_begun else None)
+            session.apply(Remesh.to(drawing, state if as_begun else None))
         except Exception:
             session.abort()
             raise

@@ -12,7 +12,7 @@ from .document.document import Document
 from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
 from .gestures import Edits
 from .session.session import Session
-from .session.worker import INLINE
+from .session.stepper import INLINE
 from .sight import Sight
 from .tools.base import Tool, distance
 from .tools.keyboard_pointer import KeyboardPointer
@@ -79,7 +79,7 @@ class Editor(Edits):
     @property
     def modified(self) -> bool:
         """Whether closing would lose something."""
-        return self.session is not None and self.session.modified
+        return self.session is not None and self.session.is_modified
 
     # -- events --------------------------------------------------------------------------------------------
 
@@ -144,13 +144,13 @@ class Editor(Edits):
     @property
     def moving(self) -> bool:
         """Whether `advance` has something to do."""
-        return self.session is not None and self.session.moving
+        return self.session is not None and self.session.is_moving
 
     @property
     def waiting(self) -> bool:
         """Whether nothing moves until the worker is done with a step."""
         session = self.session
-        return session is not None and session.stepping and not session.step_is_ready()
+        return session is not None and session.has_pending_step and not session.step_is_ready()
 
     def advance(self, budget: float = FRAME_BUDGET) -> bool:
         """Take the drawing closer to its pins' targets, waiting about ``budget`` seconds; whether it moved.
@@ -159,18 +159,18 @@ class Editor(Edits):
         is cancelled, the pose is the one from before it, and the error is raised.
         """
         session = self.session
-        if session is None or not session.moving:
+        if session is None or not session.is_moving:
             return False
         until, moved, enough = time.perf_counter() + budget, False, False
         self.trails.follow(session)
         try:
-            while session.moving and not enough:
+            while session.is_moving and not enough:
                 session.start_step(self.worker)
                 if not session.step_is_ready(until - time.perf_counter()):
                     break
                 seconds = session.step().report.seconds
                 moved = True
-                enough = session.near or seconds > budget or time.perf_counter() > until
+                enough = session.has_visually_arrived or seconds > budget or time.perf_counter() > until
                 self.trails.follow(session)
         except SolverError:
             self.cancel()
@@ -180,7 +180,7 @@ class Editor(Edits):
     def start_next_step(self) -> None:
         """Let the worker begin with the next step while a frame is drawn, if steps take longer than that."""
         session = self.session
-        if session is None or session.last_step is None or not session.moving:
+        if session is None or session.last_step is None or not session.is_moving:
             return
         if session.last_step.report.seconds > FRAME_BUDGET:
             session.start_step(self.worker)

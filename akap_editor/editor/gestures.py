@@ -10,6 +10,17 @@ from .document.pin import Pin
 from .document.settings import Settings
 from .nudges import Nudges
 from .pin_trails import Trails
+from .session.edits import (
+    AddPose,
+    DeletePose,
+    ResetPose,
+    SetPins,
+    SetPose,
+    SetRestPose,
+    SetSettings,
+    SetTargets,
+)
+from .session.pin_edits import add_pin, remove_pins, set_depths
 from .session.session import Session
 
 
@@ -39,7 +50,7 @@ class Edits(ABC):
             return None
         self.session.begin("Add pin")
         try:
-            added = self.session.add_pin(at)
+            added = add_pin(self.session, at)
         except Exception:
             self.session.abort()
             raise
@@ -55,7 +66,7 @@ class Edits(ABC):
         gone = frozenset(ids) & {pin.id for pin in self.session.state.pins}
         if gone:
             label = "Remove pin" if len(gone) == 1 else f"Remove {len(gone)} pins"
-            self.edit(label, lambda session: session.remove_pins(gone))
+            self.edit(label, lambda session: remove_pins(session, gone))
 
     def remove_selected(self) -> None:
         """Take the selected pins off the drawing."""
@@ -68,18 +79,18 @@ class Edits(ABC):
 
     def place_pin(self, pin_id: int, at: Point) -> None:
         """Send a pin to a place (pixels); the drawing follows. Raises InputError on an unknown id or NaN."""
-        self.edit("Place pin", lambda session: session.set_targets({pin_id: at}))
+        self.edit("Place pin", lambda session: session.apply(SetTargets({pin_id: at})))
 
     def set_depth(self, pin_id: int, depth: int) -> None:
         """Bring a pin to the front or back. Raises InputError on a depth out of range."""
-        self.edit("Set depth", lambda session: session.set_depths({pin_id: depth}))
+        self.edit("Set depth", lambda session: set_depths(session, {pin_id: depth}))
 
     def shift_depth(self, by: int) -> None:
         """Bring the selected pins so much to the front, or to the back."""
         if self.session is not None and self.selection:
             depths = {pin.id: pin.depth + by for pin in self.session.state.pins if pin.id in self.selection}
             label = "Bring forward" if by > 0 else "Send back"
-            self.edit(label, lambda session: session.set_depths(depths))
+            self.edit(label, lambda session: set_depths(session, depths))
 
     def nudge_selected(self, dx: float, dy: float) -> None:
         """Send the selected pins so many pixels on; nudges in a row are one gesture."""
@@ -88,39 +99,39 @@ class Edits(ABC):
 
     def reset_pose(self) -> None:
         """The rest pose, with the pins where they then are."""
-        self.edit("Reset pose", lambda session: session.reset_pose())
+        self.edit("Reset pose", lambda session: session.apply(ResetPose()))
 
     def bake_pose(self) -> None:
         """Make the pose the rest pose; nothing moves. Raises InputError where faces are flipped."""
-        self.edit("Make pose the rest pose", lambda session: session.bake_pose())
+        self.edit("Make pose the rest pose", lambda session: session.apply(SetRestPose()))
 
     def keep_pose(self, name: str | None = None) -> None:
         """Remember the current pose by a name, by default "Pose" and a number. Raises InputError."""
         if self.session is not None:
             wanted = name if name is not None else free_name(self.session.state.poses)
-            self.edit("Keep pose", lambda session: session.change_poses("keep", name=wanted))
+            self.edit("Keep pose", lambda session: session.apply(AddPose(wanted)))
 
     def forget_pose(self, name: str) -> None:
         """Forget a pose; undo brings it back."""
-        self.edit("Forget pose", lambda session: session.change_poses("forget", name=name))
+        self.edit("Forget pose", lambda session: session.apply(DeletePose(name)))
 
     def set_pose(self, positions: Floats, label: str = "Apply pose") -> None:
         """Take over a pose (n, 2) of this mesh; pins go with it. Raises InputError."""
-        self.edit(label, lambda session: session.set_pose(positions))
+        self.edit(label, lambda session: session.apply(SetPose(positions)))
 
     def apply_pose(self, pins: tuple[Pin, ...], positions: Floats) -> None:
         """Take over pins and pose (n, 2) from another session on the same mesh. Raises InputError."""
 
         def take(session: Session) -> None:
-            session.set_pins(pins)
-            session.set_pose(positions)
+            session.apply(SetPins(pins))
+            session.apply(SetPose(positions))
 
         self.edit("Apply pose", take)
 
     def set_settings(self, settings: Settings) -> None:
         """Bend differently from now on. Raises InputError on unknown methods or parameters."""
         if self.session is not None and settings != self.session.state.settings:
-            self.edit("Change settings", lambda session: session.set_settings(settings))
+            self.edit("Change settings", lambda session: session.apply(SetSettings(settings)))
 
     def undo(self) -> None:
         """Take back the last gesture; in the middle of one, that one."""

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable
 
+from .session.edits import SetTargets
 from .session.history import Entry
+from .session.pin_edits import hold_pins
 from .session.session import Session
 
 SERIES_PAUSE = 1.0  # seconds: nudges in a row without a longer pause are one gesture
@@ -22,9 +24,10 @@ class Nudges:
         joins = entry is not None and entry is session.history.last and moved_pins == pins
         session.begin("Nudge" if len(pins) == 1 else f"Nudge {len(pins)} pins")
         try:
-            session.hold_pins()
+            hold_pins(session)
             moved = (session.state.pin(pin) for pin in sorted(pins))
-            session.set_targets({pin.id: (pin.target[0] + dx, pin.target[1] + dy) for pin in moved})
+            targets = {pin.id: (pin.target[0] + dx, pin.target[1] + dy) for pin in moved}
+            session.apply(SetTargets(targets))
         except Exception:
             session.abort()
             raise

@@ -48,7 +48,7 @@ def _end_of(path: Path) -> Document:
     recording = read_recording(path)
     with inside(path):
         done = Replay(recording, recorded_drawing(recording))
-        for _ in done.moments():
+        for _ in done.events():
             pass
         if done.session is None:
             raise InputError("expected a recording of something that was done, got none")

@@ -11,7 +11,8 @@ import pytest
 from akap_editor.app import window as window_module
 from akap_editor.app.canvas import scene as picture_module
 from akap_editor.editor.editor import FRAME_BUDGET
-from akap_editor.editor.session.worker import INLINE
+from akap_editor.editor.session.edits import SetTargets
+from akap_editor.editor.session.stepper import INLINE
 
 
 def one_frame(ui):
@@ -101,7 +102,7 @@ def held(pinned, monkeypatch):
     monkeypatch.setattr(deformer, "step", wait)
     x, y = pinned.pin_place(3)
     pinned.session.begin("Bend")
-    pinned.session.set_targets({3: (x, y - 40)})
+    pinned.session.apply(SetTargets({3: (x, y - 40)}))
     pinned.session.commit()
     yield SimpleNamespace(ui=pinned, open=gate, goal=(x, y - 40), pose=pinned.session.state.positions)
     gate.set()
@@ -165,7 +166,7 @@ def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkey
         pinned.editor.close()
     else:
         gate.set()
-        pinned.session.halt()
+        pinned.session.stop_motion()
     gate.set()
     pinned.settle()
     assert not pinned.window._busy
@@ -178,7 +179,7 @@ def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatc
     monkeypatch.setattr(deformer, "vector_fields", lambda *way: gate.wait(60) and fields(*way))
     x, y = pinned.pin_place(3)
     pinned.session.begin("Bend")
-    pinned.session.set_targets({3: (x, y - 40)})
+    pinned.session.apply(SetTargets({3: (x, y - 40)}))
     while not pinned.state.view.waiting:
         pinned.frame()
     frames = pinned.window.frames

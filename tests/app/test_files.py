@@ -395,7 +395,7 @@ def test_a_bad_file_is_told_in_one_sentence_and_changes_nothing(bent, tmp_path, 
     assert bent.editor.modified
     bent.dialog(MESSAGE, "OK")
     bent.key(CTRL | Key.z)
-    assert not bent.session.posed, "undo still works"
+    assert not bent.session.is_posed, "undo still works"
 
 
 def test_a_picture_without_alpha_opens_with_a_notice(pinned, tmp_path, image):

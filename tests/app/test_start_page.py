@@ -253,7 +253,7 @@ def test_they_wait_on_the_start_page_for_a_drawing(newcomer, document):
 def test_whoever_drags_the_only_pin_is_told_why_nothing_bends(newcomer):
     start = newcomer.screen((200.0, 80.0))
     newcomer.drag(start, (start[0], start[1] - 100))
-    assert newcomer.session.posed
+    assert newcomer.session.is_posed
     assert hints.step(newcomer.state) == 0
     newcomer.click(newcomer.screen((60.0, 20.0)))  # the head, where it is now
     assert len(newcomer.pins) == 2

@@ -10,6 +10,7 @@ import pytest
 from akap_editor.app import widgets
 from akap_editor.app import window as window_module
 from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES, Window
+from akap_editor.editor.session.edits import SetTargets
 from akap_editor.errors import DisplayError, GraphicsError
 
 
@@ -105,13 +106,13 @@ def test_it_draws_until_the_drawing_has_come_to_rest_and_shows_it(loop):
     ui, snapshots = loop.ui, []
     x, y = ui.pin_place(3)
     ui.session.begin("Bend")
-    ui.session.set_targets({3: (x, y - 40)})
+    ui.session.apply(SetTargets({3: (x, y - 40)}))
     ui.session.commit()
     ui.window.after_draw.append(lambda: snapshots.append(ui.window.screenshot()))
     waits = loop.run(1)
     ui.window.after_draw.clear()
     assert waits[0][1] > SETTLE_FRAMES
-    assert not ui.session.moving
+    assert not ui.session.is_moving
     assert ui.session.pin_error() < 0.25
     np.testing.assert_array_equal(snapshots[-1], ui.screenshot())
 

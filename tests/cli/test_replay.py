@@ -13,6 +13,8 @@ from akap_editor import cli
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.keyframes import Animation, Keyframe
+from akap_editor.editor.session.edits import SetTargets
+from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
@@ -31,11 +33,11 @@ def session():
     now = [0.0]
     session = Session(new_document(make_drawing(image, vertices=80, name="bar")), clock=lambda: now[0])
     session.begin("Bend")
-    session.add_pin((12.0, 20.0))
-    pin = session.add_pin((68.0, 20.0))
+    add_pin(session, (12.0, 20.0))
+    pin = add_pin(session, (68.0, 20.0))
     for step in range(1, 13):
         now[0] = step / 12
-        session.set_targets({pin: (68.0 - step, 20.0 + 2 * step)})
+        session.apply(SetTargets({pin: (68.0 - step, 20.0 + 2 * step)}))
         for _ in range(5):
             session.step()
     session.commit()

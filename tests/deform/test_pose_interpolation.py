@@ -8,6 +8,8 @@ import pytest
 from akap_editor.deform.pose_interpolation import InterpolationCache, PoseInterpolation
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.editor.session.edits import SetTargets
+from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
 from akap_editor.geometry.area_bounds import bound_face_areas
@@ -181,7 +183,7 @@ def test_real_cartoons_are_distorted_no_more_than_at_the_worse_end(name):
         away = np.linalg.norm(mesh.vertices[body][:, None] - mesh.vertices[chosen], axis=2).min(axis=1)
         chosen.append(int(body[away.argmax()]))
     session.begin("Pose")
-    pins = [session.add_pin(tuple(0.99 * mesh.vertices[v] + 0.01 * middle)) for v in chosen]
+    pins = [add_pin(session, tuple(0.99 * mesh.vertices[v] + 0.01 * middle)) for v in chosen]
     dice = np.random.default_rng(3)
     poses = [mesh.vertices]
     for _ in range(2):
@@ -189,7 +191,7 @@ def test_real_cartoons_are_distorted_no_more_than_at_the_worse_end(name):
         targets = {
             p: tuple(session.state.pin(p).target + move) for p, move in zip(pins, moves, strict=True) if p
         }
-        session.set_targets(targets)
+        session.apply(SetTargets(targets))
         for _ in range(60):
             session.step()
         poses.append(session.state.positions)

@@ -10,7 +10,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_sta
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import KeyEvent, PointerEvent
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.session.worker import INLINE
+from akap_editor.editor.session.stepper import INLINE
 from akap_editor.editor.tools.keyboard_pointer import select_next, toggle_keyboard_pointer
 from tests.support.editor_driver import BESIDE, Driver, bits
 
@@ -119,7 +119,7 @@ def machine(drawing, worker):
 
         def teardown(self):
             self.editor.cancel()
-            if self.driver.session.stepping:
+            if self.driver.session.has_pending_step:
                 self.driver.session.step()
             *_, moment = replay(self.driver.session.recording, drawing)
             assert bits(moment.state) == bits(self.driver.state)

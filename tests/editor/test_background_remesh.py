@@ -7,6 +7,7 @@ from akap_editor.editor.background_remesh import BackgroundRemesh
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing, make_drawing
 from akap_editor.editor.editor import Editor
+from akap_editor.editor.session.edits import SetTargets
 from akap_editor.errors import InputError
 
 
@@ -26,7 +27,7 @@ def test_a_series_of_choices_is_one_entry_made_from_where_it_began(editor):
     """Coarse in between: nothing of that is left in the result."""
     session, remesher = editor.session, BackgroundRemesh(editor)
     session.begin("Bend")
-    session.set_targets({3: (150.0, 100.0)})
+    session.apply(SetTargets({3: (150.0, 100.0)}))
     session.settle()
     session.commit()
     before, depth = session.state, session.history.depth

@@ -7,6 +7,8 @@ from akap_editor.deform.deformer import make_deformer
 from akap_editor.editor.comparison import MethodComparison
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
+from akap_editor.editor.session.edits import SetTargets
+from akap_editor.editor.session.pin_edits import add_pin, remove_pins
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
@@ -20,7 +22,7 @@ def main(drawing):
     session.begin("Pins")
     for corner in (mesh.vertices.argmin(axis=0)[0], mesh.vertices.argmax(axis=0)[0], len(mesh.faces) // 2):
         face = int(np.flatnonzero((mesh.faces == corner).any(axis=1))[0])
-        session.add_pin(tuple(mesh.vertices[mesh.faces[face]].mean(axis=0)))
+        add_pin(session, tuple(mesh.vertices[mesh.faces[face]].mean(axis=0)))
     session.commit()
     return session
 
@@ -28,7 +30,7 @@ def main(drawing):
 def drag(session, dx, dy):
     pin = session.state.pins[0]
     session.begin("Drag")
-    session.set_targets({pin.id: (pin.target[0] + dx, pin.target[1] + dy)})
+    session.apply(SetTargets({pin.id: (pin.target[0] + dx, pin.target[1] + dy)}))
     session.settle()
     session.commit()
 
@@ -64,7 +66,7 @@ def test_it_follows_new_pins_removed_pins_undo_and_reset(main):
     drag(main, 20.0, -10.0)
     bent = followed(comparison, main)
     main.begin("Remove")
-    main.remove_pins([main.state.pins[1].id])
+    remove_pins(main, [main.state.pins[1].id])
     main.commit()
     followed(comparison, main)
     assert [pin.id for pin in comparison.session.state.pins] == [pin.id for pin in main.state.pins]
@@ -72,8 +74,8 @@ def test_it_follows_new_pins_removed_pins_undo_and_reset(main):
     assert np.abs(followed(comparison, main) - bent).max() < 0.5
     main.undo()
     followed(comparison, main)
-    assert not main.posed
-    assert not comparison.session.posed
+    assert not main.is_posed
+    assert not comparison.session.is_posed
 
 
 def test_another_method_starts_from_the_pose_that_is_there(main):

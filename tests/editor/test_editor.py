@@ -7,6 +7,7 @@ from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
+from akap_editor.editor.session.edits import SetPose
 from akap_editor.errors import InputError, SolverError
 from akap_editor.geometry.mesh import TriMesh
 from tests.support.editor_driver import BESIDE, bits
@@ -365,7 +366,7 @@ def test_the_drawing_under_the_pointer_is_looked_up_once_for_each_place_and_pose
         assert [editor.would_add_pin, editor.would_add_pin] == [there, there]
     assert len(looked) == 3
     pinned.session.begin("Away")
-    pinned.session.set_pose(pinned.state.positions + 1000.0)
+    pinned.session.apply(SetPose(pinned.state.positions + 1000.0))
     pinned.session.commit()
     assert not editor.would_add_pin
     assert len(looked) == 4

@@ -39,19 +39,19 @@ def test_a_new_gesture_or_a_jump_begins_new_trails(pinned, drawing, how):
 
 
 def test_fields_are_those_of_the_last_move_of_the_pins(pinned):
-    assert pinned.session.fields() is None
+    assert pinned.session.vector_fields() is None
     pinned.press(END)
     pinned.move((95.0, 50.0))
     pinned.advance()
-    optimal, smooth = pinned.session.fields()
+    optimal, smooth = pinned.session.vector_fields()
     assert optimal.shape == smooth.shape == pinned.state.positions.shape
     at_pins = pinned.session.drawing.mesh.evaluate(pinned.state.points, smooth)
-    np.testing.assert_allclose(at_pins, pinned.session.last_way[1], atol=0.1)
+    np.testing.assert_allclose(at_pins, pinned.session.last_motion[1], atol=0.1)
     pinned.key("escape")
-    assert pinned.session.fields() is None
+    assert pinned.session.vector_fields() is None
 
 
 def test_methods_without_fields_have_none(pinned):
     pinned.editor.set_settings(Settings("mls", ()))
     pinned.drag(END, (95.0, 50.0))
-    assert pinned.session.fields() is None
+    assert pinned.session.vector_fields() is None

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import block_array, csr_array
 from scipy.sparse.linalg import splu
 
-STILL = 1e-4  # pixels
+SETTLED_MOTION = 1e-4  # pixels
 
 
 def gradient(mesh):
@@ -35,6 +35,6 @@ def converged_arap(mesh, points, targets, pose, most=5000):
         rotation = np.array([[cos, sin], [-sin, cos]]).transpose(2, 0, 1) / np.hypot(cos, sin)[:, None, None]
         moved = system.solve(np.concatenate([collect @ rotation.reshape(-1, 2), targets]))[:n]
         change, pose = np.abs(moved - pose).max(), moved
-        if change < STILL:
+        if change < SETTLED_MOTION:
             return pose
     raise AssertionError(f"no convergence: still {change:g} pixels a step")

@@ -10,7 +10,7 @@ from akap_editor.editor.document.document import Document, EditState
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
 from akap_editor.editor.session.session import Session
-from akap_editor.editor.session.worker import INLINE
+from akap_editor.editor.session.stepper import INLINE
 from akap_editor.geometry.mesh import signed_areas
 
 Point = tuple[float, float]

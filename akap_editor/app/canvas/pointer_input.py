@@ -139,7 +139,7 @@ class Canvas:
                 draw_pin(draw, place, scale, pin in editor.selection, pin == hovered)
                 angle = angles[pin]
                 if angle is not None:
-                    draw_held_angle(draw, place, scale, angle, session.turns)
+                    draw_held_angle(draw, place, scale, angle, session.supports_rotation)
                 if depths[pin]:
                     _draw_label(draw, (place[0] + 12 * scale, place[1]), f"{depths[pin]:+d}", scale)
                 if pin == hovered and "alt" in editor.held:

@@ -253,10 +253,10 @@ class _VectorFieldArrows:
         """Take over what the worker has computed, and let it compute what is new."""
         if session.drawing is not self._drawing:
             self._drawing, self._way, self._fields, self.coming = session.drawing, None, None, None
-        way, now = session.last_way, time.perf_counter()
+        way, now = session.last_motion, time.perf_counter()
         if self.coming is None and way is not self._way and not (editor.moving and now < self._until):
             self._way, self._begun = way, now
-            self.coming = editor.worker.submit(session.fields)
+            self.coming = editor.worker.submit(session.vector_fields)
             wait([self.coming], FRAME_BUDGET)
         if self.coming is not None and self.coming.done():
             self._fields, self.coming = self.coming.result(), None

@@ -20,7 +20,7 @@ def has_chosen(state: AppState) -> bool:
 def keyframe_here(state: AppState) -> None:
     """Keep what is seen as a keyframe; the timeline opens where it is not seen."""
     session, playback = state.editor.session, state.keyframe_playback
-    seen = session.state.positions if session is not None and session.visiting else None
+    seen = session.state.positions if session is not None and session.is_previewing else None
     playback.watch()
     if not (state.show_timeline and state.timeline == "keyframes"):
         state.show_in_timeline("keyframes")

@@ -6,6 +6,7 @@ from typing import Literal
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...editor.session.edits import SetStiffness
 from ...editor.tools.rotate import toggle_hold
 from ...resources import bundled_drawings
 from .. import masking, poses, recordings, reference
@@ -51,7 +52,7 @@ def _erase(state: AppState) -> None:
 
 def _can_hold(state: AppState) -> bool:
     session = state.editor.session
-    return session is not None and session.turns and bool(state.editor.selection)
+    return session is not None and session.supports_rotation and bool(state.editor.selection)
 
 
 def _holds(state: AppState) -> bool:
@@ -208,14 +209,14 @@ RESET_POSE = Command(
     lambda state: state.editor.reset_pose(),
     (CTRL | Key.r,),
     icons.ICON_FA_PERSON,
-    lambda state: state.editor.session is not None and state.editor.session.posed,
+    lambda state: state.editor.session is not None and state.editor.session.is_posed,
 )
 BAKE = Command(
     "Make Pose the Rest Pose",
     lambda state: state.editor.bake_pose(),
     (),
     "",
-    lambda state: state.editor.session is not None and state.editor.session.posed,
+    lambda state: state.editor.session is not None and state.editor.session.is_posed,
 )
 DEFAULTS = Command(
     "Default Parameters",
@@ -239,7 +240,7 @@ SMALLER = Command("Smaller Brush", _resize(False), (Key.left_bracket,), "", _has
 LARGER = Command("Larger Brush", _resize(True), (Key.right_bracket,), "", _has_brush)
 SOFTEN_ALL = Command(
     "Remove All Stiffness",
-    lambda state: state.editor.edit("Remove stiffness", lambda session: session.set_stiffness(None)),
+    lambda state: state.editor.edit("Remove stiffness", lambda session: session.apply(SetStiffness(None))),
     (),
     "",
     lambda state: state.editor.session is not None and state.editor.session.state.stiffness is not None,

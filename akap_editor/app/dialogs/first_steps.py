@@ -39,7 +39,7 @@ def step(state: AppState) -> int:
 def _went_along(state: AppState) -> bool:
     """Whether the only pin was dragged, which bends nothing."""
     session = state.editor.session
-    return session is not None and len(session.state.pins) == 1 and session.posed
+    return session is not None and len(session.state.pins) == 1 and session.is_posed
 
 
 def draw(state: AppState, scale: float) -> None:

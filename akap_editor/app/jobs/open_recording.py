@@ -32,11 +32,11 @@ def reenacting(path: Path, show: Show) -> Task:
         wanted = False
 
     def steps() -> Steps:
-        times = [float(event["t"]) for event in recording.events]
-        for number, moment in enumerate(replay.moments(), start=1):
-            if number == len(times) or times[number] > moment.time:  # the last of what was done then
+        times = [float(recorded["t"]) for recorded in recording.events]
+        for number, event in enumerate(replay.events(), start=1):
+            if number == len(times) or times[number] > event.time:  # the last of what was done then
                 playback.watch(replay.session)
-            yield Progress(number / len(times), f"At {moment.time:.0f} of {recording.duration:.0f} s")
+            yield Progress(number / len(times), f"At {event.time:.0f} of {recording.duration:.0f} s")
             if not wanted:
                 break
         session = replay.end()

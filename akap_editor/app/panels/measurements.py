@@ -43,7 +43,7 @@ class Measurements:
             self._step = session.last_step
             self._steps.append(session.last_step.report.seconds)
         pose = session.state.positions
-        if pose is self._pose or (session.moving and now < self._due):
+        if pose is self._pose or (session.is_moving and now < self._due):
             return
         self._pose, self.distortion = pose, measure()
         ended = self._clock()

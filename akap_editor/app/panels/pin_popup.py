@@ -80,7 +80,7 @@ def _angle(state: AppState, pin: Pin) -> None:
     """Whether the pin holds an angle, and in degrees which one."""
     session = state.editor.session
     assert session is not None
-    imgui.begin_disabled(not session.turns)
+    imgui.begin_disabled(not session.supports_rotation)
     shown = math.degrees(session.pin_angle(pin.id) if pin.angle is None else pin.angle)
     shown = 0.0 if abs(shown) < 0.05 else shown  # not -0.0°
     angle = _field(

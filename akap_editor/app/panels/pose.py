@@ -9,6 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor.document.framing import frame_box
 from ...editor.document.named_poses import NamedPose
+from ...editor.session.edits import RenamePose, ReorderPoses
 from .. import widgets
 from ..app_state import AppState
 from ..commands.command import menu_key
@@ -160,9 +161,7 @@ def _rename(state: AppState, pose: NamedPose, width: float) -> None:
         if name and name != pose.name and not imgui.is_key_pressed(imgui.Key.escape, False):
             label = f"Rename {pose.name}"
             state.attempt(
-                lambda: state.editor.edit(
-                    label, lambda session: session.change_poses("rename", name=pose.name, to=name)
-                )
+                lambda: state.editor.edit(label, lambda session: session.apply(RenamePose(pose.name, name)))
             )
 
 
@@ -186,7 +185,7 @@ def _order(state: AppState, old: int, new: int) -> None:
     names = [each.name for each in state.document.state.poses]
     names.insert(new, names.pop(old))
     state.attempt(
-        lambda: state.editor.edit("Order poses", lambda session: session.change_poses("order", names=names))
+        lambda: state.editor.edit("Order poses", lambda session: session.apply(ReorderPoses(names)))
     )
 
 
@@ -214,7 +213,7 @@ def _mixer(state: AppState, scale: float) -> None:
         pose_blend.share = min(max(share / 100, 0.0), 1.0)
         pose_blend.show(session)
     if released:
-        session.leave()
+        session.end_preview()
         pose = pose_blend.pose(session)
         if pose is not None:
             state.attempt(lambda: state.editor.set_pose(pose, "In-between"))

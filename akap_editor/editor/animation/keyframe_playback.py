@@ -13,6 +13,8 @@ from ..document.document import Document
 from ..document.keyframes import LATEST_KEY, NO_ANIMATION, Animation, key_time
 from ..document.pin_angles import pins_fixed_at_pose
 from ..editor import Editor
+from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
+from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
 from .motion import Frame
 from .playback import Playback
@@ -83,7 +85,7 @@ class KeyframePlayback(Playback):
 
     @loop.setter
     def loop(self, loop: bool) -> None:
-        self._edit("Play over and over" if loop else "Play once", "loop", loop=loop)
+        self._edit("Play over and over" if loop else "Play once", SetLoop(loop))
 
     @property
     def following(self) -> bool:
@@ -149,7 +151,7 @@ class KeyframePlayback(Playback):
         self.chosen &= set(self.kept_times)
         if not self.held:
             self.view.fit(max(SHORTEST_VIEW, 1.2 * self.duration, self.at))
-        if self._beneath is None or session.visiting or session.history.is_open:
+        if self._beneath is None or session.is_previewing or session.history.is_open:
             return
         if session.state.positions is self._beneath:  # what was edited is no pose
             self._show()
@@ -172,13 +174,13 @@ class KeyframePlayback(Playback):
         present = session.present
         self._beneath = present.positions
         pins = pins_fixed_at_pose(session.drawing.mesh, present.pins, pose)
-        session.visit(replace(present, positions=pose, pins=pins), take=True)
+        session.preview(replace(present, positions=pose, pins=pins), takes_pose=True)
 
     def leave(self) -> None:
         """Show the present pose."""
         self._beneath = self._played = None
         if self._editor.session is not None and not self._editor.session.history.is_open:
-            self._editor.session.leave()
+            self._editor.session.end_preview()
 
     def step(self, forward: bool) -> None:
         """Look at the next keyframe, or the one before."""
@@ -201,16 +203,15 @@ class KeyframePlayback(Playback):
         time = key_time(self.at if moment is None else moment)
         if positions is None and self.following:
             positions = session.state.positions
-        more = {} if positions is None else {"positions": positions.tolist()}
         label = "Change keyframe" if time in self.animation.times else "Add keyframe"
-        self._edit(label, "key", time=time, **more)
+        self._edit(label, SetKeyframe(time, positions))
         self.chosen, self.at = frozenset({time}), time
 
     def remove(self) -> None:
         """Take away the chosen keyframes, or the one where one looks."""
         gone = self._meant()
         if gone:
-            self._edit(_counted("Remove", gone), "unkey", times=gone)
+            self._edit(_counted("Remove", gone), DeleteKeyframes(gone))
             self.chosen = frozenset()
 
     def duplicate(self) -> None:
@@ -235,7 +236,7 @@ class KeyframePlayback(Playback):
         """How it goes on from the chosen keyframes; general: wherever nothing else is said."""
         times = None if general else self._meant()
         if general or times:
-            self._edit("Change easing", "ease", times=times, ease=ease)
+            self._edit("Change easing", SetEasing(times, ease))
 
     def _meant(self) -> list[float]:
         """Times of the chosen keyframes, or of the one where one looks."""
@@ -262,18 +263,18 @@ class KeyframePlayback(Playback):
 
     def _place(self, moves: Mapping[float, float], copy: bool = False) -> None:
         label = _counted("Duplicate" if copy else "Move", moves)
-        self._edit(label, "rekey", **{"from": list(moves), "to": list(moves.values()), "copy": copy})
+        self._edit(label, MoveKeyframes(dict(moves), copy))
         if self.chosen or copy:
             self.chosen = frozenset(moves.get(time, time) for time in self.chosen or moves)
         if not copy and key_time(self.at) in moves:
             self.at = moves[key_time(self.at)]
 
-    def _edit(self, label: str, do: str, **values: object) -> None:
+    def _edit(self, label: str, edit: KeyframeEdit) -> None:
         session = self._editor.session
         if session is None or self._editor.busy:
             return
-        session.leave()
-        self._editor.edit(label, lambda session: session.animate(do, **values))
+        session.end_preview()
+        self._editor.edit(label, lambda session: session.apply(edit))
         if self.following:
             self._show()
 

@@ -36,4 +36,4 @@ class PoseBlend:
         """Look at it; nothing is edited."""
         pose = None if session.history.is_open else self.pose(session)
         if pose is not None:
-            session.visit(replace(session.state, positions=pose), None)
+            session.preview(replace(session.state, positions=pose))

@@ -62,7 +62,7 @@ class SessionPlayback(Playback):
         if session is not self._session:
             self._session = session
             self._forget()
-        if session is None or session.visiting or not session.recorded:
+        if session is None or session.is_previewing or session.has_pending_step:
             return
         if self.at is not None:  # a gesture went on from there
             self.snapshots = self.snapshots[: self._index(self.at) + 1]
@@ -77,7 +77,7 @@ class SessionPlayback(Playback):
         self._seen = now
         line = len(session.recording.events) + 1
         self.snapshots.append(
-            Snapshot(self.duration + passed, line, session.state, session.drawing, session.jumps)
+            Snapshot(self.duration + passed, line, session.state, session.drawing, session.discontinuities)
         )
         if len(self.snapshots) * session.state.positions.nbytes > MOST_BYTES:
             half = len(self.snapshots) // 2
@@ -101,15 +101,15 @@ class SessionPlayback(Playback):
         self.view.reveal(self.at)
         shot = self.shot(self.at)
         if self.playing:
-            self._session.visit(shot.state, shot.line, self.frame(self.at).pose)
+            self._session.preview(shot.state, shot.line, self.frame(self.at).pose)
         elif shot.state is not self._session.state:
-            self._session.visit(shot.state, shot.line)
+            self._session.preview(shot.state, shot.line)
 
     def now(self) -> None:
         """Show the session as it is."""
         self.at = self._played = None
         if self._session is not None:
-            self._session.leave()
+            self._session.end_preview()
 
     def take(self, on: bool) -> None:
         """Start or end a take: the part of the session between the two becomes the range."""

@@ -121,29 +121,3 @@ def _shifted(keys: Mapping[float, Keyframe], times: Mapping[float, float]) -> di
 def key_time(value: Any) -> float:
     """A time as keyframes have it. Raises InputError out of range."""
     return round(as_number(value, "time of a keyframe", 0, LATEST_KEY), DIGITS)
-
-
-def changed(animation: Animation, do: str, values: Mapping[str, Any], pose: Floats) -> Animation:
-    """What an edit makes of an animation; pose (n, 2): the present one.
-
-    do: "key" puts the pose, or values["positions"], at values["time"] with values["ease"]; "unkey" takes
-    away those at values["times"]; "rekey" moves those at values["from"] to values["to"], or copies them there
-    where values["copy"]; "ease" sets values["ease"] from values["times"] on, in general where that is None;
-    "loop" sets values["loop"].
-    Raises InputError on bad values, KeyError where some are missing.
-    """
-    if do == "key":
-        positions = as_pose(values.get("positions", pose), "positions", len(pose))
-        return animation.with_key(Keyframe(values["time"], positions, values.get("ease")))
-    if do == "unkey":
-        return animation.without(map(key_time, values["times"]))
-    if do == "rekey":
-        times = dict(zip(map(key_time, values["from"]), map(key_time, values["to"]), strict=True))
-        return animation.moved(times, values.get("copy") is True)
-    if do == "loop":
-        if type(values["loop"]) is not bool:
-            raise InputError(f"loop: expected true or false, got {values['loop']!r}")
-        return replace(animation, loop=values["loop"])
-    times_or_all = values["times"]
-    chosen = None if times_or_all is None else [key_time(time) for time in times_or_all]
-    return animation.eased(chosen, values["ease"])

@@ -1,6 +1,7 @@
 """A point of the drawing that the artist controls."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -26,3 +27,14 @@ class Pin:
     def __post_init__(self) -> None:
         object.__setattr__(self, "weights", frozen(np.array(self.weights, dtype=np.float64)))
         object.__setattr__(self, "target", frozen(np.array(self.target, dtype=np.float64)))
+
+    def to_json(self) -> dict[str, Any]:
+        """The pin as an object of a document or recording; docs/file-format.md describes it."""
+        return {
+            "id": int(self.id),
+            "face": int(self.face),
+            "weights": self.weights.tolist(),
+            "target": self.target.tolist(),
+            **({"depth": int(self.depth)} if self.depth else {}),
+            **({"angle": float(self.angle)} if self.angle is not None else {}),
+        }

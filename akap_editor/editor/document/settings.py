@@ -1,5 +1,6 @@
 """The deformation method of a drawing, and its parameters."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -32,3 +33,12 @@ class Settings:
         for parameter, value in parameters.items():
             settings = settings.with_parameter(parameter, value)
         return settings
+
+    def to_json(self) -> dict[str, Any]:
+        """The settings as an object of a document or recording; docs/file-format.md describes it."""
+        return {"method": self.method, "parameters": dict(self.parameters)}
+
+    @classmethod
+    def from_json(cls, record: Mapping[str, Any]) -> "Settings":
+        """Read what `to_json` wrote; parameters in the order of their names. Raises KeyError, TypeError."""
+        return cls(str(record["method"]), tuple(sorted(dict(record["parameters"]).items())))

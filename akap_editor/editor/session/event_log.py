@@ -25,8 +25,16 @@ class EventLog(Sequence[Event]):
         """Add an event, of values that JSON can hold."""
         self._lines.append(json.dumps(event, separators=(",", ":")))
         if len(self._lines) == PACKED:
-            self._packs.append(zlib.compress("\n".join(self._lines).encode(), 1))
+            self._packs.append(_packed(self._lines))
             self._lines.clear()
+
+    def replace(self, index: int, event: Event) -> None:
+        """Put an event in the place of another one. Raises IndexError."""
+        number, line = divmod(range(len(self))[index], PACKED)
+        lines = self._pack(number)
+        lines[line] = json.dumps(event, separators=(",", ":"))
+        if number < len(self._packs):
+            self._packs[number] = _packed(lines)
 
     def __len__(self) -> int:
         return PACKED * len(self._packs) + len(self._lines)
@@ -55,3 +63,7 @@ class EventLog(Sequence[Event]):
         if number == len(self._packs):
             return self._lines
         return zlib.decompress(self._packs[number]).decode().split("\n")
+
+
+def _packed(lines: list[str]) -> bytes:
+    return zlib.compress("\n".join(lines).encode(), 1)

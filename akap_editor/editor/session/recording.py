@@ -3,7 +3,6 @@
 import hashlib
 import json
 import reprlib
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
@@ -15,43 +14,35 @@ from ...geometry.mesh import TriMesh
 from ..document.document import Document
 from ..document.drawing import Drawing
 from ..document.keyframes import Animation
-from ..document.pin import Pin
-from ..document.settings import Settings
+from .edits import (
+    EDITS,
+    AddPose,
+    Edit,
+    SetEasing,
+    SetKeyframe,
+    SetLoop,
+    SetPins,
+    SetPose,
+    SetSettings,
+    SetStiffness,
+)
 from .event_log import Event, EventLog
 
 VERSION = 1
 LATEST = 1e9  # seconds
 
-# What each event must carry besides its time.
-_FIELDS: dict[str, tuple[str, ...]] = {
+# Events that are not edits, with the values that each must have besides its time.
+SESSION_EVENTS: dict[str, tuple[str, ...]] = {
     "begin": ("label",),
     "label": ("label",),
     "commit": (),
     "abort": (),
     "undo": (),
     "redo": (),
-    "pins": ("pins",),
-    "targets": ("targets",),
-    "angles": ("angles",),
-    "stiffness": ("factors",),
-    "paint": ("dabs", "radius", "factor"),
     "step": (),
-    "pose": ("positions",),
-    "settings": ("method", "parameters"),
-    "reset": (),
-    "bake": (),
-    "mesh": ("vertices", "expand", "threshold", "background"),
     "return": ("line",),
-    "keep": ("name",),
-    "forget": ("name",),
-    "rename": ("name", "to"),
-    "order": ("names",),
-    "key": ("time",),
-    "unkey": ("times",),
-    "rekey": ("from", "to"),
-    "ease": ("times", "ease"),
-    "loop": ("loop",),
 }
+_FIELDS = {**SESSION_EVENTS, **{name: edit.fields for name, edit in EDITS.items()}}
 
 
 @dataclass(eq=False)
@@ -96,50 +87,23 @@ def drawing_header(drawing: Drawing) -> dict[str, Any]:
     return header if drawing.meshing is None else {**header, "wanted": drawing.meshing.vertices}
 
 
-def settings_to_json(settings: Settings) -> dict[str, Any]:
-    """Settings as the values of a "settings" event."""
-    return {"method": settings.method, "parameters": dict(settings.parameters)}
-
-
-def pins_to_json(mesh: TriMesh, pins: Sequence[Pin]) -> list[dict[str, Any]]:
-    """Pins with face and weights, for exactly this mesh, and their place at rest, for any other."""
-    result = []
-    for pin in pins:
-        rest = pin.weights @ mesh.vertices[mesh.faces[pin.face]]
-        result.append(
-            {
-                "id": pin.id,
-                "face": pin.face,
-                "weights": pin.weights.tolist(),
-                **({"depth": pin.depth} if pin.depth else {}),
-                **({"angle": pin.angle} if pin.angle is not None else {}),
-                "rest": rest.tolist(),
-                "target": pin.target.tolist(),
-            }
-        )
-    return result
-
-
-def opening_events(document: Document) -> list[Event]:
-    """What leads from a drawing at rest to a document that was opened, without times."""
+def opening_edits(document: Document) -> list[Edit]:
+    """The edits that lead from a drawing at rest to a document that was opened."""
     state, mesh = document.state, document.drawing.mesh
-    events: list[Event] = [{"do": "settings", **settings_to_json(state.settings)}]
+    edits: list[Edit] = [SetSettings(state.settings)]
     if state.stiffness is not None:
-        events.append({"do": "stiffness", "factors": state.stiffness.tolist()})
+        edits.append(SetStiffness(state.stiffness))
     if not np.array_equal(state.positions, mesh.vertices):
-        events.append({"do": "pose", "positions": state.positions.tolist()})
+        edits.append(SetPose(state.positions))
     if state.pins:
-        events.append({"do": "pins", "pins": pins_to_json(mesh, state.pins)})
-    for pose in state.poses:
-        events.append({"do": "keep", "name": pose.name, "positions": pose.positions.tolist()})
-    for key in state.animation.keys:
-        ease = {} if key.ease is None else {"ease": key.ease}
-        events.append({"do": "key", "time": key.time, **ease, "positions": key.positions.tolist()})
+        edits.append(SetPins(state.pins))
+    edits += [AddPose(pose.name, pose.positions) for pose in state.poses]
+    edits += [SetKeyframe(key.time, key.positions, key.ease) for key in state.animation.keys]
     if state.animation.ease != Animation.ease:
-        events.append({"do": "ease", "times": None, "ease": state.animation.ease})
+        edits.append(SetEasing(None, state.animation.ease))
     if not state.animation.loop:
-        events.append({"do": "loop", "loop": False})
-    return events
+        edits.append(SetLoop(False))
+    return edits
 
 
 def parse_recording(text: str) -> Recording:

@@ -1,95 +1,232 @@
-"""What bends a drawing as its state says, and how far one step goes."""
+"""Steps a document's pose towards its pin targets until it settles."""
 
 from collections.abc import Callable
+from concurrent.futures import Executor, Future, wait
+from dataclasses import dataclass, replace
 from threading import Lock
 from typing import Any
 
 import numpy as np
 
 from ...deform.deformer import StepResult, holds_angles, make_deformer, takes_stiffness
+from ...errors import SolverError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats
 from ..document.document import EditState
 from ..document.pin_angles import FullTurnCounter, pin_angles
 
-REACH = 0.035  # longest way of a pin in one step, as a share of √area; longer steps cost as much a pixel
-MOST_TURN = 0.2  # radians that a pin turns in one step
+MAX_PIN_TRAVEL = 0.035  # of a pin in one step, as a share of √area; longer steps cost as much per pixel
+MAX_PIN_ROTATION = 0.2  # radians of a pin in one step
+PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
+ANGLE_TOLERANCE = 0.002  # radians: a pin nearer than this to its angle has arrived
+VISIBLE_OFFSET, VISIBLE_ROTATION = 1.0, 0.05  # pixels, radians: less is not seen while the drawing moves
+SETTLED_MOTION = 0.02  # pixels: a step that moves no vertex farther has settled
+MAX_SETTLING_STEPS = 400  # after the last change of a target, in case a pose never settles
 
 
-class Bending:
-    """The deformer of a mesh, made for the settings and the stiffness of a state, with that state's pins.
+class InlineExecutor(Executor):
+    """Runs each job inside `submit`: in scripts and tests no window waits for the result."""
 
-    turns: full turns of pins since it was told to forget them; last_way: of pins that moved, the pose before
-    and their velocities, for `fields`. Raises InputError on settings that no method knows.
+    def submit(self, job: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Run ``job(*args, **kwargs)``; returns its finished future."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(job(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+INLINE = InlineExecutor()
+
+
+@dataclass(frozen=True, eq=False)
+class PendingStep:
+    """A step that is being computed.
+
+    start: the state it started from; pin_offsets: (k, 2) from the pins to their targets at the start, pixels.
+    """
+
+    start: EditState
+    pin_offsets: Floats
+    result: Future[StepResult]
+
+
+class Stepper:
+    """Moves the pose of a state towards its pin targets and angles, one step at a time.
+
+    It owns the deformer of the state's method, the pending step, and the number of steps until the pose must
+    have settled. A step may run in another thread; meanwhile targets and angles may change, nothing else.
+    Raises InputError for settings that no method accepts.
+
+    last_step: result of the last step; last_motion: of the last step that moved pins, the pose before it
+    (n, 2) and the velocities of its pins (k, 2), for `vector_fields`.
     """
 
     def __init__(self, mesh: TriMesh, state: EditState) -> None:
-        self._mesh, self._one_at_a_time = mesh, Lock()
-        self.settings, self.stiffness = state.settings, state.stiffness
+        self._lock = Lock()  # a thread computes steps or vector fields, one at a time
+        self._pending: PendingStep | None = None
+        self.last_step: StepResult | None = None
+        self.set_method(mesh, state)
+
+    # -- the state to step ---------------------------------------------------------------------------------
+
+    def set_method(self, mesh: TriMesh, state: EditState) -> None:
+        """Deform ``mesh`` by the method and stiffness of a state. On InputError nothing has changed."""
         method, parameters = state.settings.method, dict(state.settings.parameters)
         if state.stiffness is not None and takes_stiffness(method):
             parameters["stiffness"] = state.stiffness
-        # Any: of a method that may have more than the contract asks for
-        self.deformer: Any = make_deformer(method, mesh, **parameters)
-        self.set_pins(state)
-        self.holds_angles = holds_angles(method)
-        self.turns = FullTurnCounter()
-        self.last_way: tuple[Floats, Floats] | None = None
-        self._reach = REACH * float(np.sqrt(mesh.rest_areas.sum()))
+        deformer = make_deformer(method, mesh, **parameters)
+        deformer.set_pins(state.points)
+        with self._lock:
+            # Any: a method may have more than the contract asks for, e.g. angles of pins and vector fields
+            self._deformer: Any = deformer
+            self._pin_count = len(state.pins)
+            self.last_motion: tuple[Floats, Floats] | None = None
+        self._mesh, self._settings, self._stiffness = mesh, state.settings, state.stiffness
+        self._max_travel = MAX_PIN_TRAVEL * float(np.sqrt(mesh.rest_areas.sum()))
+        self._full_turns = FullTurnCounter()
+        self.steps_left = 0
 
     def set_pins(self, state: EditState) -> None:
-        """Choose the pins of a state; moves nothing."""
-        with self._one_at_a_time:
-            self.deformer.set_pins(state.points)
-            self._pins = len(state.pins)
+        """Take over the pins of a state and stop; no vertex moves."""
+        with self._lock:
+            self._deformer.set_pins(state.points)
+            self._pin_count = len(state.pins)
+        self.steps_left = 0
 
-    def fits(self, mesh: TriMesh, state: EditState) -> bool:
-        """Whether it bends this mesh as this state says, whatever the pins are."""
-        same = mesh is self._mesh and state.stiffness is self.stiffness
-        return same and state.settings == self.settings
+    def restore(self, mesh: TriMesh, state: EditState) -> None:
+        """Take over another state of the document, for example an earlier one, and stop.
 
-    def off(self, state: EditState) -> Floats:
-        """(k, 2): by how much pins are away from where they should be."""
+        Raises InputError as `set_method` does.
+        """
+        same_method = state.settings == self._settings and state.stiffness is self._stiffness
+        if mesh is not self._mesh or not same_method:
+            self.set_method(mesh, state)
+            return
+        self.last_motion = None
+        self.forget_turns()
+        self.set_pins(state)
+
+    def aim(self, state: EditState) -> None:
+        """Start to move: the targets or angles of the pins have changed."""
+        self.steps_left = MAX_SETTLING_STEPS + int(self._least_steps(state))
+
+    def stop(self) -> None:
+        """Leave the pose as it is, even if pins have not arrived."""
+        self.steps_left = 0
+
+    def forget_turns(self) -> None:
+        """Forget full turns: from now on pins rotate the short way to their angles."""
+        self._full_turns.forget()
+
+    # -- distance from the goal ----------------------------------------------------------------------------
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether pins have not arrived, or the drawing around them has not settled."""
+        return self.steps_left > 0
+
+    def pin_offsets(self, state: EditState) -> Floats:
+        """(k, 2) pixels from each pin to its target."""
         return state.targets - self._mesh.evaluate(state.points, state.positions)
 
-    def angles_off(self, state: EditState) -> Floats:
-        """(k,): by how many radians pins still have to turn; NaN for those that turn as they will."""
+    def angle_errors(self, state: EditState) -> Floats:
+        """(k,) radians that each pin still has to rotate, with full turns; NaN for pins without an angle."""
         wanted = state.angles
-        if not self.holds_angles or not np.isfinite(wanted).any():
+        if not holds_angles(self._settings.method) or not np.isfinite(wanted).any():
             return np.full(len(wanted), np.nan)
-        return wanted - self.turns.counted(state.pins, pin_angles(self._mesh, state.pins, state.positions))
+        angles = pin_angles(self._mesh, state.pins, state.positions)
+        return wanted - self._full_turns.counted(state.pins, angles)
 
-    def turn_error(self, state: EditState) -> float:
-        """Largest angle by which a pin still has to turn, radians."""
-        return float(np.nan_to_num(np.abs(self.angles_off(state))).max(initial=0.0))
+    def pin_error(self, state: EditState) -> float:
+        """Largest distance of a pin from its target, pixels."""
+        return float(np.linalg.norm(self.pin_offsets(state), axis=1).max(initial=0.0))
 
-    def steps_left(self, state: EditState) -> float:
-        """How many steps pins need at least to where they should be."""
-        way = np.linalg.norm(self.off(state), axis=1).max(initial=0.0)
-        return float(max(way / self._reach, self.turn_error(state) / MOST_TURN))
+    def angle_error(self, state: EditState) -> float:
+        """Largest angle that a pin still has to rotate, radians."""
+        return float(np.nan_to_num(np.abs(self.angle_errors(state))).max(initial=0.0))
 
-    def way(self, state: EditState) -> Callable[[], StepResult]:
-        """One step from a state towards its targets and angles, to be computed in any thread.
+    def has_visually_arrived(self, state: EditState) -> bool:
+        """Whether the pins are so near to their targets and angles that an eye sees no difference."""
+        return self.pin_error(state) < VISIBLE_OFFSET and self.angle_error(state) < VISIBLE_ROTATION
 
-        It raises SolverError.
+    def _least_steps(self, state: EditState) -> float:
+        """The number of steps in which the pins can arrive if nothing holds them back."""
+        travel = self.pin_error(state) / self._max_travel
+        return max(travel, self.angle_error(state) / MAX_PIN_ROTATION)
+
+    # -- steps ---------------------------------------------------------------------------------------------
+
+    @property
+    def has_pending_step(self) -> bool:
+        """Whether a step has started and `finish` has not taken it over."""
+        return self._pending is not None
+
+    def start(self, state: EditState, executor: Executor) -> Future[StepResult]:
+        """Start a step from ``state``; returns its future, whose exception may be a SolverError.
+
+        No step may be pending. The step goes as far towards the targets as one step may.
         """
-        here, turn = self._mesh.evaluate(state.points, state.positions), self.angles_off(state)
-        share = 1.0 / max(1.0, self.steps_left(state))
-        goals = state.targets if share == 1.0 else here + share * (state.targets - here)
-        angles = (state.angles - (1.0 - share) * turn,) if np.isfinite(turn).any() else ()
+        assert self._pending is None, "a step is already pending"
+        step = self._make_step(state)
+        offsets = self.pin_offsets(state)
+        self._pending = PendingStep(state, offsets, executor.submit(step))
+        return self._pending.result
+
+    def is_ready(self, seconds: float = 0.0) -> bool:
+        """Whether `finish` will not block; waits up to ``seconds`` for that."""
+        pending = self._pending
+        return pending is not None and bool(wait([pending.result], max(seconds, 0.0)).done)
+
+    def finish(self, state: EditState) -> EditState:
+        """Wait for the pending step; returns ``state``, the current one, with the new pose.
+
+        Raises SolverError if the step failed; the pose then stays and the motion stops.
+        """
+        pending, self._pending = self._pending, None
+        assert pending is not None, "no step is pending"
+        try:
+            result = pending.result.result()
+        except SolverError:
+            self.stop()
+            raise
+        before = pending.start.positions
+        moved_pins = np.linalg.norm(pending.pin_offsets, axis=1).max(initial=0.0) > PIN_TOLERANCE
+        if result.field is not None and moved_pins:
+            self.last_motion = before, pending.pin_offsets
+        aimed_meanwhile = state.pins is not pending.start.pins
+        state = replace(state, positions=result.positions)
+        arrived = self.pin_error(state) < PIN_TOLERANCE and self.angle_error(state) < ANGLE_TOLERANCE
+        moved = float(np.abs(result.positions - before).max())
+        # Pins that something holds back approach in ever smaller steps, so only a tenth counts as settled.
+        settled = moved < (SETTLED_MOTION if arrived else 0.1 * SETTLED_MOTION) and not aimed_meanwhile
+        self.steps_left = 0 if settled else max(self.steps_left - 1, 0)
+        self.last_step = result
+        return state
+
+    def _make_step(self, state: EditState) -> Callable[[], StepResult]:
+        """One step from a state towards its targets and angles, to be called in any thread."""
+        here, errors = self._mesh.evaluate(state.points, state.positions), self.angle_errors(state)
+        share = 1.0 / max(1.0, self._least_steps(state))
+        targets = state.targets if share == 1.0 else here + share * (state.targets - here)
+        angles = (state.angles - (1.0 - share) * errors,) if np.isfinite(errors).any() else ()
 
         def step() -> StepResult:
-            with self._one_at_a_time:
-                result: StepResult = self.deformer.step(state.positions, goals, *angles)
+            with self._lock:
+                result: StepResult = self._deformer.step(state.positions, targets, *angles)
             return result
 
         return step
 
-    def fields(self) -> tuple[Floats, Floats] | None:
-        """U_opt and U°, (n, 2) each, of the last way of these pins; None without one. From any thread."""
-        with self._one_at_a_time:
-            way = self.last_way
-            if way is None or len(way[1]) != self._pins:
+    def vector_fields(self) -> tuple[Floats, Floats] | None:
+        """U_opt and U°, (n, 2) each, of the last motion of the current pins; None if there was none.
+
+        May be called in any thread.
+        """
+        with self._lock:
+            motion = self.last_motion
+            if motion is None or len(motion[1]) != self._pin_count:
                 return None
-            optimal, smooth = self.deformer.vector_fields(*way)
+            optimal, smooth = self._deformer.vector_fields(*motion)
         return optimal, smooth

@@ -6,6 +6,8 @@ import numpy as np
 
 from ..camera import Point
 from ..events import PointerEvent
+from ..session.edits import SetTargets
+from ..session.pin_edits import add_pin, hold_pins
 from .base import Pointing, Tool
 from .rotate import PointingRotationRing, hovered_ring, ring_at
 from .stiffness_brush import Painting
@@ -79,7 +81,7 @@ class Idle(Tool):
             editor.set_tool(PointingCanvas(editor, event))
             return
         editor.session.begin("Add pin")
-        added = editor.session.add_pin(editor.camera.to_drawing(event.position))
+        added = add_pin(editor.session, editor.camera.to_drawing(event.position))
         if added is None:
             editor.session.abort()
             editor.set_tool(PointingCanvas(editor, event))
@@ -171,7 +173,7 @@ class DraggingPin(Tool):
             session.rename("Add pin and bend")
         else:
             session.begin(label)
-        session.hold_pins()
+        hold_pins(session)
         editor.trails.clear()
         where = zip(session.state.pins, session.pin_positions(), strict=True)
         self._from = {pin.id: (x, y) for pin, (x, y) in where if pin.id in editor.selection}
@@ -188,7 +190,8 @@ class DraggingPin(Tool):
         assert self.editor.session is not None
         x, y = self.editor.camera.to_drawing(event.position)
         dx, dy = x - self._start[0], y - self._start[1]
-        self.editor.session.set_targets({pin: (a + dx, b + dy) for pin, (a, b) in self._from.items()})
+        targets = {pin: (a + dx, b + dy) for pin, (a, b) in self._from.items()}
+        self.editor.session.apply(SetTargets(targets))
 
     def release(self, event: PointerEvent) -> None:
         if event.button == "left":

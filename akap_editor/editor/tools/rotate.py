@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 from ..camera import Point
 from ..events import PointerEvent
+from ..session.edits import SetAngles
+from ..session.pin_edits import hold_angles, hold_pins
 from .base import Pointing, Tool, distance
 
 if TYPE_CHECKING:
@@ -20,7 +22,9 @@ def ring_pin(editor: "Editor") -> int | None:
     if isinstance(editor.tool, RotatingPin):
         return editor.tool.pin
     session = editor.session
-    idle = session is not None and session.turns and not editor.busy and editor.chosen_tool == "pins"
+    idle = (
+        session is not None and session.supports_rotation and not editor.busy and editor.chosen_tool == "pins"
+    )
     if not idle or editor.pans_on_drag or "alt" not in editor.held or editor.pointer is None:
         return None
     pointer, places = editor.pointer, editor.pins_on_screen()
@@ -51,17 +55,17 @@ def toggle_hold(editor: "Editor") -> None:
     chosen = [pin for pin in editor.session.state.pins if pin.id in editor.selection]
     free = [pin.id for pin in chosen if pin.angle is None]
     if free:
-        editor.edit("Hold angle", lambda session: session.hold_angles(free))
+        editor.edit("Hold angle", lambda session: hold_angles(session, free))
     else:
-        editor.edit("Release angle", lambda session: session.hold_angles(editor.selection, False))
+        editor.edit("Release angle", lambda session: hold_angles(session, editor.selection, False))
 
 
 def set_angle(editor: "Editor", pin: int, angle: float | None) -> None:
     """Let a pin hold an angle (radians from rest), or none. Raises InputError on one out of range."""
     if angle is None:
-        editor.edit("Release angle", lambda session: session.hold_angles({pin}, False))
+        editor.edit("Release angle", lambda session: hold_angles(session, {pin}, False))
     else:
-        editor.edit("Turn", lambda session: session.turn_pins({pin: angle}))
+        editor.edit("Turn", lambda session: session.apply(SetAngles({pin: angle})))
 
 
 class PointingRotationRing(Pointing):
@@ -95,7 +99,7 @@ class RotatingPin(Tool):
         self._direction = self._towards(start)
         editor.select({pin})
         session.begin("Turn")
-        session.hold_pins()
+        hold_pins(session)
         editor.trails.clear()
 
     @property
@@ -113,7 +117,8 @@ class RotatingPin(Tool):
         self._angle += math.remainder(direction - self._direction, 2 * math.pi)
         self._direction = direction
         snaps = event.shift or "shift" in self.editor.held
-        session.turn_pins({self.pin: SNAP * round(self._angle / SNAP) if snaps else self._angle})
+        angle = SNAP * round(self._angle / SNAP) if snaps else self._angle
+        session.apply(SetAngles({self.pin: angle}))
 
     def _towards(self, position: Point) -> float:
         x, y = self.editor.pins_on_screen()[self.pin]

@@ -9,6 +9,7 @@ import numpy as np
 from ...geometry.validation import Floats
 from ..document.stiffness import SOFTEST, STIFFEST, apply_stroke, stroke_coverage
 from ..events import PointerEvent
+from ..session.edits import PaintStiffness
 from .base import Tool
 
 if TYPE_CHECKING:
@@ -99,7 +100,7 @@ class Painting(Tool):
         session = self.editor.session
         assert session is not None
         if self._dabs:
-            session.paint_stiffness(self._dabs, self._radius, self._factor)
+            session.apply(PaintStiffness(self._dabs, self._radius, self._factor))
         session.commit()
         self.editor.return_to_idle()
 

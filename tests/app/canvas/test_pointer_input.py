@@ -9,7 +9,7 @@ import pytest
 
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.editor import PICK_RADIUS
-from akap_editor.editor.session.bent import PIN_TOLERANCE
+from akap_editor.editor.session.stepper import PIN_TOLERANCE
 from akap_editor.errors import SolverError
 
 Key = imgui.Key
@@ -35,7 +35,7 @@ def test_a_click_adds_a_pin_exactly_there(ui):
     np.testing.assert_allclose(ui.pin_place(pin.id), ui.place(at), atol=1e-9)
     assert ui.editor.selection == {pin.id}
     assert ui.session.history.undo_label == "Add pin"
-    assert not ui.session.posed
+    assert not ui.session.is_posed
 
 
 def test_a_click_beside_the_drawing_adds_none_and_deselects(pinned):
@@ -313,7 +313,7 @@ def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkey
     assert not pinned.state.error
     monkeypatch.undo()
     pinned.drag(start, (start[0], start[1] + 50))
-    assert pinned.session.posed
+    assert pinned.session.is_posed
 
 
 # -- how it looks -------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app.commands import registry as commands
+from akap_editor.editor.session.edits import PaintStiffness
 from akap_editor.editor.tools.rotate import RING, ring_pin
 from akap_editor.render.overlays import FaceColors
 from tests.app.canvas.test_pin_markers import at_pin
@@ -29,7 +30,7 @@ def test_an_alt_drag_of_the_ring_turns_and_holds(pinned):
     assert (pinned.screenshot() != plain).any()
     pinned.key(commands.UNDO.chords[0])
     assert pinned.session.state.pin(2).angle is None
-    assert not pinned.session.posed
+    assert not pinned.session.is_posed
 
 
 def test_the_ring_is_seen_while_alt_is_held(pinned):
@@ -102,7 +103,7 @@ def test_the_options_of_the_brush(pinned):
     pinned.tool_button(commands.BRUSH_TOOL)
     pinned.panel("Erase")
     assert pinned.editor.brush.erasing
-    pinned.editor.edit("Stiffen", lambda session: session.paint_stiffness([(50.0, 80.0)], 30.0, 100.0))
+    pinned.editor.edit("Stiffen", lambda session: session.apply(PaintStiffness([(50.0, 80.0)], 30.0, 100.0)))
     pinned.panel(commands.SOFTEN_ALL.label.capitalize())
     assert pinned.session.state.stiffness is None
 

@@ -8,6 +8,7 @@ from akap_editor.app.canvas.split_view import halves
 from akap_editor.deform.methods import PRESETS
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Drawing
+from akap_editor.editor.session.edits import SetPose, SetSettings
 from akap_editor.geometry.mesh import TriMesh
 
 MENU = ("View", "Two Methods Side by Side")
@@ -19,7 +20,7 @@ def split(pinned):
     pinned.menu(*MENU)
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0], start[1] - 100))
-    assert pinned.session.posed
+    assert pinned.session.is_posed
     return pinned
 
 
@@ -62,10 +63,10 @@ def test_right_half_shows_the_second_pose(split):
     """The same picture as the left half shows once both methods are one."""
     split.state.show_pins = False
     split.session.begin("Method")
-    split.session.set_settings(split.state.comparison.session.state.settings)
+    split.session.apply(SetSettings(split.state.comparison.session.state.settings))
     split.session.commit()
     split.session.begin("Step")
-    split.session.set_pose(split.state.comparison.session.state.positions)
+    split.session.apply(SetPose(split.state.comparison.session.state.positions))
     split.session.commit()
     picture = split.screenshot().astype(int)
     left, right = halves(
@@ -102,8 +103,8 @@ def test_a_click_on_the_right_adds_no_pin_and_the_wheel_zooms_both(split):
 
 def test_undo_takes_both_back(split):
     split.menu("Edit", "Undo")
-    assert not split.session.posed
-    assert not split.state.comparison.session.posed
+    assert not split.session.is_posed
+    assert not split.state.comparison.session.is_posed
 
 
 def test_a_drawing_that_the_second_method_refuses_closes_the_half(ui):

@@ -183,7 +183,7 @@ def test_the_session_is_looked_back_at_by_keys(pinned):
     playback = pinned.state.session_playback
     keys(pinned, Key.home)
     assert playback.at == 0.0
-    assert pinned.session.visiting
+    assert pinned.session.is_previewing
     keys(pinned, Key.end)
     assert playback.at is None
 

@@ -15,6 +15,7 @@ from akap_editor.deform.deformer import method_names
 from akap_editor.deform.methods import PRESETS, preset_of
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.events import PinRequest
+from akap_editor.editor.session.edits import PaintStiffness
 from akap_editor.editor.tools.stiffness_brush import Brush
 from akap_editor.errors import SolverError
 
@@ -25,7 +26,7 @@ def bend(ui):
     """Pin 3 goes up; one undo entry."""
     start = ui.screen(ui.pin_place(3))
     ui.drag(start, (start[0], start[1] - 120))
-    assert ui.session.posed
+    assert ui.session.is_posed
 
 
 # -- what each command does: prepare, and a law that holds after it -----------------------------------------
@@ -53,7 +54,7 @@ def with_tool(name):
 
 
 def stiffened(ui):
-    ui.editor.edit("Stiffen", lambda session: session.paint_stiffness([(50.0, 80.0)], 30.0, 100.0))
+    ui.editor.edit("Stiffen", lambda session: session.apply(PaintStiffness([(50.0, 80.0)], 30.0, 100.0)))
 
 
 def moved_camera(ui):
@@ -67,7 +68,7 @@ def watch_palette(ui):
 
 
 def is_rest(ui):
-    return not ui.session.posed
+    return not ui.session.is_posed
 
 
 def zoom_is(factor):
@@ -200,15 +201,15 @@ CASES = {
     "Close": (nothing, lambda ui: ui.state.document is None),
     "Quit": (nothing, lambda ui: ui.state.closing),
     "Undo": (bent, is_rest),
-    "Redo": (undone, lambda ui: ui.session.posed),
+    "Redo": (undone, lambda ui: ui.session.is_posed),
     "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
     "Bring Forward": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, 1, 0]),
     "Send Back": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, -1, 0]),
     "Remove Last Pin": (nothing, lambda ui: [pin.id for pin in ui.pins] == [1, 2]),
     "Select All Pins": (nothing, lambda ui: ui.editor.selection == {1, 2, 3}),
     "Deselect": (one_selected, lambda ui: not ui.editor.selection),
-    "Reset Pose": (bent, lambda ui: not ui.session.posed and len(ui.pins) == 3),
-    "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.posed and ui.editor.modified),
+    "Reset Pose": (bent, lambda ui: not ui.session.is_posed and len(ui.pins) == 3),
+    "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.is_posed and ui.editor.modified),
     "Remember the Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
     "Default Parameters": (
         lambda ui: ui.state.change_settings(
@@ -412,7 +413,7 @@ def test_the_rest_shape_switch_is_an_edit(pinned):
 def test_reset_pose_by_the_panel(pinned):
     bend(pinned)
     pinned.panel("Reset pose")
-    assert not pinned.session.posed
+    assert not pinned.session.is_posed
 
 
 def pin_in_list(ui, pin, shift=False):
@@ -463,7 +464,7 @@ def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd
     assert not pinned.state.error
     bend(pinned)
     pinned.menu("Edit", "Undo")
-    assert not pinned.session.posed
+    assert not pinned.session.is_posed
 
 
 # -- help ---------------------------------------------------------------------------------------------------

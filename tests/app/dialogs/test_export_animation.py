@@ -62,7 +62,7 @@ def test_asking_does_not_change_what_is_seen(keyed):
     animating.ask(keyed.state)
     keyed.dialog(TITLE, "Cancel")
     assert keyed.session.state is before
-    assert not keyed.session.visiting
+    assert not keyed.session.is_previewing
 
 
 @pytest.mark.parametrize("kind", FORMATS, ids=[each.label for each in FORMATS])

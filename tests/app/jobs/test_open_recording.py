@@ -22,7 +22,7 @@ def test_what_was_done_by_hand_is_saved_and_done_again_to_the_last_bit(ui, tmp_p
     recording = read_recording(tmp_path / "wave.akaprec")
     *_, last = replay(recording, recorded_drawing(recording))
     np.testing.assert_array_equal(last.state.positions, ui.session.state.positions)
-    assert ui.session.posed
+    assert ui.session.is_posed
 
 
 def recorded(ui, tmp_path):

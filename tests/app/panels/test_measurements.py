@@ -5,6 +5,7 @@ import pytest
 from akap_editor.app.panels.measurements import KEPT, Measurements
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.editor import Editor
+from akap_editor.editor.session.edits import SetTargets
 from akap_editor.geometry.distortion import distortion
 
 
@@ -40,7 +41,7 @@ def test_measuring_takes_a_tenth_of_the_time_at_most_while_something_moves(sessi
     calls, measure = measuring(session, clock, cost=0.03)
     measurements, start = Measurements(clock), clock.now
     session.begin("Bend")
-    session.set_targets({2: (190.0, 60.0)})
+    session.apply(SetTargets({2: (190.0, 60.0)}))
     frames(measurements, session, clock, measure, 120)
     assert len(calls) >= 3
     assert 0.03 * len(calls) <= 0.1 * (clock.now - start) + 0.03
@@ -50,7 +51,7 @@ def test_the_pose_at_rest_is_measured_at_once_and_only_once(session, clock):
     calls, measure = measuring(session, clock, cost=0.03)
     measurements = Measurements(clock)
     session.begin("Bend")
-    session.set_targets({2: (190.0, 60.0)})
+    session.apply(SetTargets({2: (190.0, 60.0)}))
     frames(measurements, session, clock, measure, 3)
     session._settling = 0
     before = len(calls)
@@ -67,7 +68,7 @@ def test_rates_leave_out_sleep(session, clock):
     measurements = Measurements(clock)
     assert (measurements.frame_rate, measurements.step_seconds) == (None, None)
     session.begin("Bend")
-    session.set_targets({2: (190.0, 60.0)})
+    session.apply(SetTargets({2: (190.0, 60.0)}))
     frames(measurements, session, clock, measure, 10, step=0.02)
     clock.now += 60.0
     frames(measurements, session, clock, measure, 10, step=0.02)
@@ -79,7 +80,7 @@ def test_it_forgets_what_is_old_and_begins_anew_with_a_drawing(session, clock, d
     _, measure = measuring(session, clock, cost=0.0)
     measurements = Measurements(clock)
     session.begin("Bend")
-    session.set_targets({2: (190.0, 60.0)})
+    session.apply(SetTargets({2: (190.0, 60.0)}))
     frames(measurements, session, clock, measure, KEPT + 9)
     assert len(measurements.areas) == len(measurements.angles) == KEPT
     other = Editor()

@@ -51,7 +51,7 @@ def test_a_drag_on_the_ruler_moves_along_and_edits_nothing(keyed):
     depth, events = keyed.session.history.depth, len(keyed.session.recording.events)
     keyed.drag(on_track(keyed, 0.1, y=8), on_track(keyed, 0.5, y=8))
     assert at_time(keyed, 0.5, 0.5)
-    assert keyed.session.visiting
+    assert keyed.session.is_previewing
     keyed.drag(on_track(keyed, 0.5, y=8), on_track(keyed, 1.7, y=8))
     assert at_time(keyed, 1.7, 1.0)
     assert (keyed.session.history.depth, len(keyed.session.recording.events)) == (depth, events)
@@ -66,7 +66,7 @@ def test_a_drag_on_the_canvas_takes_what_is_seen_and_k_keeps_it(keyed):
     keyed.click(start)
     assert keyed.session.present is before, "a click takes nothing"
     keyed.drag(start, (start[0] + 20, start[1] + 30))
-    assert not keyed.session.visiting
+    assert not keyed.session.is_previewing
     assert keyed.session.history.depth == depth + 1
     assert np.abs(keyed.session.state.positions - seen).max() < 60, "it went on from there"
     keyed.key(imgui.Key.k)
@@ -274,8 +274,8 @@ def test_looping_is_a_step_of_undo(keyed):
 def test_without_the_timeline_the_present_is_seen(keyed):
     keyed.state.keyframe_playback.scrub(0.5)
     keyed.settle()
-    assert keyed.session.visiting
+    assert keyed.session.is_previewing
     keyed.key(imgui.Key.mod_shift | imgui.Key.t)
-    assert not keyed.session.visiting
+    assert not keyed.session.is_previewing
     keyed.key(imgui.Key.mod_shift | imgui.Key.t)
-    assert not keyed.session.visiting
+    assert not keyed.session.is_previewing

@@ -41,7 +41,7 @@ def test_a_drag_on_the_track_goes_back_and_forth(bent):
     rest = bent.session.drawing.mesh.vertices
     bent.drag(on_track(bent, 0.99), on_track(bent, 0.02))
     np.testing.assert_array_equal(bent.session.state.positions, rest)
-    assert bent.session.visiting
+    assert bent.session.is_previewing
     bent.drag(on_track(bent, 0.5), on_track(bent, 1.0))
     assert bent.session.state is now
 
@@ -88,7 +88,7 @@ def test_a_drag_on_the_canvas_goes_on_from_there(bent):
     bent.settle()
     start = bent.screen(bent.pin_place(3))
     bent.drag(start, (start[0] - 20, start[1] + 60))
-    assert not bent.session.visiting
+    assert not bent.session.is_previewing
     *_, last = replay(bent.session.recording, bent.session.drawing)
     np.testing.assert_array_equal(last.state.positions, bent.session.state.positions)
     assert bent.session.history.labels[-2:] == ["Go back in time", "Bend"]

@@ -7,6 +7,8 @@ from akap_editor.editor.animation.motion import LONGEST_MOVE, Motion, frame_time
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.easing import EASINGS
 from akap_editor.editor.document.settings import Settings
+from akap_editor.editor.session.edits import SetPins, SetPose
+from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import Recording
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
@@ -81,7 +83,7 @@ def test_what_moved_after_a_pause_moved_in_the_last_of_it(slow, drawing):
 def test_a_pose_that_was_set_comes_at_once(pinned, drawing):
     session = pinned.session
     session.begin("Pose")
-    session.set_pose(drawing.mesh.vertices + 5.0)
+    session.apply(SetPose(drawing.mesh.vertices + 5.0))
     session.commit()
     t = next(event["t"] for event in session.recording.events if event["do"] == "pose")
     before, then = poses(session.recording, drawing, [t - 1e-4, t])
@@ -136,8 +138,8 @@ def test_frames_are_drawn_in_the_order_that_depths_ask_for(drawing):
     left, right = drawing.mesh.vertices.min(axis=0), drawing.mesh.vertices.max(axis=0)
     middle = drawing.mesh.vertices[drawing.mesh.faces].mean(axis=1)
     near = [middle[np.argmin(np.hypot(*(middle - place).T))] for place in (left, right)]
-    ids = [session.add_pin(tuple(place)) for place in near]
-    session.set_pins(tuple(replace(pin, depth=2 * (pin.id == ids[0])) for pin in session.state.pins))
+    ids = [add_pin(session, tuple(place)) for place in near]
+    session.apply(SetPins(tuple(replace(pin, depth=2 * (pin.id == ids[0])) for pin in session.state.pins)))
     session.commit()
     recorded = session.recording
     frames = list(motion(recorded, drawing, None).frames([0.0, recorded.duration + 1.0]))

@@ -47,16 +47,16 @@ def test_pauses_are_shortened_and_every_state_is_there(player, pinned, drawing):
 
 def test_scrubbing_shows_every_moment_and_changes_nothing(player, pinned):
     session, now = pinned.session, bits(pinned.state)
-    lines, depth, modified = len(session.recording.events), session.history.depth, session.modified
+    lines, depth, modified = len(session.recording.events), session.history.depth, session.is_modified
     for shot in [*player.snapshots[:-1], *reversed(player.snapshots[:-1])]:
         player.scrub(shot.time)
         assert bits(session.state) == bits(shot.state)
-        assert session.visiting
+        assert session.is_previewing
         player.watch(session)
     player.scrub(player.duration)
-    assert not session.visiting
+    assert not session.is_previewing
     assert bits(session.state) == now
-    assert (len(session.recording.events), session.history.depth, session.modified) == (
+    assert (len(session.recording.events), session.history.depth, session.is_modified) == (
         lines,
         depth,
         modified,
@@ -108,11 +108,11 @@ def test_a_pose_that_is_settling_goes_on_after_a_look_back(player, pinned, drawi
     pinned.move((start[0] - 20.0, start[1] + 25.0))
     pinned.release((start[0] - 20.0, start[1] + 25.0))
     player.watch(session)
-    assert session.moving
+    assert session.is_moving
     player.scrub(0.0)
-    assert not session.moving
+    assert not session.is_moving
     player.now()
-    assert session.moving
+    assert session.is_moving
     pinned.click((30.0, 40.0))
     assert bits(recorded(session, drawing)) == bits(session.state)
 
@@ -120,7 +120,7 @@ def test_a_pose_that_is_settling_goes_on_after_a_look_back(player, pinned, drawi
 def test_undo_while_looking_undoes_from_the_present(player, pinned, drawing):
     player.scrub(player.duration / 2)
     pinned.undo()
-    assert not pinned.session.visiting
+    assert not pinned.session.is_previewing
     assert bits(recorded(pinned.session, drawing)) == bits(pinned.state)
     np.testing.assert_array_equal(pinned.state.positions, drawing.mesh.vertices)
 
@@ -211,7 +211,7 @@ def test_the_pose_between_two_is_looked_at_and_taken(pinned, drawing):
         pose_blend.share = share
         pose_blend.show(session)
     np.testing.assert_array_equal(session.state.positions, session.state.poses[1].positions)
-    session.leave()
+    session.end_preview()
     assert bits(session.state) == now
     assert len(session.recording.events) == events
     pose_blend.share = 0.5

@@ -12,6 +12,8 @@ from akap_editor.editor.document.drawing import Meshing
 from akap_editor.editor.document.keyframes import Animation, Keyframe
 from akap_editor.editor.document.remesh import remeshed
 from akap_editor.editor.document.rest_pose import baked_state
+from akap_editor.editor.session.edits import Remesh, RenamePose, ReorderPoses
+from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import parse_recording
 from akap_editor.editor.session.replay import Replay, replay
 from akap_editor.editor.session.session import Session
@@ -58,7 +60,7 @@ def test_the_pose_between_keyframes_is_the_eased_in_between(player, pinned, draw
     player.ease("hold")
     assert player.pose(0.999) is start.positions
     assert player.pose(1.0) is end.positions
-    document = pinned.session.kept
+    document = pinned.session.present_document
     assert keyed_frame(document, ways, 1.0).pose is end.positions
     assert pose_at(ways, drawing.mesh, document.state.animation, 0.5) is start.positions
 
@@ -104,17 +106,17 @@ def test_looking_changes_nothing_and_edits_of_keyframes_leave_the_pose(player, p
     for moment in (0.0, 0.3, 1.0, 5.0):
         player.scrub(moment)
         player.watch()
-        assert session.visiting
+        assert session.is_previewing
     assert bits(session.present) == before
-    assert bits(session.kept.state) == before
+    assert bits(session.present_document.state) == before
     assert len(session.recording.events) == events
     positions = session.present.positions
     player.nudge(0.1)
     player.watch()
-    assert session.visiting, "it goes on being looked at"
+    assert session.is_previewing, "it goes on being looked at"
     assert session.present.positions is positions
     player.leave()
-    assert not session.visiting
+    assert not session.is_previewing
 
 
 def test_undo_of_a_pose_shows_the_present(player, pinned):
@@ -125,7 +127,7 @@ def test_undo_of_a_pose_shows_the_present(player, pinned):
     pinned.undo()  # the drag
     player.watch()
     assert not player.following
-    assert not pinned.session.visiting
+    assert not pinned.session.is_previewing
 
 
 def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(player, pinned):
@@ -171,7 +173,7 @@ def test_playing_goes_on_and_starts_over(player, pinned, clock):
 def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, drawing):
     session = pinned.session
     session.begin("Mesh")
-    session.set_drawing(remeshed(drawing, replace(drawing.meshing or Meshing(), vertices=300)))
+    session.apply(Remesh.to(remeshed(drawing, replace(drawing.meshing or Meshing(), vertices=300))))
     session.commit()
     keys = session.state.animation.keys
     assert [len(key.positions) for key in keys] == [len(session.drawing.mesh.vertices)] * 2
@@ -191,19 +193,19 @@ def test_poses_are_renamed_and_ordered_and_recorded(pinned, drawing):
     session = pinned.session
     for name in ("a", "b", "c"):
         pinned.editor.keep_pose(name)
-    pinned.editor.edit("Rename", lambda s: s.change_poses("rename", name="b", to="Wave"))
-    pinned.editor.edit("Order", lambda s: s.change_poses("order", names=["c", "a", "Wave"]))
+    pinned.editor.edit("Rename", lambda s: s.apply(RenamePose("b", "Wave")))
+    pinned.editor.edit("Order", lambda s: s.apply(ReorderPoses(["c", "a", "Wave"])))
     assert [pose.name for pose in session.state.poses] == ["c", "a", "Wave"]
     assert bits(recorded(session, drawing)) == bits(session.state)
     before = bits(session.state)
-    for do, values in (
-        ("rename", {"name": "a", "to": "c"}),
-        ("rename", {"name": "no", "to": "d"}),
-        ("rename", {"name": "a", "to": " "}),
-        ("order", {"names": ["a", "c"]}),
+    for edit in (
+        RenamePose("a", "c"),
+        RenamePose("no", "d"),
+        RenamePose("a", " "),
+        ReorderPoses(["a", "c"]),
     ):
         with pytest.raises(InputError):
-            pinned.editor.edit("Bad", lambda s, do=do, values=values: s.change_poses(do, **values))
+            pinned.editor.edit("Bad", lambda s, edit=edit: s.apply(edit))
         assert bits(session.state) == before
 
 
@@ -250,19 +252,19 @@ def test_a_replay_leaves_a_session_to_go_on_with(pinned, drawing):
     assert "Add pin and bend" in pinned.session.history.labels
     text = pinned.session.recording.to_text()
     whole = Replay(parse_recording(text), drawing)
-    assert sum(1 for _ in whole.moments()) == text.count("\n") - 1
+    assert sum(1 for _ in whole.events()) == text.count("\n") - 1
     assert whole.end().history.labels == pinned.session.history.labels
     recording = parse_recording(pinned.session.recording.to_text())
     half = len(recording.events) // 2
     again = Replay(replace(recording, events=recording.events[:half]), drawing)
-    for _ in again.moments():
+    for _ in again.events():
         pass
     session = again.end()
     assert not session.history.is_open
-    assert not session.moving
+    assert not session.is_moving
     assert list(session.recording.events)[:half] == recording.events[:half]
     session.begin("Add pin")
-    assert session.add_pin((20.0, 40.0)) is not None
+    assert add_pin(session, (20.0, 40.0)) is not None
     session.commit()
     stamps = [event["t"] for event in session.recording.events]
     assert stamps == sorted(stamps)

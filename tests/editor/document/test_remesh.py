@@ -10,6 +10,8 @@ from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document.drawing import Drawing, Meshing, make_drawing
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.document.remesh import carried_over, remeshed
+from akap_editor.editor.session.edits import Remesh, SetTargets
+from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import parse_recording
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
@@ -33,8 +35,8 @@ def bent(figure):
     session = Session(new_document(make_drawing(figure, vertices=300, name="bar")), clock=lambda: 0.0)
     session.begin("Bend")
     for at in [(30.0, 60.0), (85.0, 60.0), (140.0, 60.0)]:
-        session.add_pin(at)
-    session.set_targets({3: (130.0, 90.0)})
+        add_pin(session, at)
+    session.apply(SetTargets({3: (130.0, 90.0)}))
     session.settle()
     session.commit()
     return session
@@ -42,7 +44,7 @@ def bent(figure):
 
 def remesh(session, **changes):
     session.begin("Change mesh")
-    session.set_drawing(remeshed(session.drawing, replace(session.drawing.meshing, **changes)))
+    session.apply(Remesh.to(remeshed(session.drawing, replace(session.drawing.meshing, **changes))))
     session.commit()
 
 
@@ -91,7 +93,7 @@ def test_pins_and_pose_stay_and_undo_takes_it_back(bent, changes):
     assert [pin.id for pin in bent.state.pins] == [1, 2, 3]
     assert [pin.target.tolist() for pin in bent.state.pins] == [pin.target.tolist() for pin in state.pins]
     assert np.abs(bent.pin_positions() - places).max() < 1.5
-    assert not bent.moving
+    assert not bent.is_moving
     after = bent.state
     bent.undo()
     assert bent.state is state
@@ -99,7 +101,7 @@ def test_pins_and_pose_stay_and_undo_takes_it_back(bent, changes):
     bent.redo()
     assert bent.state is after
     bent.begin("Bend on")
-    bent.set_targets({3: (120.0, 30.0)})
+    bent.apply(SetTargets({3: (120.0, 30.0)}))
     bent.settle()
     bent.commit()
     assert bent.pin_error() < 0.25
@@ -109,8 +111,8 @@ def test_pins_and_pose_stay_and_undo_takes_it_back(bent, changes):
 def test_escape_restores_the_mesh_bit_for_bit(bent):
     state, drawing = bent.state, bent.drawing
     bent.begin("Change mesh")
-    bent.set_drawing(remeshed(drawing, Meshing(100)))
-    bent.set_drawing(remeshed(bent.drawing, Meshing(500)))
+    bent.apply(Remesh.to(remeshed(drawing, Meshing(100))))
+    bent.apply(Remesh.to(remeshed(bent.drawing, Meshing(500))))
     bent.abort()
     assert bent.state is state
     assert bent.drawing is drawing
@@ -120,8 +122,8 @@ def test_a_pin_on_a_part_that_is_gone_goes_with_it(figure):
     figure[50:70, 165:185, 3] = 150
     session = Session(new_document(make_drawing(figure, vertices=300)))
     session.begin("Add pins")
-    session.add_pin((60.0, 60.0))
-    session.add_pin((175.0, 60.0))
+    add_pin(session, (60.0, 60.0))
+    add_pin(session, (175.0, 60.0))
     session.commit()
     remesh(session, threshold=0.8)
     assert [pin.id for pin in session.state.pins] == [1]
@@ -133,8 +135,8 @@ def test_recordings_do_it_again(bent, figure):
     """To the last bit, undo and all; on another mesh nearly."""
     remesh(bent, vertices=700)
     bent.begin("Add pin")
-    bent.add_pin(tuple(bent.pin_positions()[0] + [6.0, 6.0]))
-    bent.set_targets({2: (90.0, 50.0)})
+    add_pin(bent, tuple(bent.pin_positions()[0] + [6.0, 6.0]))
+    bent.apply(SetTargets({2: (90.0, 50.0)}))
     bent.settle()
     bent.commit()
     bent.undo()
@@ -156,8 +158,8 @@ def test_background_is_removed_and_comes_back(figure):
     whole = session.drawing
     assert whole.mesh.rest_areas.sum() == pytest.approx(200 * 120)
     session.begin("Add pin")
-    session.add_pin((60.0, 60.0))
-    session.add_pin((5.0, 5.0))
+    add_pin(session, (60.0, 60.0))
+    add_pin(session, (5.0, 5.0))
     session.commit()
     remesh(session, background=0.1)
     assert [pin.id for pin in session.state.pins] == [1]

@@ -5,6 +5,7 @@ import pytest
 
 from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document.rest_pose import bake
+from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
@@ -25,7 +26,7 @@ def test_nothing_moves(bent):
     session = bent.editor.session
     before, pins, where = session.state, session.state.pins, session.pin_positions()
     bent.editor.bake_pose()
-    assert not session.posed
+    assert not session.is_posed
     np.testing.assert_array_equal(session.state.positions, before.positions)
     np.testing.assert_array_equal(session.drawing.mesh.vertices, before.positions)
     np.testing.assert_array_equal(session.pin_positions(), where)
@@ -33,8 +34,8 @@ def test_nothing_moves(bent):
         (pin.id, pin.face, pin.weights.tolist()) for pin in pins
     ]
     assert session.pin_error() == 0
-    assert not session.moving
-    assert session.modified
+    assert not session.is_moving
+    assert session.is_modified
 
 
 def test_the_picture_stays_on_the_mesh(bent):
@@ -54,7 +55,7 @@ def test_the_drawing_springs_back_to_the_new_rest_pose(bent):
     baked = session.state.positions
     session.begin("There and back")
     for target in ((60.0, 70.0), tuple(session.state.pin(3).target)):
-        session.set_targets({3: target})
+        session.apply(SetTargets({3: target}))
         session.settle()
     session.commit()
     assert np.abs(session.state.positions - baked).max() < 1.0
@@ -71,7 +72,7 @@ def test_undo_and_redo_restore_every_bit(bent):
     bent.editor.undo()
     assert bits(session.state) == before
     assert session.drawing is drawing
-    assert session.posed
+    assert session.is_posed
     bent.editor.redo()
     assert bits(session.state) == after
     assert session.drawing is baked
@@ -91,7 +92,7 @@ def test_after_undo_it_bends_from_the_old_rest_pose(new_driver):
             driver.editor.undo()
         session = driver.editor.session
         session.begin("Drag")
-        session.set_targets({2: (60.0, 70.0)})
+        session.apply(SetTargets({2: (60.0, 70.0)}))
         session.settle()
         ends.append(session.state.positions)
     np.testing.assert_allclose(ends[0], ends[1], atol=0.01)  # a kept factorization is not exact
@@ -121,7 +122,7 @@ def test_it_is_saved_and_opened_as_any_drawing(bent, tmp_path):
     document = bent.editor.session.document
     opened = load(save(document, tmp_path / "a.akap").path)
     np.testing.assert_array_equal(opened.drawing.mesh.vertices, document.state.positions)
-    assert not Session(opened).posed
+    assert not Session(opened).is_posed
 
 
 def test_a_recording_bakes_again(bent, drawing):

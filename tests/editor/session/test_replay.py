@@ -10,6 +10,7 @@ import pytest
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.settings import Settings
+from akap_editor.editor.session.edits import SetPose
 from akap_editor.editor.session.recording import Recording, drawing_header, parse_recording
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
@@ -260,7 +261,7 @@ def test_a_header_with_a_bad_size_is_refused(drawing, size):
 
 def test_a_pose_of_another_mesh_with_as_many_vertices_is_refused(pinned, drawing):
     pinned.session.begin("Pose")
-    pinned.session.set_pose(drawing.mesh.vertices + 1.0)
+    pinned.session.apply(SetPose(drawing.mesh.vertices + 1.0))
     header = {**pinned.session.recording.header, "mesh": "another"}
     recording = Recording(header, pinned.session.recording.events)
     line = len(recording.events) + 1
@@ -277,7 +278,7 @@ def test_going_back_restores_exactly_and_the_old_branch_can_be_undone_to(pinned,
     pinned.settle()
     old_branch = bits(session.state)
     session.begin("Go back")
-    session.go_back(then, line)
+    session.return_to(then, line)
     session.commit()
     assert bits(session.state) == bits(then)
     pinned.drag((90.0, 60.0), (80.0, 55.0))

@@ -1,3 +1,5 @@
+from unittest.mock import ANY
+
 import numpy as np
 import pytest
 
@@ -5,8 +7,10 @@ from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.deformer import method_names
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
-from akap_editor.editor.session.bent import PIN_TOLERANCE
+from akap_editor.editor.session.edits import ResetPose, SetPose, SetSettings, SetTargets
+from akap_editor.editor.session.pin_edits import add_pin, remove_pins
 from akap_editor.editor.session.session import Session
+from akap_editor.editor.session.stepper import PIN_TOLERANCE
 from akap_editor.errors import InputError, SolverError
 from tests.support.editor_driver import Ticks, bits
 
@@ -16,26 +20,26 @@ def session(drawing):
     """Two pins, put there by one gesture."""
     made = Session(new_document(drawing), Ticks())
     made.begin("Pins")
-    assert made.add_pin((20.0, 40.0)) == 1
-    assert made.add_pin((105.0, 40.0)) == 2
+    assert add_pin(made, (20.0, 40.0)) == 1
+    assert add_pin(made, (105.0, 40.0)) == 2
     made.commit()
     return made
 
 
 def test_only_step_moves_the_drawing(session, drawing):
     session.begin("Bend")
-    session.set_targets({2: (90.0, 65.0)})
+    session.apply(SetTargets({2: (90.0, 65.0)}))
     assert session.state.positions is drawing.mesh.vertices
-    assert session.moving
+    assert session.is_moving
     session.step()
     assert not np.array_equal(session.state.positions, drawing.mesh.vertices)
 
 
 def test_each_step_brings_pins_nearer_until_they_arrive(session):
     session.begin("Bend")
-    session.set_targets({2: (90.0, 65.0)})
+    session.apply(SetTargets({2: (90.0, 65.0)}))
     errors = [session.pin_error()]
-    while session.moving:
+    while session.is_moving:
         session.step()
         errors.append(session.pin_error())
     traveling = [error for error in errors if error > 1.0]
@@ -45,7 +49,7 @@ def test_each_step_brings_pins_nearer_until_they_arrive(session):
 
 def test_targets_that_are_reached_already_move_nothing_noticeable(session, drawing):
     session.begin("Bend")
-    session.set_targets({2: (105.0, 40.0)})
+    session.apply(SetTargets({2: (105.0, 40.0)}))
     session.settle()
     np.testing.assert_allclose(session.state.positions, drawing.mesh.vertices, atol=0.01)
 
@@ -54,7 +58,7 @@ def test_steps_without_pins_move_nothing(drawing):
     session = Session(new_document(drawing), Ticks())
     session.step()
     np.testing.assert_array_equal(session.state.positions, drawing.mesh.vertices)
-    assert not session.moving
+    assert not session.is_moving
 
 
 def test_a_gesture_that_changed_nothing_makes_no_entry(session):
@@ -67,23 +71,23 @@ def test_a_gesture_that_changed_nothing_makes_no_entry(session):
 def test_a_pin_beside_the_drawing_is_none(session):
     state = session.state
     session.begin("Add pin")
-    assert session.add_pin((2.0, 2.0)) is None
+    assert add_pin(session, (2.0, 2.0)) is None
     assert session.state is state
 
 
 def test_removing_pins_ignores_unknown_ids(session):
     session.begin("Remove")
-    session.remove_pins([2, 99])
+    remove_pins(session, [2, 99])
     assert [pin.id for pin in session.state.pins] == [1]
 
 
 def test_pins_that_stay_while_the_drawing_settles_stay_where_they_are(session):
     session.begin("Bend")
-    session.set_targets({2: (90.0, 65.0)})
+    session.apply(SetTargets({2: (90.0, 65.0)}))
     session.step()
     here = session.pin_positions()[1]
-    session.remove_pins([1])
-    assert not session.moving
+    remove_pins(session, [1])
+    assert not session.is_moving
     np.testing.assert_array_equal(session.state.targets, [here])
 
 
@@ -100,27 +104,27 @@ def test_bad_targets_change_nothing(session, targets, message):
     session.begin("Bend")
     state, events = session.state, len(session.recording.events)
     with pytest.raises(InputError, match=message):
-        session.set_targets(targets)
+        session.apply(SetTargets(targets))
     assert session.state is state
-    assert not session.moving
+    assert not session.is_moving
     assert len(session.recording.events) == events
 
 
 def test_targets_of_any_kind_of_number_can_be_written(session):
     session.begin("Bend")
-    session.set_targets({1: np.array([20, 41]), 2: np.array([100.5, 42.0], dtype=np.float32)})
+    session.apply(SetTargets({1: np.array([20, 41]), 2: np.array([100.5, 42.0], dtype=np.float32)}))
     assert '"targets":{"1":[20.0,41.0],"2":[100.5,42.0]}' in session.recording.to_text()
 
 
 def test_a_new_pose_takes_the_pins_along(session, drawing):
     pose = drawing.mesh.vertices * 0.5 + [30.0, 10.0]
     session.begin("Pose")
-    session.set_pose(pose)
+    session.apply(SetPose(pose))
     np.testing.assert_array_equal(session.state.positions, pose)
     np.testing.assert_allclose(session.state.targets, [(40.0, 30.0), (82.5, 30.0)])
-    assert session.posed
-    session.reset_pose()
-    assert not session.posed
+    assert session.is_posed
+    session.apply(ResetPose())
+    assert not session.is_posed
     np.testing.assert_allclose(session.state.targets, [(20.0, 40.0), (105.0, 40.0)])
 
 
@@ -129,7 +133,7 @@ def test_a_bad_pose_changes_nothing(session, bad):
     state = session.state
     session.begin("Pose")
     with pytest.raises(InputError, match="positions"):
-        session.set_pose(bad)
+        session.apply(SetPose(bad))
     assert session.state is state
 
 
@@ -146,10 +150,10 @@ def test_bad_settings_change_nothing(session, settings):
     state, events = session.state, len(session.recording.events)
     session.begin("Settings")
     with pytest.raises(InputError):
-        session.set_settings(settings)
+        session.apply(SetSettings(settings))
     assert session.state is state
     assert len(session.recording.events) == events + 1
-    session.set_targets({2: (90.0, 65.0)})
+    session.apply(SetTargets({2: (90.0, 65.0)}))
     session.settle()
     assert session.pin_error() < PIN_TOLERANCE
 
@@ -159,9 +163,9 @@ def test_settings_move_nothing_and_decide_how_it_bends(session):
     for memory in (1.0, 0.0):
         session.begin("Bend")
         state = session.state
-        session.set_settings(session.state.settings.with_parameter("memory", memory))
+        session.apply(SetSettings(session.state.settings.with_parameter("memory", memory)))
         assert session.state.positions is state.positions
-        session.set_targets({2: (60.0, 75.0)})
+        session.apply(SetTargets({2: (60.0, 75.0)}))
         session.settle()
         poses.append(session.state.positions)
         session.abort()
@@ -171,12 +175,12 @@ def test_settings_move_nothing_and_decide_how_it_bends(session):
 @pytest.mark.parametrize("method", method_names())
 def test_switching_the_method_in_mid_pose_moves_nothing_and_goes_on_bending(session, method):
     session.begin("Bend")
-    session.set_targets({2: (90.0, 65.0)})
+    session.apply(SetTargets({2: (90.0, 65.0)}))
     session.settle()
     session.commit()
     bent = session.state
     session.begin("Method")
-    session.set_settings(Settings(method, ()))
+    session.apply(SetSettings(Settings(method, ())))
     session.commit()
     assert session.state.positions is bent.positions
     session.undo()
@@ -184,19 +188,19 @@ def test_switching_the_method_in_mid_pose_moves_nothing_and_goes_on_bending(sess
     session.redo()
     assert session.state.settings.method == method
     session.begin("Bend on")
-    session.set_targets({2: (80.0, 70.0)})
+    session.apply(SetTargets({2: (80.0, 70.0)}))
     session.settle()
     session.commit()
-    assert not session.moving
+    assert not session.is_moving
     # moving least squares take pins to their targets, but are evaluated at the vertices around them
     assert session.pin_error() < (1.0 if method == "mls" else PIN_TOLERANCE)
     there = session.state.positions
     session.begin("Method")
-    session.set_settings(Settings())
+    session.apply(SetSettings(Settings()))
     session.commit()
     assert session.state.positions is there
     session.begin("Bend back")
-    session.set_targets({2: (90.0, 65.0)})
+    session.apply(SetTargets({2: (90.0, 65.0)}))
     session.settle()
     assert session.pin_error() < PIN_TOLERANCE
 
@@ -204,7 +208,7 @@ def test_switching_the_method_in_mid_pose_moves_nothing_and_goes_on_bending(sess
 def test_after_undo_of_settings_the_old_method_bends(session):
     def bend():
         session.begin("Bend")
-        session.set_targets({2: (80.0, 70.0)})
+        session.apply(SetTargets({2: (80.0, 70.0)}))
         session.step()
         result = session.state.positions.tobytes()
         session.abort()
@@ -212,7 +216,7 @@ def test_after_undo_of_settings_the_old_method_bends(session):
 
     with_memory = bend()
     session.begin("Settings")
-    session.set_settings(Settings("akap", (("memory", 0.0),)))
+    session.apply(SetSettings(Settings("akap", (("memory", 0.0),))))
     session.commit()
     without = bend()
     session.undo()
@@ -225,16 +229,16 @@ def test_after_undo_of_settings_the_old_method_bends(session):
 def test_abort_restores_bit_for_bit(session):
     before = bits(session.state)
     session.begin("Everything")
-    session.set_targets({1: (25.0, 50.0)})
+    session.apply(SetTargets({1: (25.0, 50.0)}))
     session.settle()
-    session.add_pin((62.0, 40.0))
-    session.remove_pins([1])
-    session.set_settings(Settings("akap", (("memory", 0.5),)))
-    session.reset_pose()
+    add_pin(session, (62.0, 40.0))
+    remove_pins(session, [1])
+    session.apply(SetSettings(Settings("akap", (("memory", 0.5),))))
+    session.apply(ResetPose())
     session.abort()
     assert bits(session.state) == before
     assert session.history.depth == 1
-    assert not session.moving
+    assert not session.is_moving
 
 
 def test_undo_and_redo_at_the_ends_do_nothing(session):
@@ -247,30 +251,35 @@ def test_undo_and_redo_at_the_ends_do_nothing(session):
 
 
 def test_modified_is_about_the_saved_state_not_about_the_number_of_edits(session, tmp_path):
-    assert session.modified
+    assert session.is_modified
     session.mark_saved(tmp_path / "figure.akap")
-    assert not session.modified
+    assert not session.is_modified
     assert session.document.path == tmp_path / "figure.akap"
     session.begin("Move")
-    session.set_pose(session.state.positions + 1.0)
+    session.apply(SetPose(session.state.positions + 1.0))
     session.commit()
-    assert session.modified
+    assert session.is_modified
     session.undo()
-    assert not session.modified
+    assert not session.is_modified
     session.undo()
-    assert session.modified
+    assert session.is_modified
     session.redo()
-    assert not session.modified
+    assert not session.is_modified
 
 
 def test_an_opened_document_is_not_modified(drawing):
-    assert not Session(new_document(drawing), Ticks()).modified
+    assert not Session(new_document(drawing), Ticks()).is_modified
 
 
 def test_revision_grows_with_every_change(session):
     revisions = [session.document.revision]
     session.begin("Bend")
-    for act in (lambda: session.set_targets({2: (90.0, 65.0)}), session.step, session.abort, session.undo):
+    for act in (
+        lambda: session.apply(SetTargets({2: (90.0, 65.0)})),
+        session.step,
+        session.abort,
+        session.undo,
+    ):
         act()
         revisions.append(session.document.revision)
     assert revisions == sorted(set(revisions))
@@ -278,15 +287,15 @@ def test_revision_grows_with_every_change(session):
 
 def test_a_failed_step_keeps_the_last_good_pose_and_stops(session, monkeypatch):
     session.begin("Bend")
-    session.set_targets({2: (90.0, 65.0)})
+    session.apply(SetTargets({2: (90.0, 65.0)}))
     session.step()
     state, events = session.state, len(session.recording.events)
     monkeypatch.setattr(AkapDeformer, "step", _fail)
     with pytest.raises(SolverError, match="on purpose"):
         session.step()
     assert session.state is state
-    assert not session.moving
-    assert len(session.recording.events) == events
+    assert not session.is_moving
+    assert session.recording.events[events:] == [{"t": ANY, "do": "targets", "targets": {}}], "moves nothing"
 
 
 def _fail(self, positions, targets):

@@ -1,4 +1,4 @@
-"""Steps that are computed beside the window: what may happen meanwhile, and what waits for them."""
+"""Steps that another thread computes: edits meanwhile, edits that wait, failures, and the recording."""
 
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 
@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.document.document import new_document
-from akap_editor.editor.session.bent import STILL
+from akap_editor.editor.session.edits import (
+    AddPose,
+    PaintStiffness,
+    ResetPose,
+    SetKeyframe,
+    SetRestPose,
+    SetSettings,
+)
+from akap_editor.editor.session.pin_edits import add_pin, hold_angles, remove_pins, set_depths
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.session.worker import INLINE
+from akap_editor.editor.session.stepper import INLINE, SETTLED_MOTION
 from akap_editor.errors import SolverError
 from tests.support.editor_driver import Driver, bits
 
@@ -20,6 +28,7 @@ class Slow(Executor):
 
     def __init__(self):
         self.jobs = []
+        self.last = None
 
     def submit(self, job, /, *args, **kwargs):
         future = Future()
@@ -33,6 +42,7 @@ class Slow(Executor):
                 future.set_result(job(*args, **kwargs))
             except Exception as error:
                 future.set_exception(error)
+            self.last = future
 
 
 @pytest.fixture
@@ -70,15 +80,14 @@ def test_until_a_step_is_done_the_pose_stays_and_the_pin_may_be_dragged_on(slow)
     np.testing.assert_allclose(slow.where(3), FARTHER, atol=0.25)
 
 
-def test_what_is_asked_during_a_step_is_recorded_after_it(slow):
+def test_a_step_is_recorded_when_it_starts_and_edits_follow_it(slow):
+    assert kinds(slow)[-1] == "step"
     count = len(kinds(slow))
     slow.move(FARTHER)
-    assert len(kinds(slow)) == count
-    assert not slow.session.recorded
+    assert kinds(slow)[count:] == ["targets"]
     slow.editor.worker.work()
     slow.advance()
-    assert kinds(slow)[count:] == ["step", "targets"]
-    assert slow.session.recorded
+    assert kinds(slow)[count - 1 :] == ["step", "targets"]
     slow.editor.worker.work()
     slow.release(FARTHER)
     *_, moment = replay(slow.session.recording, slow.session.drawing)
@@ -89,8 +98,8 @@ def test_a_step_that_came_to_rest_does_not_end_a_drag_that_went_on(slow):
     before = slow.session.last_step
     while True:
         slow.editor.worker.work()
-        step = slow.session._under_way.result.result()
-        if np.abs(step.positions - slow.state.positions).max() < STILL:
+        step = slow.editor.worker.last.result()
+        if np.abs(step.positions - slow.state.positions).max() < SETTLED_MOTION:
             break
         slow.advance()
         slow.advance()
@@ -105,7 +114,7 @@ def test_escape_during_a_step_restores_to_the_last_bit(slow):
     slow.editor.worker.work()
     slow.key("escape")
     assert slow.everything == slow.before
-    assert not slow.session.stepping
+    assert not slow.session.has_pending_step
     assert not slow.editor.moving
     *_, moment = replay(slow.session.recording, slow.session.drawing)
     assert bits(moment.state) == bits(slow.state)
@@ -115,7 +124,7 @@ def failing(driver, monkeypatch):
     def fail(*_):
         raise SolverError("the linear system is singular")
 
-    monkeypatch.setattr(driver.session._bending.deformer, "step", fail)
+    monkeypatch.setattr("akap_editor.deform.akap.deformer.AkapDeformer.step", fail)
     driver.editor.worker.work()
 
 
@@ -142,7 +151,7 @@ def test_a_release_does_not_wait_for_the_step(slow):
     assert slow.session.history.undo_label == "Bend"
     slow.editor.worker.work()
     slow.advance()
-    assert kinds(slow)[count:] == ["step", "targets", "commit"]
+    assert kinds(slow)[count - 1 :] == ["step", "targets", "commit"]
     while slow.editor.moving:
         slow.advance()
         slow.editor.worker.work()
@@ -163,18 +172,33 @@ def test_a_step_that_fails_after_the_release_leaves_the_pose(slow, monkeypatch):
     assert not slow.editor.moving
 
 
+@pytest.mark.parametrize("after", ["cancelled", "released"])
+def test_a_recording_with_a_failed_step_can_be_replayed(slow, monkeypatch, after):
+    with monkeypatch.context() as patch:
+        failing(slow, patch)
+        slow.move(FARTHER)
+        if after == "released":
+            slow.release(FARTHER)
+        with pytest.raises(SolverError, match="singular"):
+            slow.editor.advance(0.0)
+    *_, last = replay(slow.session.recording, slow.session.drawing)
+    assert bits(last.state) == bits(slow.state)
+
+
 EDITS = {
-    "commit": lambda session: (session.commit(), session.halt()),
-    "add_pin": lambda session: session.add_pin((45.0, 40.0)),
-    "remove_pins": lambda session: session.remove_pins({1}),
-    "set_depths": lambda session: session.set_depths({1: 2}),
-    "hold_angles": lambda session: session.hold_angles({1}),
-    "settings": lambda session: session.set_settings(session.state.settings.with_parameter("memory", 0.5)),
-    "stiffness": lambda session: session.paint_stiffness([(45.0, 40.0)], 10.0, 50.0),
-    "keep": lambda session: session.change_poses("keep", name="bent"),
-    "key": lambda session: session.animate("key", time=0.5),
-    "reset": lambda session: session.reset_pose(),
-    "bake": lambda session: session.bake_pose(),
+    "commit": lambda session: (session.commit(), session.stop_motion()),
+    "add_pin": lambda session: add_pin(session, (45.0, 40.0)),
+    "remove_pins": lambda session: remove_pins(session, {1}),
+    "set_depths": lambda session: set_depths(session, {1: 2}),
+    "hold_angles": lambda session: hold_angles(session, {1}),
+    "settings": lambda session: session.apply(
+        SetSettings(session.state.settings.with_parameter("memory", 0.5))
+    ),
+    "stiffness": lambda session: session.apply(PaintStiffness([(45.0, 40.0)], 10.0, 50.0)),
+    "keep": lambda session: session.apply(AddPose("bent")),
+    "key": lambda session: session.apply(SetKeyframe(0.5)),
+    "reset": lambda session: session.apply(ResetPose()),
+    "bake": lambda session: session.apply(SetRestPose()),
     "undo": lambda session: (session.commit(), session.undo(), session.redo()),
 }
 
@@ -205,11 +229,11 @@ def test_fields_and_edits_wait_for_a_step_in_a_real_thread(drawing):
         for number in range(20):
             driver.move((105.0 - number, 40.0 - number))
             driver.advance()
-            thread.submit(driver.session.fields)
+            thread.submit(driver.session.vector_fields)
         driver.settle()
-        found = thread.submit(driver.session.fields).result()
+        found = thread.submit(driver.session.vector_fields).result()
         driver.release(driver.where(3))
         driver.editor.add_pin((45.0, 40.0))
     assert found is not None
     assert found[0].shape == driver.state.positions.shape
-    assert driver.session.fields() is None, "of other pins"
+    assert driver.session.vector_fields() is None, "of other pins"

@@ -232,11 +232,11 @@ def test_hints_say_what_enter_does(pinned):
 
 
 def test_what_goes_wrong_on_enter_is_taken_back(driver, monkeypatch):
-    def fail(place):
+    def fail(session, place):
         raise SolverError("no answer")
 
     at(driver, NECK)
-    monkeypatch.setattr(driver.session, "add_pin", fail)
+    monkeypatch.setattr("akap_editor.editor.tools.pins.add_pin", fail)
     with pytest.raises(SolverError):
         driver.editor.handle_event(KeyEvent("enter"))
     monkeypatch.undo()

@@ -10,6 +10,7 @@ from akap_editor.editor.document.remesh import carried_over
 from akap_editor.editor.document.rest_pose import baked_state
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.events import PointerEvent
+from akap_editor.editor.session.edits import PaintStiffness, SetAngles
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.tools.rotate import RING, ring_pin, set_angle, toggle_hold
 from akap_editor.errors import InputError
@@ -192,7 +193,7 @@ def test_a_reset_or_baked_drawing_holds_the_angles_that_it_has_then(pinned):
     pinned.editor.reset_pose()
     assert pinned.state.pin(2).angle == pytest.approx(0.0, abs=1e-12)
     pinned.settle()
-    assert not pinned.session.posed
+    assert not pinned.session.is_posed
 
 
 def test_angles_are_carried_over_to_another_mesh(pinned, finer_drawing):
@@ -226,12 +227,12 @@ def test_a_second_method_beside_turns_as_well(pinned):
 
 def test_held_angles_come_to_rest_soon_also_where_parts_are_stiff(pinned):
     pinned.session.begin("Stiffen")
-    pinned.session.paint_stiffness([(62.0, 40.0)], 20.0, 300.0)
+    pinned.session.apply(PaintStiffness([(62.0, 40.0)], 20.0, 300.0))
     pinned.session.commit()
     pinned.session.begin("Turn")
-    pinned.session.turn_pins({1: 1.0, 3: -0.8})
+    pinned.session.apply(SetAngles({1: 1.0, 3: -0.8}))
     steps = 0
-    while pinned.session.moving:
+    while pinned.session.is_moving:
         pinned.session.step()
         steps += 1
     pinned.session.commit()
@@ -242,4 +243,4 @@ def test_held_angles_come_to_rest_soon_also_where_parts_are_stiff(pinned):
 
 def test_unknown_pins_cannot_be_turned(pinned):
     with pytest.raises(InputError, match=r"angles: expected ids of pins \[1, 2, 3\], got 7"):
-        pinned.session.turn_pins({7: 0.1})
+        pinned.session.apply(SetAngles({7: 0.1}))

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.document.document import new_document
+from akap_editor.editor.session.edits import SetTargets
+from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import drawing_header
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
@@ -18,8 +20,8 @@ def session(document):
     """A square with a pin, moved a little."""
     session = Session(new_document(document.drawing))
     session.begin("Bénd")
-    pin = session.add_pin((2.0, 3.0))
-    session.set_targets({pin: (2.5, 3.0)})
+    pin = add_pin(session, (2.0, 3.0))
+    session.apply(SetTargets({pin: (2.5, 3.0)}))
     session.settle()
     session.commit()
     return session

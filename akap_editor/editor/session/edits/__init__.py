@@ -1,0 +1,45 @@
+"""Edits as values, and the table of all of them: a new undoable feature is one class and one row here."""
+
+from .edit import Edit, Effect, ReplayTarget
+from .keyframes import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
+from .method import PaintStiffness, SetSettings, SetStiffness
+from .named_poses import AddPose, DeletePose, RenamePose, ReorderPoses
+from .pins import SetAngles, SetPins, SetTargets
+from .pose import Remesh, ResetPose, SetPose, SetRestPose
+
+EDITS: dict[str, type[Edit]] = {
+    edit.name: edit
+    for edit in (
+        *(SetPins, SetTargets, SetAngles),
+        *(SetSettings, SetStiffness, PaintStiffness),
+        *(SetPose, ResetPose, SetRestPose, Remesh),
+        *(AddPose, DeletePose, RenamePose, ReorderPoses),
+        *(SetKeyframe, DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop),
+    )
+}
+
+__all__ = [
+    "EDITS",
+    "AddPose",
+    "DeleteKeyframes",
+    "DeletePose",
+    "Edit",
+    "Effect",
+    "MoveKeyframes",
+    "PaintStiffness",
+    "Remesh",
+    "RenamePose",
+    "ReorderPoses",
+    "ReplayTarget",
+    "ResetPose",
+    "SetAngles",
+    "SetEasing",
+    "SetKeyframe",
+    "SetLoop",
+    "SetPins",
+    "SetPose",
+    "SetRestPose",
+    "SetSettings",
+    "SetStiffness",
+    "SetTargets",
+]

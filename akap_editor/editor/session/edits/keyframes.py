@@ -1,0 +1,128 @@
+"""Edits of the keyframes."""
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+from numpy.typing import ArrayLike
+
+from ....errors import InputError
+from ...document.document import EditState
+from ...document.drawing import Drawing
+from ...document.keyframes import Animation, Keyframe, key_time
+from .edit import Edit, Json, ReplayTarget, pose_or_current, positions_from_json, positions_to_json
+
+
+class KeyframeEdit(Edit):
+    """An edit of the keyframes alone; no vertex moves."""
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        return replace(state, animation=self.animate(state.animation, state))
+
+    @abstractmethod
+    def animate(self, animation: Animation, state: EditState) -> Animation:
+        """The animation after the edit. Raises InputError."""
+
+
+@dataclass(frozen=True, eq=False)
+class SetKeyframe(KeyframeEdit):
+    """Put a pose (n, 2), by default the current one, at a time in seconds; replaces a keyframe there.
+
+    ease: a name of `easing.KEY_EASINGS`; None keeps the easing of a replaced keyframe.
+    """
+
+    name = "key"
+    fields = ("time",)
+
+    time: float
+    positions: ArrayLike | None = None
+    ease: str | None = None
+
+    def animate(self, animation: Animation, state: EditState) -> Animation:
+        return animation.with_key(Keyframe(self.time, pose_or_current(self.positions, state), self.ease))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        ease = {} if self.ease is None else {"ease": self.ease}
+        return {"time": self.time, **ease, **positions_to_json(self.positions)}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls(event["time"], positions_from_json(event, target, drawing), event.get("ease"))
+
+
+@dataclass(frozen=True)
+class DeleteKeyframes(KeyframeEdit):
+    """Delete the keyframes at some times, seconds."""
+
+    name = "unkey"
+    fields = ("times",)
+
+    times: Sequence[float]
+
+    def animate(self, animation: Animation, state: EditState) -> Animation:
+        return animation.without(map(key_time, self.times))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"times": list(self.times)}
+
+
+@dataclass(frozen=True)
+class MoveKeyframes(KeyframeEdit):
+    """Move keyframes to other times, or copy them there; replaces keyframes that are there already.
+
+    moves: old times and new ones, seconds.
+    """
+
+    name = "rekey"
+    fields = ("from", "to")
+
+    moves: Mapping[float, float]
+    copy: bool = False
+
+    def animate(self, animation: Animation, state: EditState) -> Animation:
+        moves = {key_time(old): key_time(new) for old, new in self.moves.items()}
+        return animation.moved(moves, self.copy)
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"from": list(self.moves), "to": list(self.moves.values()), "copy": self.copy}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls(dict(zip(event["from"], event["to"], strict=True)), event.get("copy") is True)
+
+
+@dataclass(frozen=True)
+class SetEasing(KeyframeEdit):
+    """Set the easing after the keyframes at ``times``; None: wherever a keyframe has none of its own.
+
+    ease: a name of `easing.KEY_EASINGS`; None for keyframes that follow the easing of the animation.
+    """
+
+    name = "ease"
+    fields = ("times", "ease")
+
+    times: Sequence[float] | None
+    ease: str | None
+
+    def animate(self, animation: Animation, state: EditState) -> Animation:
+        times = None if self.times is None else [key_time(time) for time in self.times]
+        return animation.eased(times, self.ease)
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"times": None if self.times is None else list(self.times), "ease": self.ease}
+
+
+@dataclass(frozen=True)
+class SetLoop(KeyframeEdit):
+    """Set whether the keyframes play over and over."""
+
+    name = "loop"
+    fields = ("loop",)
+
+    loop: bool
+
+    def animate(self, animation: Animation, state: EditState) -> Animation:
+        if type(self.loop) is not bool:
+            raise InputError(f"loop: expected true or false, got {self.loop!r}")
+        return replace(animation, loop=self.loop)

@@ -1,0 +1,89 @@
+"""Edits of the deformation method and of stiffness."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ....errors import InputError
+from ....geometry.validation import as_points
+from ...document.document import EditState
+from ...document.drawing import Drawing
+from ...document.settings import Settings
+from ...document.stiffness import apply_stroke, as_stiffness, stroke_coverage
+from .edit import Edit, Effect, Json, ReplayTarget
+
+
+@dataclass(frozen=True)
+class SetSettings(Edit):
+    """Deform by another method or other parameters; no vertex moves."""
+
+    name = "settings"
+    fields = ("method", "parameters")
+    effect = Effect.METHOD
+
+    settings: Settings
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        return replace(state, settings=self.settings)
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return self.settings.to_json()
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls(Settings.from_json(event))
+
+
+@dataclass(frozen=True, eq=False)
+class SetStiffness(Edit):
+    """Let faces bend less by factors (m,) from 1 to 1000; None is 1 everywhere. No vertex moves."""
+
+    name = "stiffness"
+    fields = ("factors",)
+    effect = Effect.METHOD
+
+    factors: ArrayLike | None
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        factors = None if self.factors is None else as_stiffness(self.factors, len(drawing.mesh.faces))
+        return replace(state, stiffness=factors)
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"factors": None if self.factors is None else np.asarray(self.factors, dtype=float).tolist()}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        if event["factors"] is not None and not target.same_mesh:
+            raise InputError("stiffness fits only the mesh that it was made on")
+        return cls(event["factors"])
+
+
+@dataclass(frozen=True, eq=False)
+class PaintStiffness(Edit):
+    """Stiffen what a brush covers; no vertex moves.
+
+    dabs: (d, 2) places of the brush in the rest pose, pixels; radius: pixels; factor: from 1, which erases,
+    to 1000.
+    """
+
+    name = "paint"
+    fields = ("dabs", "radius", "factor")
+    effect = Effect.METHOD
+
+    dabs: ArrayLike
+    radius: float
+    factor: float
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        covered = stroke_coverage(drawing.mesh, self.dabs, self.radius)
+        return replace(state, stiffness=apply_stroke(state.stiffness, covered, self.factor))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"dabs": as_points(self.dabs, "dabs").tolist(), "radius": self.radius, "factor": self.factor}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        dabs = target.points(event["dabs"], "dabs", len(event["dabs"]))
+        return cls(dabs, target.scale * float(event["radius"]), event["factor"])

@@ -1,0 +1,103 @@
+"""Edits of the poses with names."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+from numpy.typing import ArrayLike
+
+from ....errors import InputError
+from ...document.document import EditState
+from ...document.drawing import Drawing
+from ...document.named_poses import NamedPose, with_pose
+from .edit import Edit, Json, ReplayTarget, pose_or_current, positions_from_json, positions_to_json
+
+
+@dataclass(frozen=True, eq=False)
+class AddPose(Edit):
+    """Keep a pose (n, 2), by default the current one, under a name; replaces one of the same name."""
+
+    name = "keep"
+    fields = ("name",)
+
+    pose_name: str
+    positions: ArrayLike | None = None
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        pose = NamedPose(self.pose_name, pose_or_current(self.positions, state))
+        return replace(state, poses=with_pose(state.poses, pose))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"name": self.pose_name, **positions_to_json(self.positions)}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls(str(event["name"]), positions_from_json(event, target, drawing))
+
+
+@dataclass(frozen=True)
+class DeletePose(Edit):
+    """Delete the pose with a name, if there is one."""
+
+    name = "forget"
+    fields = ("name",)
+
+    pose_name: str
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        return replace(state, poses=tuple(pose for pose in state.poses if pose.name != self.pose_name))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"name": self.pose_name}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls(event["name"])
+
+
+@dataclass(frozen=True)
+class RenamePose(Edit):
+    """Give a pose another name. Raises InputError on an unknown name, or on one that is taken."""
+
+    name = "rename"
+    fields = ("name", "to")
+
+    pose_name: str
+    new_name: str
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        known = {pose.name for pose in state.poses}
+        if self.pose_name not in known:
+            raise InputError(f"pose: expected one of {sorted(known)}, got {self.pose_name!r}")
+        if self.new_name != self.pose_name and self.new_name in known:
+            raise InputError(f"pose: expected a name that is not taken, got {self.new_name!r}")
+        poses = (
+            replace(pose, name=self.new_name) if pose.name == self.pose_name else pose for pose in state.poses
+        )
+        return replace(state, poses=tuple(poses))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"name": self.pose_name, "to": self.new_name}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls(event["name"], str(event["to"]))
+
+
+@dataclass(frozen=True)
+class ReorderPoses(Edit):
+    """Put the poses in the order of ``names``, each of which must occur once. Raises InputError."""
+
+    name = "order"
+    fields = ("names",)
+
+    names: Sequence[str]
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        known, names = {pose.name: pose for pose in state.poses}, list(self.names)
+        if sorted(names) != sorted(known):
+            raise InputError(f"poses: expected each of {sorted(known)} once, got {names}")
+        return replace(state, poses=tuple(known[name] for name in names))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"names": list(self.names)}

@@ -1,0 +1,147 @@
+"""Edits of pins, their targets and angles."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+import numpy as np
+
+from ....errors import InputError
+from ....geometry.mesh import MeshPoints, TriMesh
+from ....geometry.validation import as_number, as_points
+from ...document.document import EditState
+from ...document.drawing import Drawing
+from ...document.pin import Pin
+from ...document.pin_angles import MOST_ANGLE
+from .edit import Edit, Effect, Json, ReplayTarget
+
+Target = tuple[float, float]
+SAME_PLACE = 1e-6  # pixels: a recorded pin nearer than this to its rest place sits on the same mesh
+
+
+@dataclass(frozen=True, eq=False)
+class SetPins(Edit):
+    """Replace all pins; no vertex moves."""
+
+    name = "pins"
+    fields = ("pins",)
+    effect = Effect.PINS
+
+    pins: tuple[Pin, ...]
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        return replace(state, pins=self.pins)
+
+    def fixed_at_pose(self, state: EditState, drawing: Drawing) -> "SetPins":
+        """The same edit in the middle of a motion: pins that stay get their current positions as targets."""
+        positions = drawing.mesh.evaluate(state.points, state.positions)
+        here = dict(zip((pin.id for pin in state.pins), positions, strict=True))
+        return SetPins(
+            tuple(replace(pin, target=here[pin.id]) if pin.id in here else pin for pin in self.pins)
+        )
+
+    def to_json(self, drawing: Drawing) -> Json:
+        """Pins with face and weights, for exactly this mesh, and their place at rest, for any other."""
+        mesh = drawing.mesh
+
+        def rest(pin: Pin) -> list[float]:
+            place: list[float] = (pin.weights @ mesh.vertices[mesh.faces[pin.face]]).tolist()
+            return place
+
+        return {"pins": [{**pin.to_json(), "rest": rest(pin)} for pin in self.pins]}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        pins, mesh = event["pins"], drawing.mesh
+        if len({int(pin["id"]) for pin in pins}) < len(pins):
+            raise InputError("expected pins with ids of their own, got one id twice")
+        if target.same_mesh and (mesh is target.mesh or _fits(pins, mesh)):
+            points = [(int(pin["face"]), pin["weights"]) for pin in pins]
+        else:
+            located = mesh.locate(target.points([pin["rest"] for pin in pins], "rest", len(pins)))
+            points = list(zip(located.faces.tolist(), located.weights, strict=True))
+        targets = target.points([pin["target"] for pin in pins], "target", len(pins))
+        return cls(
+            tuple(
+                Pin(int(pin["id"]), face, weights, place, int(pin.get("depth", 0)), _angle(pin.get("angle")))
+                for pin, (face, weights), place in zip(pins, points, targets, strict=True)
+            )
+        )
+
+
+def _fits(pins: list[Any], mesh: TriMesh) -> bool:
+    """Whether faces and weights of recorded pins are valid on a mesh that was made anew."""
+    if any(not 0 <= int(pin["face"]) < len(mesh.faces) for pin in pins):
+        return False
+    weights = as_points([pin["weights"] for pin in pins], "weights", len(pins), columns=3)
+    points = MeshPoints(np.array([int(pin["face"]) for pin in pins], dtype=np.int32), weights)
+    rest = as_points([pin["rest"] for pin in pins], "rest", len(pins))
+    return bool(np.abs(mesh.evaluate(points, mesh.vertices) - rest).max(initial=0.0) < SAME_PLACE)
+
+
+def _angle(value: Any) -> float | None:
+    return None if value is None else as_number(value, "angle", -MOST_ANGLE, MOST_ANGLE)
+
+
+@dataclass(frozen=True, eq=False)
+class SetTargets(Edit):
+    """Give pins, by id, other targets in pixels; steps move them there."""
+
+    name = "targets"
+    fields = ("targets",)
+    effect = Effect.TARGETS
+    may_overlap_step = True
+
+    targets: Mapping[int, Target]
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        _check_ids("targets", self.targets, state.pins)
+        points = as_points(list(self.targets.values()), "targets", len(self.targets))
+        targets = dict(zip(self.targets, points, strict=True))
+        pins = (replace(pin, target=targets.get(pin.id, pin.target)) for pin in state.pins)
+        return replace(state, pins=tuple(pins))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"targets": {str(pin): [float(x), float(y)] for pin, (x, y) in self.targets.items()}}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        targets = event["targets"]
+        points = target.points(list(targets.values()), "targets", len(targets)).tolist()
+        return cls({int(pin): (x, y) for pin, (x, y) in zip(targets, points, strict=True)})
+
+
+@dataclass(frozen=True, eq=False)
+class SetAngles(Edit):
+    """Let pins, by id, hold angles in radians from rest; steps rotate the drawing around them.
+
+    Within one gesture full turns count.
+    """
+
+    name = "angles"
+    fields = ("angles",)
+    effect = Effect.TARGETS
+    may_overlap_step = True
+
+    angles: Mapping[int, float]
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        _check_ids("angles", self.angles, state.pins)
+        limits = -MOST_ANGLE, MOST_ANGLE
+        held = {pin: as_number(angle, f"angle of pin {pin}", *limits) for pin, angle in self.angles.items()}
+        pins = (replace(pin, angle=held.get(pin.id, pin.angle)) for pin in state.pins)
+        return replace(state, pins=tuple(pins))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"angles": {str(pin): float(angle) for pin, angle in self.angles.items()}}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls({int(pin): angle for pin, angle in event["angles"].items()})
+
+
+def _check_ids(what: str, ids: Iterable[int], pins: Sequence[Pin]) -> None:
+    known = [pin.id for pin in pins]
+    for pin_id in ids:
+        if pin_id not in known:
+            raise InputError(f"{what}: expected ids of pins {sorted(known)}, got {pin_id}")

@@ -1,0 +1,105 @@
+"""Edits of the pose, the rest pose and the mesh."""
+
+from dataclasses import asdict, dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...document.document import EditState
+from ...document.drawing import Drawing, Meshing
+from ...document.named_poses import as_pose
+from ...document.pin_angles import pins_fixed_at_pose
+from ...document.remesh import carried_over, remeshed
+from ...document.rest_pose import baked_state
+from .edit import Edit, Effect, Json, ReplayTarget
+
+
+@dataclass(frozen=True, eq=False)
+class SetPose(Edit):
+    """Take over a pose (n, 2) in pixels; the pins move with the drawing and stay there."""
+
+    name = "pose"
+    fields = ("positions",)
+    effect = Effect.POSE
+
+    positions: ArrayLike
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        pose = as_pose(self.positions, "positions", len(drawing.mesh.vertices))
+        return replace(state, pins=pins_fixed_at_pose(drawing.mesh, state.pins, pose), positions=pose)
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"positions": np.asarray(self.positions, dtype=np.float64).tolist()}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls(target.pose(event["positions"], len(drawing.mesh.vertices)))
+
+
+@dataclass(frozen=True)
+class ResetPose(Edit):
+    """Return to the rest pose; the pins move with the drawing and stay there."""
+
+    name = "reset"
+    effect = Effect.POSE
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        rest = drawing.mesh.vertices
+        if np.array_equal(state.positions, rest):
+            return state
+        return replace(state, pins=pins_fixed_at_pose(drawing.mesh, state.pins, rest), positions=rest)
+
+
+@dataclass(frozen=True)
+class SetRestPose(Edit):
+    """Make the current pose the rest pose; no vertex moves."""
+
+    name = "bake"
+    effect = Effect.DOCUMENT
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        if np.array_equal(state.positions, drawing.mesh.vertices):
+            return state
+        return baked_state(state, drawing)
+
+
+@dataclass(frozen=True, eq=False)
+class Remesh(Edit):
+    """Give the picture another mesh; pins and pose stay.
+
+    prepared: the drawing that `remeshed` has made and, if the state has not changed since, that state carried
+    over to it; both are computed here if absent.
+    """
+
+    name = "mesh"
+    fields = ("vertices", "expand", "threshold", "background")
+    effect = Effect.DOCUMENT
+
+    meshing: Meshing
+    prepared: tuple[Drawing, EditState | None] | None = None
+
+    @classmethod
+    def to(cls, drawing: Drawing, carried: EditState | None = None) -> Self:
+        """The edit that leads to a drawing made by `remeshed`."""
+        assert drawing.meshing is not None, "expected a drawing whose mesh can be made again"
+        return cls(drawing.meshing, (drawing, carried))
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        made, carried = self.prepared or (remeshed(drawing, self.meshing), None)
+        return carried or carried_over(state, drawing.mesh, made)
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return asdict(self.meshing)
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        tolerance = event["background"]
+        return cls(
+            Meshing(
+                int(event["vertices"]),
+                target.scale * float(event["expand"]),
+                float(event["threshold"]),
+                None if tolerance is None else float(tolerance),
+            )
+        )

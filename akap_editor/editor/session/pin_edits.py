@@ -1,0 +1,57 @@
+"""Changes of a session's pins: each builds an edit from the current state and applies it."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from ..document.depth import check_depths, depth_at
+from ..document.pin import Pin
+from ..document.pin_angles import with_held_angles
+from .edits import SetPins, SetTargets
+from .edits.pins import Target
+from .session import Session
+from .stepper import PIN_TOLERANCE
+
+
+def add_pin(session: Session, at: Target) -> int | None:
+    """Add a pin to what is seen at ``at`` (pixels) in the current pose; its id, None beside the drawing."""
+    session.finish_step()
+    mesh, pins = session.drawing.mesh, session.state.pins
+    point = mesh.find(at, session.state.positions, session.document.order)
+    if point is None:
+        return None
+    pin_id = 1 + max((pin.id for pin in pins), default=0)
+    target = np.array(at, dtype=np.float64)
+    depth = depth_at(mesh, pins, point)
+    session.apply(SetPins((*pins, Pin(pin_id, int(point.faces[0]), point.weights[0], target, depth))))
+    return pin_id
+
+
+def remove_pins(session: Session, ids: Iterable[int]) -> None:
+    """Remove pins; unknown ids are ignored."""
+    removed = set(ids)
+    session.apply(SetPins(tuple(pin for pin in session.state.pins if pin.id not in removed)))
+
+
+def set_depths(session: Session, depths: Mapping[int, int]) -> None:
+    """Bring pins, by id, to the front or back. Raises InputError on depths out of range."""
+    check_depths(depths)
+    pins = (replace(pin, depth=depths.get(pin.id, pin.depth)) for pin in session.state.pins)
+    session.apply(SetPins(tuple(pins)))
+
+
+def hold_angles(session: Session, ids: Iterable[int], hold: bool = True) -> None:
+    """Let pins hold the angles that they have now, or with ``hold`` false rotate freely again."""
+    session.finish_step()
+    mesh, state = session.drawing.mesh, session.state
+    session.apply(SetPins(with_held_angles(mesh, state.pins, state.positions, set(ids), hold)))
+
+
+def hold_pins(session: Session) -> None:
+    """Before a new drag, fix pins where they are if undo or Escape stopped them on the way."""
+    session.finish_step()
+    if not session.is_moving and session.pin_error() > PIN_TOLERANCE:
+        positions = session.pin_positions().tolist()
+        targets = {pin.id: (x, y) for pin, (x, y) in zip(session.state.pins, positions, strict=True)}
+        session.apply(SetTargets(targets))
