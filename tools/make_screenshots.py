@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from akap_editor.app.app_state import AppState, Palette
+from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.preferences import Preferences
 from akap_editor.app.window import SIZE, Window
 from akap_editor.editor.document.document import Document, new_document
@@ -232,7 +233,7 @@ def timeline(window: Window) -> None:
 def animation(window: Window) -> None:
     """The dialog for exports of the timeline."""
     animated(window)
-    window.state.animating = True
+    window.state.dialog(ExportAnimationDialog).open(window.state)
 
 
 def take(window: Window, name: str, folder: Path) -> None:

@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal, TypeVar
 
 from ..editor.animation.keyframe_playback import KeyframePlayback
 from ..editor.animation.playback import Playback
@@ -30,7 +30,6 @@ from ..render.offscreen import OffscreenRenderer
 from ..render.overlays import Overlays
 from ..resources import bundled_drawings
 from .canvas.view_options import ViewOptions, skins
-from .dialogs.exporting import PoseExportOptions
 from .dialogs.file_dialog import FileRequest, Palette, UnsavedChangesQuestion
 from .jobs.open_recording import reenacting
 from .jobs.pose_export import PoseExportQueue
@@ -40,6 +39,8 @@ from .pending_values import PendingValues
 from .preferences import Preferences
 
 SWITCHES = ("show_mesh", "checker", "show_timeline")  # fields that are remembered between runs
+
+D = TypeVar("D")
 
 
 @dataclass
@@ -60,7 +61,6 @@ class AppState:
     grip: Literal["start", "end", "head", "keys", "none"] = "head"  # what the pointer holds of the timeline
     held_key: float = 0.0  # the time of the keyframe that it holds
     key_menu: bool = False  # whether a key asks for the menu of a keyframe
-    animating: bool = False  # whether the dialog for exports of the timeline is open
     task: Task | None = None
     renaming: str | None = None  # the pose that is given another name
     new_name: str = ""
@@ -74,7 +74,6 @@ class AppState:
     closing: bool = False
     question: UnsavedChangesQuestion | None = None
     request: FileRequest | None = None
-    export: PoseExportOptions = field(default_factory=PoseExportOptions)
     palette: Palette | None = None
     folder: Path = field(default_factory=Path.cwd)
     exporter: OffscreenRenderer = field(default_factory=OffscreenRenderer)
@@ -91,10 +90,18 @@ class AppState:
     _jobs: list[Callable[[], None]] = field(default_factory=list)
     _due: list[Callable[[], None]] = field(default_factory=list)
     _measured: tuple[Floats, Distortion] | None = None
+    _dialogs: dict[type, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.remesher = BackgroundRemesh(self.editor)
         self.keyframe_playback = KeyframePlayback(self.editor)
+
+    def dialog(self, kind: type[D]) -> D:
+        """The window's one dialog of a class, made on first use; it keeps its state while it is closed."""
+        if kind not in self._dialogs:
+            self._dialogs[kind] = kind()
+        dialog: D = self._dialogs[kind]
+        return dialog
 
     @property
     def playback(self) -> Playback:
@@ -331,10 +338,6 @@ class AppState:
         """Ask for a picture or a posed drawing to open."""
         suffixes = (PROJECT_SUFFIX, RECORDING_SUFFIX, *PICTURE_SUFFIXES, *MESH_SUFFIXES)
         self.request = FileRequest("Open picture or drawing", suffixes, self.folder, self.open_path)
-
-    def ask_export(self) -> None:
-        """Ask what is to be exported."""
-        self.export.shown = self.document is not None
 
     def close(self) -> None:
         """Go to the start page, after asking about unsaved changes."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from ..editor.document.framing import CROPS
+from ..editor.document.framing import CROPS, Color
 from ..errors import InputError
 from ..io.export import ExportOptions
 from ..io.images import write_png
@@ -51,7 +51,7 @@ def bundled(name: str) -> Path:
     return names[name]
 
 
-def color(text: str | None) -> tuple[float, float, float] | None:
+def color(text: str | None) -> Color | None:
     """Red, green and blue from 0 to 1 of a color written as #RRGGBB. Raises InputError."""
     if text is None:
         return None

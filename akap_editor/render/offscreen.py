@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..editor.document.drawing import Drawing
-from ..editor.document.framing import Box, frame_box, picture_size
+from ..editor.document.framing import Box, Color, frame_box, picture_size
 from ..errors import GraphicsError
 from ..geometry.validation import Ints, as_points
-from .renderer import Background, Color, Renderer
+from .renderer import Background, Renderer
 from .shaders import load_program
 
 TILE = 2048  # pixels a side that are drawn at once: bounds the memory of the graphics card

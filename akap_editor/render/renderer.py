@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from ..editor.document.drawing import Drawing
+from ..editor.document.framing import Color
 from ..errors import InputError
 from ..geometry.validation import Floats, Ints
 from .overlays import NO_OVERLAYS, HeatPainter, Overlays, Reference, StrokePainter
 from .shaders import View, load_program
-
-Color = tuple[float, float, float]
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import pytest
 
 from akap_editor.app import widgets
 from akap_editor.app.commands import registry as commands
+from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.dialogs.file_dialog import UnsavedChangesQuestion
 from akap_editor.app.window import SMALLEST
 from akap_editor.editor.document.document import new_document
@@ -25,7 +26,7 @@ def ask_save(state):
 
 
 def ask_export(state):
-    state.ask_export()
+    state.dialog(ExportPoseDialog).open(state)
 
 
 def ask_question(state):

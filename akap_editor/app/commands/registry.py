@@ -12,6 +12,7 @@ from ...resources import bundled_drawings
 from .. import masking, poses, recordings, reference
 from ..app_state import AppState
 from ..canvas.view_options import RANGES, Measure
+from ..dialogs.export_pose import ExportPoseDialog
 from ..dialogs.file_dialog import Palette
 from ..panels.method_parameters import defaults
 from . import keying
@@ -145,7 +146,13 @@ OPEN = Command("Open...", AppState.ask_open, (CTRL | Key.o,), icons.ICON_FA_FOLD
 MASK = Command("Cut Out with Mask...", masking.ask_mask, (), "", masking.can_mask)
 SAVE = Command("Save", AppState.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, has_drawing)
 SAVE_AS = Command("Save As...", AppState.save_as, (CTRL | SHIFT | Key.s,), "", has_drawing)
-EXPORT = Command("Export...", AppState.ask_export, (CTRL | Key.e,), icons.ICON_FA_FILE_EXPORT, has_drawing)
+EXPORT = Command(
+    "Export...",
+    lambda state: state.dialog(ExportPoseDialog).open(state),
+    (CTRL | Key.e,),
+    icons.ICON_FA_FILE_EXPORT,
+    has_drawing,
+)
 SAVE_POSE = Command("Save Pose...", poses.ask_save, (), "", has_drawing)
 APPLY_POSE = Command("Apply Pose...", poses.ask_apply, (), "", has_drawing)
 SAVE_RECORDING = Command("Save Recording...", recordings.ask_save, (), "", has_drawing)

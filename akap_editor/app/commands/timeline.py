@@ -6,7 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor.animation.keyframe_playback import STEP
 from ..app_state import AppState
-from ..dialogs import animating
+from ..dialogs.export_animation import ExportAnimationDialog
 from . import keying
 from .command import CTRL, SHIFT, Command, Key, has_drawing
 
@@ -62,7 +62,11 @@ ONION = Command(
     lambda state: state.keyframe_playback.onion.shown,
 )
 EXPORT_ANIMATION = Command(
-    "Export Animation...", animating.ask, (CTRL | SHIFT | Key.e,), icons.ICON_FA_FILM, keying.can_play
+    "Export Animation...",
+    lambda state: state.dialog(ExportAnimationDialog).open(state),
+    (CTRL | SHIFT | Key.e,),
+    icons.ICON_FA_FILM,
+    keying.can_play,
 )
 
 STEP_ON = Command("Step Forward", keying.going(STEP), (Key.page_down,), "", _shown, repeats=True)

@@ -15,9 +15,9 @@ from .. import widgets
 from ..app_state import AppState
 from ..commands import shortcuts_page as keys_overlay
 from ..theme import ACCENT, QUIET
-from . import export_animation as animation_dialog
-from . import export_pose as export_dialog
 from . import progress as task_dialog
+from .export_animation import ExportAnimationDialog
+from .export_pose import ExportPoseDialog
 from .file_dialog import FileRequest
 from .recovery import Recovery
 
@@ -53,10 +53,10 @@ class Dialogs:
             self._recovery.draw(state, scale)
         elif state.request is not None:
             self._file(state, state.request, scale)
-        elif state.export.shown:
-            export_dialog.draw(state, scale)
-        elif state.animating:
-            animation_dialog.draw(state, scale)
+        elif state.dialog(ExportPoseDialog).is_open:
+            state.dialog(ExportPoseDialog).draw(state, scale)
+        elif state.dialog(ExportAnimationDialog).is_open:
+            state.dialog(ExportAnimationDialog).draw(state, scale)
         elif state.keys:
             keys_overlay.draw(state, scale)
         elif state.about:

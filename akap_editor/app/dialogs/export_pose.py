@@ -1,76 +1,117 @@
-"""The dialog for exports: format on the left, what can be chosen about it on the right."""
+"""The dialog that exports the current pose for other programs."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...editor.document.document import Document
+from ...editor.document.framing import CROPS, Color, crop_box, picture_size
 from ...errors import InputError
-from ...io.export import FORMATS, Painter, export, format_of
+from ...io.export import FORMATS, ExportOptions, Format, Painter, export, format_of
 from .. import widgets
 from ..app_state import AppState
-from ..theme import ACCENT, QUIET
-from .exporting import LARGEST, SCALES, SMALLEST, PoseExportOptions
+from ..theme import ACCENT
+from .export_widgets import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
 from .file_dialog import FileRequest
 
+SCALES = (0.5, 1.0, 2.0, 4.0)
+SMALLEST_SCALE, LARGEST_SCALE = 0.01, 100.0
 _CROPS = {"none": "Frame and pose", "frame": "Picture's frame", "pose": "Pose alone"}
 _ABOUT_CROPS = (
     "Frame and pose: nothing is cut off. Picture's frame: as large as the picture was, so that it can take "
     "its place. Pose alone: no empty space around."
 )
-_WIDTH, _HEIGHT, _LEFT, _LABEL = 580, 226, 208, 104  # points of the design
+_WIDTH, _HEIGHT, _LIST_WIDTH = 580, 226, 208  # design points
 
 
-def draw(state: AppState, scale: float) -> None:
-    """One frame of the dialog."""
-    choice, document = state.export, state.document
-    if document is None:
-        choice.shown = False
-        return
-    if not widgets.begin_dialog("Export"):
-        return
-    imgui.begin_child(
-        "##formats", ImVec2(_LEFT * scale, _HEIGHT * scale), imgui.ChildFlags_.borders | widgets.WALKED
-    )
-    _formats(choice)
-    imgui.end_child()
-    imgui.same_line(0, 18 * scale)
-    imgui.begin_child("##options", ImVec2((_WIDTH - _LEFT - 18) * scale, _HEIGHT * scale), widgets.WALKED)
-    problem = _options(choice, document, scale)
-    imgui.end_child()
-    imgui.spacing()
-    imgui.begin_disabled(bool(problem))
-    accepted = widgets.button("Export...", primary=True)
-    imgui.end_disabled()
-    imgui.same_line()
-    if widgets.button("Cancel") or widgets.escape():
-        _close(choice)
-    elif accepted or (widgets.enter() and not problem and not imgui.get_io().want_text_input):
-        _close(choice)
-        ask_file(state)
-    imgui.end_popup()
+@dataclass
+class PoseExportOptions:
+    """Choices of the dialog; see `ExportOptions`. is_opaque: whether ``background`` is used."""
+
+    format: Format = FORMATS[0]
+    scale: float = 1.0
+    is_opaque: bool = False
+    background: Color = (1.0, 1.0, 1.0)
+    crop: str = CROPS[0]
+    rest: bool = False
+
+    @property
+    def export_options(self) -> ExportOptions:
+        """The choices as `export` takes them."""
+        return ExportOptions(self.scale, self.background if self.is_opaque else None, self.crop, self.rest)
+
+    def picture_size(self, document: Document) -> tuple[int, int]:
+        """Width and height in pixels of an exported picture. Raises InputError if it is too large."""
+        pose = document.drawing.mesh.vertices if self.rest else document.state.positions
+        return picture_size(crop_box(document.drawing, pose, self.crop), self.scale)
+
+    def file_name(self, document: Document) -> str:
+        """The suggested file name; differs from the picture's, which may be in the same folder."""
+        return f"{document.drawing.name}-{'rest' if self.rest else 'posed'}{self.format.suffix}"
 
 
-def ask_file(state: AppState) -> None:
-    """Ask where what was chosen goes."""
+class ExportPoseDialog:
+    """Asks for a format and its options, then for a file. Keeps the options while it is closed."""
+
+    def __init__(self) -> None:
+        self.is_open = False
+        self.options = PoseExportOptions()
+
+    def open(self, state: AppState) -> None:
+        """Show the dialog if a document is open."""
+        self.is_open = state.document is not None
+
+    def draw(self, state: AppState, scale: float) -> None:
+        """Draw one frame. scale: points per design point."""
+        options, document = self.options, state.document
+        if document is None:
+            self.is_open = False
+            return
+        if not widgets.begin_dialog("Export"):
+            return
+        options.format = format_list(FORMATS, options.format, _LIST_WIDTH * scale, _HEIGHT * scale)
+        imgui.same_line(0, 18 * scale)
+        size = ImVec2((_WIDTH - _LIST_WIDTH - 18) * scale, _HEIGHT * scale)
+        imgui.begin_child("##options", size, widgets.WALKED)
+        problem = _draw_options(options, document, scale)
+        imgui.end_child()
+        imgui.spacing()
+        imgui.begin_disabled(bool(problem))
+        accepted = widgets.button("Export...", primary=True)
+        imgui.end_disabled()
+        imgui.same_line()
+        if widgets.button("Cancel") or widgets.escape():
+            self._close()
+        elif accepted or (widgets.enter() and not problem and not imgui.get_io().want_text_input):
+            self._close()
+            request_file(state, options)
+        imgui.end_popup()
+
+    def _close(self) -> None:
+        self.is_open = False
+        widgets.close_popup()
+
+
+def request_file(state: AppState, options: PoseExportOptions) -> None:
+    """Ask for the file to write, then write it."""
     if state.document is not None:
-        suffixes, name = (state.export.format.suffix,), state.export.file_name(state.document)
-        use = partial(write, state)
+        suffixes, name = (options.format.suffix,), options.file_name(state.document)
+        use = partial(export_pose, state, replace(options))
         state.request = FileRequest("Export to", suffixes, state.folder, use, name, saving=True)
 
 
-def write(state: AppState, path: Path) -> None:
-    """Write what was chosen, of the pose as it is now; one may go on meanwhile."""
-    document, choice = state.document, replace(state.export)
+def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None:
+    """Write the current pose in the background; the file name's ending decides on the format."""
+    document, options = state.document, replace(options)
     assert document is not None
 
     def work(painter: Painter) -> str:
-        *companions, _ = export(document, path, choice.options, painter)
+        *companions, _ = export(document, path, options.export_options, painter)
         said = f"Exported {', '.join([path.name, *(each.name for each in companions)])}"
         if format_of(path).framed:
-            width, height = choice.size(document)
+            width, height = options.picture_size(document)
             said += f", {width} × {height} pixels"
         return said
 
@@ -78,68 +119,47 @@ def write(state: AppState, path: Path) -> None:
     state.writer.begin(work)
 
 
-def _close(choice: PoseExportOptions) -> None:
-    imgui.close_current_popup()
-    choice.shown = False
-
-
-def _formats(choice: PoseExportOptions) -> None:
-    flags = imgui.SelectableFlags_.no_auto_close_popups
-    for each in FORMATS:
-        right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
-        if imgui.selectable(each.label, each is choice.format, flags)[0]:
-            choice.format = each
-        imgui.same_line(right - imgui.calc_text_size(each.suffix).x)
-        imgui.text_colored(ImVec4(*QUIET), each.suffix)
-
-
-def _options(choice: PoseExportOptions, document: Document, scale: float) -> str:
-    """The right half; what stands in the way of this export, if anything does."""
+def _draw_options(options: PoseExportOptions, document: Document, scale: float) -> str:
+    """Draw the right half; return what prevents this export, or ""."""
     below = imgui.get_cursor_pos_y() + 3 * imgui.get_text_line_height()
-    widgets.quiet(choice.format.about)
-    imgui.set_cursor_pos_y(below)  # so that nothing jumps when another format is chosen
-    problem = _framing(choice, document, scale) if choice.format.framed else _numbers(document, scale)
-    widgets.switch_label("Pose", _LABEL * scale)
-    _, choice.rest = widgets.switch("At rest", choice.rest, "The drawing as it was before it was bent.")
+    widgets.quiet(options.format.about)
+    imgui.set_cursor_pos_y(below)  # the same for all formats, so that nothing jumps
+    problem = (
+        _draw_framing(options, document, scale) if options.format.framed else _draw_mesh_size(document, scale)
+    )
+    widgets.switch_label("Pose", LABEL_WIDTH * scale)
+    _, options.rest = widgets.switch("At rest", options.rest, "The drawing as it was before it was bent.")
     return problem
 
 
-def _framing(choice: PoseExportOptions, document: Document, scale: float) -> str:
-    widgets.label("Scale", _LABEL * scale)
-    imgui.set_next_item_width(86 * scale)
-    speed, low, high = max(0.5, choice.scale), 100 * SMALLEST, 100 * LARGEST
-    clamp = imgui.SliderFlags_.always_clamp
-    _, percent = imgui.drag_float("##scale", 100 * choice.scale, speed, low, high, "%.4g %%", clamp)
-    choice.scale = percent / 100
-    widgets.explain("Drag, or double-click to type.")
-    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(7 * scale, imgui.get_style().frame_padding.y))
-    for preset in SCALES:
-        imgui.same_line(0, 5 * scale)
-        if imgui.button(f"{preset:g}×"):
-            choice.scale = preset
-    imgui.pop_style_var()
-    problem = _size(choice, document, scale)
-    widgets.label("Shows", _LABEL * scale)
+def _draw_framing(options: PoseExportOptions, document: Document, scale: float) -> str:
+    """Draw scale, crop and background of a picture; return what prevents this export, or ""."""
+    limits, speed = (100 * SMALLEST_SCALE, 100 * LARGEST_SCALE), max(0.5, options.scale)
+    options.scale = number_field("Scale", 100 * options.scale, limits, "%.4g %%", speed, 86, scale) / 100
+    preset = preset_buttons([f"{each:g}×" for each in SCALES], scale)
+    if preset is not None:
+        options.scale = SCALES[preset]
+    problem = _draw_picture_size(options, document, scale)
+    widgets.label("Shows", LABEL_WIDTH * scale)
     imgui.set_next_item_width(widgets.FULL)
-    opened = imgui.begin_combo("##crop", _CROPS[choice.crop])
+    opened = imgui.begin_combo("##crop", _CROPS[options.crop])
     widgets.explain(_ABOUT_CROPS)
     if opened:
         for name, label in _CROPS.items():
-            if imgui.selectable(label, name == choice.crop)[0]:
-                choice.crop = name
+            if imgui.selectable(label, name == options.crop)[0]:
+                options.crop = name
         imgui.end_combo()
-    widgets.switch_label("Background", _LABEL * scale)
-    _, choice.opaque = widgets.switch("Color", choice.opaque, "Without it, the background is transparent.")
-    if choice.opaque:
-        imgui.same_line(0, 10 * scale)
-        choice.background = widgets.color("##background", choice.background)
+    options.is_opaque, options.background = background_field(
+        options.is_opaque, options.background, False, "Without it, the background is transparent.", scale
+    )
     return problem
 
 
-def _size(choice: PoseExportOptions, document: Document, scale: float) -> str:
-    widgets.label("Size", _LABEL * scale)
+def _draw_picture_size(options: PoseExportOptions, document: Document, scale: float) -> str:
+    """Draw the size of the picture; return what prevents this export, or ""."""
+    widgets.label("Size", LABEL_WIDTH * scale)
     try:
-        width, height = choice.size(document)
+        width, height = options.picture_size(document)
     except InputError:
         problem = "more than 8192 px a side"
         imgui.text_colored(ImVec4(*ACCENT), problem)
@@ -148,12 +168,13 @@ def _size(choice: PoseExportOptions, document: Document, scale: float) -> str:
     return ""
 
 
-def _numbers(document: Document, scale: float) -> str:
+def _draw_mesh_size(document: Document, scale: float) -> str:
+    """Draw the size of the mesh and its texture; return "", as nothing prevents this export."""
     mesh = document.drawing.mesh
     for label, value in (
         ("Mesh", f"{len(mesh.vertices):,} vertices, {len(mesh.faces):,} faces"),
         ("Texture", f"{document.drawing.size[0]} × {document.drawing.size[1]} px"),
     ):
-        widgets.label(label, _LABEL * scale)
+        widgets.label(label, LABEL_WIDTH * scale)
         imgui.text(value)
     return ""

@@ -5,7 +5,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from .. import widgets
 from ..app_state import AppState
-from ..dialogs import animating
+from ..dialogs.export_animation import ExportAnimationDialog
 from ..theme import ACCENT, FRAME, QUIET, TEXT, packed
 from . import keyframe_track as key_track
 from .keyframe_track import RED
@@ -80,7 +80,7 @@ def _buttons(state: AppState, scale: float) -> None:
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(playing.range[1] <= playing.range[0])
     if _button(icons.ICON_FA_FILM, "export", scale, True, TEXT):
-        animating.ask(state)
+        state.dialog(ExportAnimationDialog).open(state)
     imgui.end_disabled()
     widgets.explain("Export the part between the marks as an animation, a video or sprites")
 

@@ -11,6 +11,7 @@ from ...geometry.validation import as_points
 from .drawing import Drawing
 
 Box = tuple[int, int, int, int]
+Color = tuple[float, float, float]  # red, green, blue from 0 to 1, e.g. behind the drawing
 
 MAX_SIZE = 8192
 CROPS = ("none", "frame", "pose")

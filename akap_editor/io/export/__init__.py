@@ -7,7 +7,7 @@ from typing import Protocol
 
 from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
-from ...editor.document.framing import Box, crop_box
+from ...editor.document.framing import Box, Color, crop_box
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints
 from ..atomic import write_atomic
@@ -18,7 +18,6 @@ from .obj import encode_obj
 from .spine import encode_spine
 from .svg import encode_svg
 
-Color = tuple[float, float, float]
 Files = dict[str, bytes]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from ...editor.document.drawing import Drawing
-from ...editor.document.framing import Box, picture_size
+from ...editor.document.framing import Box, Color, picture_size
 from ...geometry.mesh import signed_areas
 from ...geometry.validation import Floats
 
@@ -29,7 +29,7 @@ def encode_svg(
     positions: Floats,
     box: Box,
     scale: float,
-    background: tuple[float, float, float] | None,
+    background: Color | None,
 ) -> str:
     """An SVG picture of ``box``: one path for each part of the pose, its holes by the even-odd rule.
 

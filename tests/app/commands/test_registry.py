@@ -10,6 +10,8 @@ from akap_editor.app.canvas.view_options import RANGES
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
 from akap_editor.app.commands.registry import COMMANDS, MENUS
+from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
+from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.panels import side_panel as panels
 from akap_editor.deform.deformer import method_names
 from akap_editor.deform.methods import PRESETS, preset_of
@@ -181,7 +183,7 @@ CASES = {
         lambda ui: RANGES[ui.state.view.heat_range] == 2.0,
     ),
     "Play": (once_keyed, lambda ui: ui.state.keyframe_playback.at == 0.2),
-    "Export Animation...": (keyed, lambda ui: ui.state.animating),
+    "Export Animation...": (keyed, lambda ui: ui.state.dialog(ExportAnimationDialog).is_open),
     "Keyframe Here": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
     "Remove Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
     "Duplicate Keyframe": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5)),
@@ -197,7 +199,7 @@ CASES = {
     ),
     "Save": (bent, lambda ui: ui.state.request is not None and ui.state.request.saving),
     "Save As...": (nothing, lambda ui: ui.state.request is not None and ui.state.request.saving),
-    "Export...": (nothing, lambda ui: ui.state.export.shown),
+    "Export...": (nothing, lambda ui: ui.state.dialog(ExportPoseDialog).is_open),
     "Close": (nothing, lambda ui: ui.state.document is None),
     "Quit": (nothing, lambda ui: ui.state.closing),
     "Undo": (bent, is_rest),

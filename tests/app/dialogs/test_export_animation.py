@@ -10,8 +10,15 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
-from akap_editor.app.dialogs import animating
-from akap_editor.app.dialogs.animating import FORMATS, AnimationExportOptions, remember, remembered
+from akap_editor.app.dialogs.export_animation import (
+    FORMATS,
+    PREFERENCE,
+    AnimationExportOptions,
+    ExportAnimationDialog,
+    export_animation,
+    exported_times,
+    frame_at,
+)
 from akap_editor.app.preferences import Preferences
 from akap_editor.errors import InputError
 from akap_editor.io.animation.animated_images import _ENCODERS
@@ -52,14 +59,14 @@ def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
     frames = list(frames_of(tmp_path / "wave.apng"))
     assert len(frames) == 25
     assert all((one != other).any() for one, other in pairwise(frames))
-    assert remembered(keyed.state).format == "APNG"
-    assert remembered(keyed.state).fps == 60
+    assert AnimationExportOptions.remembered(keyed.state.preferences).format == "APNG"
+    assert AnimationExportOptions.remembered(keyed.state.preferences).fps == 60
 
 
 def test_asking_does_not_change_what_is_seen(keyed):
     keyed.state.keyframe_playback.leave()
     before = keyed.session.state
-    animating.ask(keyed.state)
+    keyed.state.dialog(ExportAnimationDialog).open(keyed.state)
     keyed.dialog(TITLE, "Cancel")
     assert keyed.session.state is before
     assert not keyed.session.is_previewing
@@ -69,11 +76,8 @@ def test_asking_does_not_change_what_is_seen(keyed):
 def test_every_format_is_written(keyed, tmp_path, kind):
     if kind.suffix in (".mp4", ".webm"):
         pytest.importorskip("av")
-    remember(
-        keyed.state,
-        AnimationExportOptions(kind.label, fps=10, size=60, speed=2.0, ease="in-out", ping_pong=True),
-    )
-    animating.export(keyed.state, tmp_path / f"out{kind.suffix}")
+    options = AnimationExportOptions(kind.label, fps=10, size=60, speed=2.0, ease="in-out", ping_pong=True)
+    export_animation(keyed.state, options, tmp_path / f"out{kind.suffix}")
     keyed.settle()
     assert not keyed.state.error
     assert "4 frames" in keyed.state.notice
@@ -98,7 +102,7 @@ def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
     )
     before, after = snapshots[index - 1].state.positions, snapshots[index].state.positions
     start = max(snapshots[index - 1].time, snapshots[index].time - 0.25)
-    middle = animating.frame_at(state, 0.5 * (start + snapshots[index].time)).pose
+    middle = frame_at(state, 0.5 * (start + snapshots[index].time)).pose
     assert (middle != before).any()
     assert (middle != after).any()
     assert np.abs(middle - 0.5 * (before + after)).max() < 0.2 * np.abs(after - before).max()
@@ -107,23 +111,20 @@ def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
 def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
     playback = keyed.state.keyframe_playback
     playback.put(0.8, playback.animation.keys[0].positions)
-    for choice, count in (
+    for options, count in (
         (AnimationExportOptions("APNG", fps=10), 8),
         (AnimationExportOptions("APNG", fps=10, loop=False), 9),
     ):
-        remember(keyed.state, choice)
-        animating.export(keyed.state, tmp_path / "out.apng")
+        export_animation(keyed.state, options, tmp_path / "out.apng")
         keyed.settle()
         assert f"{count} frames" in keyed.state.notice
     playback.cut_to(end=0.4)
-    assert len(animating.chosen_times(keyed.state, AnimationExportOptions("APNG", fps=10))) == 5
+    assert len(exported_times(keyed.state, AnimationExportOptions("APNG", fps=10))) == 5
 
 
 def test_background_and_size(keyed, tmp_path):
-    remember(
-        keyed.state, AnimationExportOptions("APNG", fps=5, size=40, opaque=True, background=(1.0, 0.0, 0.0))
-    )
-    animating.export(keyed.state, tmp_path / "out.apng")
+    options = AnimationExportOptions("APNG", fps=5, size=40, opaque=True, background=(1.0, 0.0, 0.0))
+    export_animation(keyed.state, options, tmp_path / "out.apng")
     keyed.settle()
     first, *_ = frames_of(tmp_path / "out.apng")
     assert max(first.shape[:2]) == 40
@@ -132,7 +133,7 @@ def test_background_and_size(keyed, tmp_path):
 
 def test_an_export_is_cancelled_and_leaves_no_file(keyed, tmp_path, monkeypatch):
     monkeypatch.setattr("akap_editor.app.jobs.task.Task.advance", one_step)
-    animating.export(keyed.state, tmp_path / "out.webp")
+    export_animation(keyed.state, AnimationExportOptions(), tmp_path / "out.webp")
     for _ in range(8):
         keyed.frame()
     assert keyed.state.task is not None
@@ -151,7 +152,7 @@ def test_an_export_is_cancelled_while_all_of_it_is_encoded(keyed, tmp_path, monk
         return b"late"
 
     monkeypatch.setitem(_ENCODERS, ".webp", (slow, 16383))
-    animating.export(keyed.state, tmp_path / "out.webp")
+    export_animation(keyed.state, AnimationExportOptions(), tmp_path / "out.webp")
     while not at_work.is_set() or not keyed.state.task.progress.text.startswith("Writing"):
         keyed.frame()
     keyed.dialog("Exporting out.webp", "Cancel")
@@ -168,7 +169,7 @@ def test_where_a_picture_cannot_be_drawn_the_export_ends_with_one_sentence(keyed
         raise InputError("no memory for a picture")
 
     monkeypatch.setattr(keyed.state.exporter, "render", fails)
-    animating.export(keyed.state, tmp_path / "out.webp")
+    export_animation(keyed.state, AnimationExportOptions(), tmp_path / "out.webp")
     keyed.settle()
     assert keyed.state.error == "no memory for a picture"
     assert keyed.state.task is None
@@ -176,7 +177,7 @@ def test_where_a_picture_cannot_be_drawn_the_export_ends_with_one_sentence(keyed
 
 
 def test_a_folder_that_is_not_there_is_one_sentence(keyed, tmp_path):
-    animating.export(keyed.state, tmp_path / "no" / "such" / "out.webp")
+    export_animation(keyed.state, AnimationExportOptions(), tmp_path / "no" / "such" / "out.webp")
     keyed.settle()
     assert "out.webp" in keyed.state.error
     assert keyed.state.task is None
@@ -191,10 +192,20 @@ def test_a_folder_that_is_not_there_is_one_sentence(keyed, tmp_path):
 )
 def test_preferences_that_make_no_sense_are_as_at_first(keyed, values):
     keyed.state.preferences = Preferences()
-    keyed.state.preferences.put(animating.REMEMBERED, values)
-    assert remembered(keyed.state) == AnimationExportOptions()
+    keyed.state.preferences.put(PREFERENCE, values)
+    assert AnimationExportOptions.remembered(keyed.state.preferences) == AnimationExportOptions()
+
+
+def test_options_are_remembered(keyed):
+    options = AnimationExportOptions(
+        "GIF", 12.5, 99, 2.0, "out", loop=False, ping_pong=True, opaque=True, background=(1.0, 0.5, 0.0)
+    )
+    options.remember(keyed.state.preferences)
+    assert AnimationExportOptions.remembered(keyed.state.preferences) == options
 
 
 def test_numbers_are_kept_in_their_limits(keyed):
-    keyed.state.preferences.put(animating.REMEMBERED, {"fps": 1e9, "size": -4, "speed": 0})
-    assert remembered(keyed.state) == AnimationExportOptions(fps=120.0, size=16, speed=0.01)
+    keyed.state.preferences.put(PREFERENCE, {"fps": 1e9, "size": -4, "speed": 0})
+    assert AnimationExportOptions.remembered(keyed.state.preferences) == AnimationExportOptions(
+        fps=120.0, size=16, speed=0.01
+    )

@@ -5,6 +5,7 @@ import pygltflib
 import pytest
 
 from akap_editor.app.commands.command import CTRL, Key
+from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.editor.document.framing import crop_box
 from akap_editor.io.export import FORMATS
 from akap_editor.io.images import read_image
@@ -23,6 +24,10 @@ def bent(pinned, tmp_path):
     return pinned
 
 
+def dialog(ui):
+    return ui.state.dialog(ExportPoseDialog)
+
+
 def expected_picture(ui, crop="none", scale=1.0, background=None):
     drawing, pose = ui.document.drawing, ui.session.state.positions
     with OffscreenRenderer(ui.window.ctx) as renderer:
@@ -31,7 +36,7 @@ def expected_picture(ui, crop="none", scale=1.0, background=None):
 
 def export_as(ui, name):
     ui.dialog(EXPORT, "Export...")
-    assert not ui.state.export.shown
+    assert not dialog(ui).is_open
     ui.type_name(FILE, name)
     ui.settle()
     assert not ui.state.waiting
@@ -43,7 +48,7 @@ def option(label):
 
 def test_enter_twice_writes_the_picture_as_it_is_seen(bent, tmp_path):
     bent.key(CTRL | Key.e)
-    assert bent.state.export.shown
+    assert dialog(bent).is_open
     bent.key(Key.enter)
     assert bent.state.request.name == "figure-posed.png"
     bent.key(Key.enter)
@@ -63,15 +68,15 @@ def test_all_that_can_be_chosen_about_a_picture(bent, tmp_path):
         hand.combo_click("##crop/Pose alone")
 
     bent.do(crop)
-    choice = bent.state.export
-    assert (choice.scale, choice.opaque, choice.crop) == (2.0, True, "pose")
-    size = choice.size(bent.document)
+    choice = dialog(bent).options
+    assert (choice.scale, choice.is_opaque, choice.crop) == (2.0, True, "pose")
+    size = choice.picture_size(bent.document)
     export_as(bent, "large")
     written = read_image(tmp_path / "large.png")
     assert written.shape == (size[1], size[0], 4)
     np.testing.assert_array_equal(written, expected_picture(bent, "pose", 2.0, (1.0, 1.0, 1.0)))
     bent.menu("File", "Export...")
-    assert (choice.scale, choice.opaque, choice.crop) == (2.0, True, "pose"), "kept for the next time"
+    assert (choice.scale, choice.is_opaque, choice.crop) == (2.0, True, "pose"), "kept for the next time"
     bent.dialog(EXPORT, "Cancel")
 
 
@@ -79,7 +84,7 @@ def test_all_that_can_be_chosen_about_a_picture(bent, tmp_path):
 def test_every_format(bent, tmp_path, suffix):
     bent.menu("File", "Export...")
     bent.dialog(EXPORT, option(BY_SUFFIX[suffix].label))
-    assert bent.state.export.format is BY_SUFFIX[suffix]
+    assert dialog(bent).options.format is BY_SUFFIX[suffix]
     export_as(bent, "cat")
     assert (tmp_path / f"cat{suffix}").stat().st_size
     for path in tmp_path.iterdir():
@@ -99,10 +104,10 @@ def test_the_drawing_at_rest(bent, tmp_path):
 
 def test_too_large_a_picture_cannot_be_asked_for(bent):
     bent.menu("File", "Export...")
-    bent.state.export.scale = 60.0
+    dialog(bent).options.scale = 60.0
     bent.settle()
     bent.key(Key.enter)
-    assert bent.state.export.shown
+    assert dialog(bent).is_open
     assert bent.state.request is None
     bent.dialog(EXPORT, option("glTF binary"))
     bent.key(Key.enter)
@@ -114,20 +119,20 @@ def test_a_scale_can_be_typed(bent):
     bent.menu("File", "Export...")
 
     def type_(hand):
-        hand.item_input(f"//{EXPORT}###dialog {EXPORT}/**/##scale")
+        hand.item_input(f"//{EXPORT}###dialog {EXPORT}/**/##Scale")
         hand.key_chars_replace_enter("37.5")
 
     bent.do(type_)
-    assert bent.state.export.shown, "Enter ended the typing only"
-    assert bent.state.export.scale == pytest.approx(0.375)
+    assert dialog(bent).is_open, "Enter ended the typing only"
+    assert dialog(bent).options.scale == pytest.approx(0.375)
     bent.key(Key.escape)
-    assert not bent.state.export.shown
+    assert not dialog(bent).is_open
 
 
 def test_cancel_and_escape_write_nothing(bent, tmp_path):
     bent.key(CTRL | Key.e)
     bent.key(Key.escape)
-    assert not bent.state.export.shown
+    assert not dialog(bent).is_open
     bent.key(CTRL | Key.e)
     bent.dialog(EXPORT, "Cancel")
     bent.key(CTRL | Key.e, Key.enter)

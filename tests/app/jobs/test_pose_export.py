@@ -6,7 +6,7 @@ from threading import Event
 import numpy as np
 import pytest
 
-from akap_editor.app.dialogs import export_pose as export_dialog
+from akap_editor.app.dialogs.export_pose import PoseExportOptions, export_pose
 from akap_editor.app.jobs.pose_export import PoseExportQueue
 from akap_editor.errors import InputError
 from akap_editor.io import export as exports
@@ -82,7 +82,7 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
     gate, encode = Event(), exports.encode_png
     monkeypatch.setattr(exports, "encode_png", lambda picture: gate.wait(60) and encode(picture))
     path = tmp_path / "pose.png"
-    export_dialog.write(pinned.state, path)
+    export_pose(pinned.state, PoseExportOptions(), path)
     x, y = pinned.pin_place(3)
     drawing, pose = pinned.session.drawing, pinned.session.state.positions
     pinned.do(lambda hand: hand.yield_(3), settle=False)
@@ -103,7 +103,7 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
 
 def test_a_window_that_closes_writes_the_file_first(pinned, tmp_path):
     path = tmp_path / "pose.png"
-    export_dialog.write(pinned.state, path)
+    export_pose(pinned.state, PoseExportOptions(), path)
     pinned.state.closing = True
     pinned.window.run()
     assert path.exists()

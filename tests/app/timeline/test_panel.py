@@ -7,7 +7,7 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
-from akap_editor.app.dialogs import animating
+from akap_editor.app.dialogs.export_animation import AnimationExportOptions, export_animation
 from akap_editor.editor.session.replay import replay
 
 
@@ -107,12 +107,12 @@ def test_control_and_drag_records_that_gesture_only(bent):
 def test_the_range_is_exported(bent, tmp_path):
     playback = bent.state.session_playback
     playback.cut_to(0.0, min(0.5, playback.duration))
-    animating.export(bent.state, tmp_path / "wave.webp")
+    export_animation(bent.state, AnimationExportOptions(), tmp_path / "wave.webp")
     bent.settle()
     assert bent.state.error == ""
     with Image.open(tmp_path / "wave.webp") as opened:
         assert opened.n_frames >= 1
-    animating.export(bent.state, tmp_path / "wave.avi")
+    export_animation(bent.state, AnimationExportOptions(), tmp_path / "wave.avi")
     bent.settle()
     assert ".avi" in bent.state.error
 
