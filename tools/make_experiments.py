@@ -1,4 +1,4 @@
-"""Makes the paper's experiments: recordings in assets, and the pictures and figures of docs/experiments.md.
+"""Records the paper's experiments; writes the pictures and tables of docs/experiments.md.
 
 Run from the project's root: python tools/make_experiments.py
 """
@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from akap_editor.cli.replay import settings_change
-from akap_editor.editor.document.document import EditState, new_document
+from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Drawing, make_drawing
 from akap_editor.editor.document.framing import frame_box
 from akap_editor.editor.document.settings import Settings
@@ -31,34 +31,34 @@ RECORDINGS = resource("assets", "recordings")
 PAGE, PICTURES = Path("docs/experiments.md"), Path("docs/images")
 MOVES_PER_SECOND = 12
 STEPS_PER_MOVE = 4
-THE_PAPER = Settings("akap", (("memory", 0.0),))
-CELL = 300
+PAPER_SETTINGS = Settings("akap", (("memory", 0.0),))
+CELL = 300  # pixels: the longer side of one pose in a picture
 
 Curve = Callable[[float], tuple[float, float]]
 
 
-class Stage:
-    """A session whose clock runs at `MOVES_PER_SECOND`."""
+class ScriptedSession:
+    """Drags pins of a bundled drawing at `MOVES_PER_SECOND`, with the paper's settings."""
 
-    def __init__(self, name: str, held: Sequence[tuple[float, float]], vertices: int = 2000) -> None:
+    def __init__(self, name: str, fixed: Sequence[tuple[float, float]], vertices: int = 2000) -> None:
         self.now = 0.0
         image = read_image(resource("assets", "drawings", f"{name}.png"))
-        document = new_document(make_drawing(image, vertices=vertices, name=name), THE_PAPER)
+        document = new_document(make_drawing(image, vertices=vertices, name=name), PAPER_SETTINGS)
         self.session = Session(document, clock=lambda: self.now)
-        for at in held:
-            self.pin(at)
+        for point in fixed:
+            self.add_pin(point)
 
-    def pin(self, at: tuple[float, float]) -> int:
-        """Put a pin on the drawing."""
-        self.session.begin("Add pin")
-        pin = add_pin(self.session, at)
-        assert pin is not None, at
+    def add_pin(self, point: tuple[float, float]) -> int:
+        """Add a pin at a point of the rest pose; return its id."""
+        self.session.begin("Add Pin")
+        pin = add_pin(self.session, point)
+        assert pin is not None, point
         self.session.commit()
         return pin
 
     def drag(self, pin: int, curve: Curve, seconds: float) -> None:
-        """Send a pin along places ``curve`` of 0..1, with a few steps for each of its moves."""
-        self.session.begin("Bend")
+        """Drag a pin along ``curve(t)`` for t from 0 to 1, with `STEPS_PER_MOVE` steps after each move."""
+        self.session.begin("Drag Pin")
         moves = round(seconds * MOVES_PER_SECOND)
         for move in range(1, moves + 1):
             self.now += 1 / MOVES_PER_SECOND
@@ -68,71 +68,72 @@ class Stage:
         self.session.commit()
 
 
-def turned(about: tuple[float, float], start: tuple[float, float], angle: Callable[[float], float]) -> Curve:
-    """Places on a circle through ``start``."""
-    center, arm = complex(*about), complex(*start) - complex(*about)
+def arc(center: tuple[float, float], start: tuple[float, float], angle: Callable[[float], float]) -> Curve:
+    """Return the curve that rotates ``start`` about ``center`` by ``angle(t)`` radians."""
+    c, radius = complex(*center), complex(*start) - complex(*center)
 
-    def at(t: float) -> tuple[float, float]:
-        place = center + arm * np.exp(1j * angle(t))
-        return place.real, place.imag
+    def point(t: float) -> tuple[float, float]:
+        z = c + radius * np.exp(1j * angle(t))
+        return z.real, z.imag
 
-    return at
-
-
-def head() -> Recording:
-    """Fig. 5: the alien's head rolls to and fro about its neck, by 29 degrees to both sides, four times."""
-    stage = Stage("alien", [(390, 920), (670, 920), (500, 640)])
-    top = stage.pin((480, 200))
-    stage.drag(top, turned((500, 545), (480, 200), lambda t: 0.5 * np.sin(8 * np.pi * t)), 12.0)
-    return stage.session.recording
+    return point
 
 
-def variants() -> Recording:
-    """Fig. 8: the elephant's trunk goes up and over its head."""
-    stage = Stage("elephant", [(135, 800), (285, 795), (445, 795), (625, 800), (400, 420)])
-    trunk = stage.pin((915, 180))
+def polyline(points: Sequence[tuple[float, float]]) -> Curve:
+    """Return the curve through ``points`` that takes equally long for each segment."""
+    times = np.linspace(0, 1, len(points))
+    x, y = zip(*points, strict=True)
+    return lambda t: (float(np.interp(t, times, x)), float(np.interp(t, times, y)))
+
+
+def roll_head() -> Recording:
+    """Fig. 5: roll the alien's head about its neck, 29° to each side, four times."""
+    script = ScriptedSession("alien", [(390, 920), (670, 920), (500, 640)])
+    top = script.add_pin((480, 200))
+    script.drag(top, arc((500, 545), (480, 200), lambda t: 0.5 * np.sin(8 * np.pi * t)), 12.0)
+    return script.session.recording
+
+
+def raise_trunk() -> Recording:
+    """Fig. 8: lift the elephant's trunk over its head."""
+    script = ScriptedSession("elephant", [(135, 800), (285, 795), (445, 795), (625, 800), (400, 420)])
+    trunk = script.add_pin((915, 180))
     path = [(915, 180), (960, 40), (900, -130), (740, -190), (580, -120), (520, 10)]
-    way = np.linspace(0, 1, len(path))
-    stage.drag(
-        trunk,
-        lambda t: (
-            float(np.interp(t, way, [x for x, _ in path])),
-            float(np.interp(t, way, [y for _, y in path])),
-        ),
-        5.0,
-    )
-    return stage.session.recording
+    script.drag(trunk, polyline(path), 5.0)
+    return script.session.recording
 
 
-def there_and_back() -> Recording:
-    """Section 3.2: the raptor's tail is led around two loops, one each way, and back to where it was."""
-    stage = Stage("raptor", [(352, 740), (655, 745), (520, 400)], vertices=1000)
-    tail = stage.pin((32, 215))
-    for loop in range(2):
-        sign = 1 if loop % 2 else -1
-        center = (150, 130)
-        stage.drag(tail, turned(center, (32, 215), lambda t, s=sign: s * 2 * np.pi * t), 3.0)
-    return stage.session.recording
+def circle_tail() -> Recording:
+    """Section 3.2: lead the raptor's tail around two loops, one in each direction, back to its start."""
+    script = ScriptedSession("raptor", [(352, 740), (655, 745), (520, 400)], vertices=1000)
+    tail = script.add_pin((32, 215))
+    for sign in (-1, 1):
+        script.drag(tail, arc((150, 130), (32, 215), lambda t, s=sign: s * 2 * np.pi * t), 3.0)
+    return script.session.recording
 
 
 @dataclass(frozen=True)
 class Experiment:
-    """name: of its recording and of its pictures; variants: of `akap-editor replay`, with their captions."""
+    """A recorded session and the methods that it is replayed with.
+
+    ``name`` is the name of the recording and of the picture. ``methods`` maps the caption of a table row to
+    the options --method and --variant of `akap-editor replay`.
+    """
 
     name: str
-    make: Callable[[], Recording]
-    columns: dict[str, tuple[str | None, str]]
+    record: Callable[[], Recording]
+    methods: dict[str, tuple[str | None, str]]
 
 
 EXPERIMENTS = (
     Experiment(
         "fig5-rotating-head",
-        head,
+        roll_head,
         {"straight steps": (None, "linear"), "log spirals": (None, "spiral")},
     ),
     Experiment(
         "fig8-variants",
-        variants,
+        raise_trunk,
         {
             "(a) straight, one solve": (None, "linear,no-dirichlet"),
             "(b) straight, both solves": (None, "linear"),
@@ -142,7 +143,7 @@ EXPERIMENTS = (
     ),
     Experiment(
         "there-and-back",
-        there_and_back,
+        circle_tail,
         {
             "AKAP, as in the paper": (None, ""),
             "AKAP with rest memory": (None, "memory"),
@@ -152,35 +153,35 @@ EXPERIMENTS = (
 )
 
 
-def played(recording: Recording, drawing: Drawing, method: str | None, variant: str) -> list[EditState]:
-    """The states of a recording under a variant."""
-    return [moment.state for moment in replay(recording, drawing, settings_change(method, variant))]
+def last_pose(recording: Recording, drawing: Drawing, method: str | None, variant: str) -> np.ndarray:
+    """Replay a recording with another method; return its last pose (n, 2)."""
+    *_, last = replay(recording, drawing, settings_change(method, variant))
+    return last.state.positions
 
 
-def figures(name: str, drawing: Drawing, caption: str, states: list[EditState]) -> str:
-    """A row of an experiment's table."""
-    mesh, last = drawing.mesh, states[-1].positions
-    measured = distortion(mesh, last)
+def table_row(name: str, drawing: Drawing, caption: str, pose: np.ndarray) -> str:
+    """Format the measures of a pose (n, 2) as a row of the experiment's table."""
+    mesh = drawing.mesh
+    measured = distortion(mesh, pose)
     row = [caption, f"{measured.area:.4f}", f"{measured.angle:.4f}", str(measured.flipped)]
     if name.startswith("fig5"):
         is_head = mesh.vertices[mesh.faces].mean(axis=1)[:, 1] < 480
-        growth = signed_areas(last, mesh.faces)[is_head].sum() / mesh.rest_areas[is_head].sum()
+        growth = signed_areas(pose, mesh.faces)[is_head].sum() / mesh.rest_areas[is_head].sum()
         row.append(f"{100 * (growth - 1):+.2f} %")
     if name == "there-and-back":
-        off = np.linalg.norm(last - mesh.vertices, axis=1)
-        row += [f"{np.sqrt((off**2).mean()):.2f} px", f"{off.max():.2f} px"]
+        distances = np.linalg.norm(pose - mesh.vertices, axis=1)
+        row += [f"{np.sqrt((distances**2).mean()):.2f} px", f"{distances.max():.2f} px"]
     return "| " + " | ".join(row) + " |"
 
 
-def rows_of(experiment: Experiment, renderer: OffscreenRenderer) -> Iterator[str]:
-    """The rows of an experiment's table; its picture is written on the way."""
+def table_rows(experiment: Experiment, renderer: OffscreenRenderer) -> Iterator[str]:
+    """Replay an experiment with each method: yield the table rows, then write the picture of all poses."""
     recording = read_recording(RECORDINGS / f"{experiment.name}.akaprec")
     drawing = recorded_drawing(recording)
     poses = [drawing.mesh.vertices]
-    for caption, (method, variant) in experiment.columns.items():
-        states = played(recording, drawing, method, variant)
-        poses.append(states[-1].positions)
-        yield figures(experiment.name, drawing, caption, states)
+    for caption, (method, variant) in experiment.methods.items():
+        poses.append(last_pose(recording, drawing, method, variant))
+        yield table_row(experiment.name, drawing, caption, poses[-1])
     box = frame_box(drawing, poses)
     scale = CELL / max(box[2] - box[0], box[3] - box[1])
     pictures = [renderer.render(drawing, pose, box, scale, (1.0, 1.0, 1.0)) for pose in poses]
@@ -190,18 +191,18 @@ def rows_of(experiment: Experiment, renderer: OffscreenRenderer) -> Iterator[str
 
 
 def main() -> None:
-    """Write everything."""
+    """Write the recordings, the pictures and the tables."""
     for experiment in EXPERIMENTS:
         path = RECORDINGS / f"{experiment.name}.akaprec"
-        write_recording(experiment.make(), path)
+        write_recording(experiment.record(), path)
         print(path)
     page = PAGE.read_text("utf-8")
     with OffscreenRenderer() as renderer:
         for experiment in EXPERIMENTS:
-            rows = "\n".join(rows_of(experiment, renderer))
-            marks = f"<!-- {experiment.name} -->", "<!-- end -->"
-            pattern = re.escape(marks[0]) + ".*?" + re.escape(marks[1])
-            page = re.sub(pattern, f"{marks[0]}\n{rows}\n{marks[1]}", page, flags=re.DOTALL)
+            rows = "\n".join(table_rows(experiment, renderer))
+            start, end = f"<!-- {experiment.name} -->", "<!-- end -->"
+            table = re.escape(start) + ".*?" + re.escape(end)
+            page = re.sub(table, f"{start}\n{rows}\n{end}", page, flags=re.DOTALL)
     PAGE.write_text(page, "utf-8")
     print(PAGE)
 

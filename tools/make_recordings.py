@@ -1,4 +1,4 @@
-"""Makes the bundled recordings: a hand, played by smooth curves, poses a drawing at 30 moves a second.
+"""Records the bundled sessions: a scripted pointer poses a drawing along smooth curves, at 30 moves a second.
 
 Run from the project's root: python tools/make_recordings.py
 """
@@ -21,8 +21,8 @@ MOVES_PER_SECOND = 30
 Curve = Callable[[float], tuple[float, float]]
 
 
-class Hand:
-    """Moves the pointer over an editor whose clock it turns."""
+class ScriptedPointer:
+    """Moves the pointer of an editor and advances the editor's clock."""
 
     def __init__(self, name: str) -> None:
         self.now = 0.0
@@ -31,20 +31,20 @@ class Hand:
         self.editor.open(new_document(make_drawing(image, name=name)))
 
     def pause(self, seconds: float) -> None:
-        """Let time pass; the drawing settles meanwhile."""
+        """Advance the clock frame by frame; the drawing settles meanwhile."""
         for _ in range(round(seconds * MOVES_PER_SECOND)):
             self.now += 1 / MOVES_PER_SECOND
             self.editor.advance(budget=np.inf)
 
-    def pin(self, x: float, y: float) -> int:
-        """Click on the drawing."""
-        added = self.editor.add_pin((x, y))
-        assert added is not None
+    def add_pin(self, x: float, y: float) -> int:
+        """Add a pin at a point of the drawing; return its id."""
+        pin = self.editor.add_pin((x, y))
+        assert pin is not None
         self.pause(0.1)
-        return added
+        return pin
 
     def drag(self, pin: int, curve: Curve, seconds: float) -> None:
-        """Drag a pin along offsets ``curve`` of 0..1 from where it is."""
+        """Drag a pin; ``curve(t)``, t from 0 to 1, is its offset from where it is now."""
         session = self.editor.session
         assert session is not None
         x, y = session.state.pin(pin).target
@@ -58,122 +58,120 @@ class Hand:
         self.editor.handle_event(PointerEvent("release", to_screen((x + dx, y + dy))))
         self.pause(0.2)
 
-    def move(self, way: Callable[[float], dict[int, tuple[float, float]]], seconds: float) -> None:
-        """Drag several pins at once, each on its own way of 0..1."""
+    def move(self, targets: Callable[[float], dict[int, tuple[float, float]]], seconds: float) -> None:
+        """Drag several pins at once; ``targets(t)``, t from 0 to 1, maps each pin's id to its target."""
         session = self.editor.session
         assert session is not None
         session.begin("Move Pins")
         steps = round(seconds * MOVES_PER_SECOND)
         for step in range(1, steps + 1):
-            session.apply(SetTargets(way(step / steps)))
+            session.apply(SetTargets(targets(step / steps)))
             self.pause(1 / MOVES_PER_SECOND)
         session.commit()
         self.pause(0.2)
 
     def save(self, path: Path) -> None:
-        """Write what was recorded."""
+        """Write the recording of the session."""
         assert self.editor.session is not None
         write_recording(self.editor.session.recording, path)
 
 
 def ease(t: float) -> float:
-    """From 0 to 1, slow at both ends."""
+    """Map t from 0 to 1 onto 0 to 1 with no speed at either end (smoothstep)."""
     return t * t * (3 - 2 * t)
 
 
 def line(dx: float, dy: float) -> Curve:
-    """Straight to an offset, slow at both ends."""
+    """Return the straight curve to an offset, slow at both ends."""
     return lambda t: (dx * ease(t), dy * ease(t))
 
 
 def swing(dx: float, dy: float, times: int) -> Curve:
-    """To and fro about the start, ending there."""
+    """Return a curve that swings about its start with a decreasing amplitude and ends there."""
     return lambda t: (
         dx * np.sin(2 * np.pi * times * t) * (1 - t),
         dy * np.sin(2 * np.pi * times * t) * (1 - t),
     )
 
 
-def elephant() -> Hand:
-    """Holds its feet still, swings its trunk, wags its tail, nods, and lifts its trunk over its head."""
-    hand = Hand("elephant")
+def elephant() -> ScriptedPointer:
+    """Fix the elephant's feet; swing its trunk, wag its tail, nod its head, lift its trunk over the head."""
+    pointer = ScriptedPointer("elephant")
     for foot in ((135, 800), (285, 795), (445, 795), (625, 800)):
-        hand.pin(*foot)
-    hand.pin(260, 420)
-    trunk = hand.pin(915, 180)
-    hand.drag(trunk, line(30, 170), 1.0)
-    hand.drag(trunk, swing(60, 70, 2), 1.2)
-    tail = hand.pin(65, 290)
-    hand.drag(tail, swing(70, -30, 2), 1.2)
-    head = hand.pin(560, 170)
-    hand.drag(head, line(40, 60), 0.7)
-    hand.drag(head, line(-70, -75), 0.8)
-    hand.drag(trunk, line(-310, -270), 1.5)
-    hand.pause(0.4)
-    return hand
+        pointer.add_pin(*foot)
+    pointer.add_pin(260, 420)
+    trunk = pointer.add_pin(915, 180)
+    pointer.drag(trunk, line(30, 170), 1.0)
+    pointer.drag(trunk, swing(60, 70, 2), 1.2)
+    tail = pointer.add_pin(65, 290)
+    pointer.drag(tail, swing(70, -30, 2), 1.2)
+    head = pointer.add_pin(560, 170)
+    pointer.drag(head, line(40, 60), 0.7)
+    pointer.drag(head, line(-70, -75), 0.8)
+    pointer.drag(trunk, line(-310, -270), 1.5)
+    pointer.pause(0.4)
+    return pointer
 
 
-def bar() -> Hand:
-    """Bends the bar as in Fig. 9: both ends, two pins each, along the arc on which its middle line keeps its
-    length. 207° is where conformal coordinates give the figure of Table 1, see docs/methods.md.
+def bar() -> ScriptedPointer:
+    """Bend the bar as in Fig. 9, two pins at each end, along the arc that keeps the midline's length.
+
+    At 207° Cauchy–Green coordinates reproduce the values of Table 1, see docs/methods.md.
     """
-    hand, middle, height, reach, bend = Hand("bar"), 560.0, 150.0, 485.0, np.radians(207)
-    places = [(middle + side * reach, height + up) for side in (-1, 1) for up in (-70.0, 70.0)]
-    pins = {hand.pin(*place): place for place in places}
+    pointer, middle, height, half_length, angle = ScriptedPointer("bar"), 560.0, 150.0, 485.0, np.radians(207)
+    points = [(middle + side * half_length, height + dy) for side in (-1, 1) for dy in (-70.0, 70.0)]
+    pins = {pointer.add_pin(*point): point for point in points}
 
-    def bent(t: float) -> dict[int, tuple[float, float]]:
-        radius = 2 * reach / (bend * ease(t)) if t else np.inf
-        ways = {}
+    def targets(t: float) -> dict[int, tuple[float, float]]:
+        radius = 2 * half_length / (angle * ease(t)) if t else np.inf
+        bent = {}
         for pin, (x, y) in pins.items():
-            turn, arm = (x - middle) / radius, radius - (y - height)
-            ways[pin] = (
-                round(middle + arm * np.sin(turn), 2),
-                round(height + radius - arm * np.cos(turn), 2),
-            )
-        return ways
+            phi, r = (x - middle) / radius, radius - (y - height)
+            bent[pin] = round(middle + r * np.sin(phi), 2), round(height + radius - r * np.cos(phi), 2)
+        return bent
 
-    hand.move(bent, 3.0)
-    return hand
+    pointer.move(targets, 3.0)
+    return pointer
 
 
-def rearing() -> Hand:
-    """The elephant rears up on its hind legs, trumpeting."""
-    hand = Hand("elephant")
+def rearing() -> ScriptedPointer:
+    """Let the elephant rear up on its hind legs."""
+    pointer = ScriptedPointer("elephant")
     for foot in ((135, 800), (285, 795)):
-        hand.pin(*foot)
-    ways = (
+        pointer.add_pin(*foot)
+    points_and_offsets = (
         ((445, 795), (275, -155)),
         ((625, 800), (275, -240)),
         ((915, 180), (-155, -330)),
         ((560, 150), (-130, -90)),
     )
-    pins = {hand.pin(*place): (place, way) for place, way in ways}
-    hand.move(
+    pins = {pointer.add_pin(*point): (point, offset) for point, offset in points_and_offsets}
+    pointer.move(
         lambda t: {
             pin: (round(x + dx * ease(t), 2), round(y + dy * ease(t), 2))
             for pin, ((x, y), (dx, dy)) in pins.items()
         },
         2.0,
     )
-    return hand
+    return pointer
 
 
-def alien() -> Hand:
-    """Stands on its feet, throws up its hands, leans its head and bends an antenna."""
-    hand = Hand("alien")
-    for place in ((390, 925), (670, 925), (515, 700)):
-        hand.pin(*place)
-    left, right = hand.pin(110, 660), hand.pin(880, 430)
-    head, antenna = hand.pin(500, 260), hand.pin(655, 60)
-    hand.drag(left, lambda t: (-60 * np.sin(np.pi * t) + 20 * t, -330 * ease(t)), 1.2)
-    hand.drag(right, lambda t: (70 * np.sin(np.pi * t) - 20 * t, 330 * ease(t)), 1.2)
-    hand.drag(head, line(-60, 25), 0.8)
-    hand.drag(antenna, line(120, 120), 1.0)
-    return hand
+def alien() -> ScriptedPointer:
+    """Fix the alien's feet; throw up its hands, lean its head, bend an antenna."""
+    pointer = ScriptedPointer("alien")
+    for point in ((390, 925), (670, 925), (515, 700)):
+        pointer.add_pin(*point)
+    left, right = pointer.add_pin(110, 660), pointer.add_pin(880, 430)
+    head, antenna = pointer.add_pin(500, 260), pointer.add_pin(655, 60)
+    pointer.drag(left, lambda t: (-60 * np.sin(np.pi * t) + 20 * t, -330 * ease(t)), 1.2)
+    pointer.drag(right, lambda t: (70 * np.sin(np.pi * t) - 20 * t, 330 * ease(t)), 1.2)
+    pointer.drag(head, line(-60, 25), 0.8)
+    pointer.drag(antenna, line(120, 120), 1.0)
+    return pointer
 
 
 if __name__ == "__main__":
-    for make in (elephant, rearing, bar, alien):
-        target = resource("assets", "recordings") / f"{make.__name__}.akaprec"
-        make().save(target)
-        print(target)
+    for record in (elephant, rearing, bar, alien):
+        path = resource("assets", "recordings") / f"{record.__name__}.akaprec"
+        record().save(path)
+        print(path)
