@@ -19,7 +19,7 @@ import sys
 import time
 
 import numpy as np
-from timing import Clock
+from timing import FunctionTimer
 
 from akap_editor.app import window as window_module
 from akap_editor.app.window import Window
@@ -70,15 +70,15 @@ class Hand:
         time.sleep(max(min(seconds, (self._moves + 1) / RATE - self.passed), 0.0))
 
 
-def instrument(clock: Clock, window: Window) -> list[float]:
+def instrument(timer: FunctionTimer, window: Window) -> list[float]:
     """Sort the parts of a frame, whatever no other part claims is the interface; seconds of steps to come."""
-    clock.wrap(Session, "step_is_ready", "wait")
-    clock.wrap(Renderer, "show", "upload")
-    clock.wrap(Renderer, "draw", "draw")
+    timer.wrap(Session, "step_is_ready", "wait")
+    timer.wrap(Renderer, "show", "upload")
+    timer.wrap(Renderer, "draw", "draw")
     # Without a screen no frame ever ends by itself, and what was drawn for it stays in memory.
     window_module.glfw.swap_buffers = lambda _: window.ctx.finish()
-    clock.wrap(window_module.glfw, "swap_buffers", "draw")
-    clock.wrap(Window, "_frame", "interface")
+    timer.wrap(window_module.glfw, "swap_buffers", "draw")
+    timer.wrap(Window, "_frame", "interface")
     steps: list[float] = []
     step = Session.step
 
@@ -93,7 +93,7 @@ def instrument(clock: Clock, window: Window) -> list[float]:
 
 def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[str, float]], list[float]]:
     """Drag for so long; the vertex count, the seconds of each frame, and those of each step."""
-    clock = Clock(PARTS)
+    timer = FunctionTimer(PARTS)
     image = read_image(resource("assets", "drawings", f"{name}.png"))
     with Window(null=True) as window:
         window.state.show(new_document(make_drawing(image, vertices=vertices, name=name)))
@@ -102,7 +102,7 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
             editor.add_pin(pin)
         for _ in range(20):  # panels find their places, and the drawing is fitted between them
             window.frame()
-        steps = instrument(clock, window)
+        steps = instrument(timer, window)
         hand = Hand(window, seconds)
         window_module.glfw.wait_events_timeout = hand.sleep
         rows: list[dict[str, float]] = []
@@ -113,7 +113,7 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
             window._turn()
             now = window.frames, time.perf_counter()
             if now[0] > before[0]:
-                rows.append({**clock.take(), "interval": now[1] - before[1]})
+                rows.append({**timer.take(), "interval": now[1] - before[1]})
                 before = now
         assert editor.session is not None
         count = len(editor.session.drawing.mesh.vertices)

@@ -1,11 +1,11 @@
-"""A long session, compressed: thousands of random operations on one drawing, without a window.
+"""Soak test of the editor without a window: thousands of random operations on one drawing.
 
 Run from the project's root: python benchmarks/session_soak.py [--operations N] [--drawing FILE] [--seed S]
-Presses, drags, lets go, cancels, adds and removes pins, undoes, redoes, goes to another density, bakes,
-carries poses, saves, exports and autosaves as an artist does in two hours, and prints every tenth of the way
-the number of undo entries and the process's memory in MB. In the end the saved file must equal the live
-document, and the second half must have added less than 20 MB. Exit code 1 where that does not hold or
-anything is raised.
+The operations are those of an artist in two hours: drags, cancelled drags, pins added and removed, undo and
+redo, new mesh densities and rest poses, pose files, saves, exports and autosaves. After every tenth of them a
+line reports the undo entries, the recorded events and the memory of the process. At the end the saved file
+must equal the document in memory, and the second half of the operations may add at most 20 MB of memory;
+otherwise, and after any exception, the exit code is 1.
 """
 
 import os
@@ -41,11 +41,11 @@ from akap_editor.io.images import read_image
 from akap_editor.render.offscreen import OffscreenRenderer
 from akap_editor.resources import resource
 
-MOST_GROWTH = 20e6  # bytes, in the second half
-MOST_PINS = 12
+MAX_GROWTH = 20e6  # bytes, in the second half of the operations
+MAX_PINS = 12
 EXPORTS = (".svg", ".glb", ".obj", ".spine.json", ".json")
 
-# Operations and how often each is done, as a share of all.
+# The share of each operation, in all operations; `Soak` has a method of each name.
 SHARES = {
     "drag": 0.50,
     "cancelled drag": 0.06,
@@ -62,14 +62,14 @@ SHARES = {
 }
 
 
-def resident() -> int:
-    """Bytes of memory that the process has now."""
+def resident_memory() -> int:
+    """Return the resident memory of this process in bytes."""
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE")
 
 
 class Soak:
-    """An editor, a hand that does not know what it wants, and a folder for files."""
+    """Applies random operations to an editor; its files go to ``folder``."""
 
     def __init__(self, document: Document, folder: Path, seed: int) -> None:
         self.rng = np.random.default_rng(seed)
@@ -79,23 +79,26 @@ class Soak:
         self.folder, self.path = folder, folder / "drawing.akap"
         self.autosave = Autosave(folder / "state", clock=lambda: self.now)
         self.painter = OffscreenRenderer()
-        self.done: Counter[str] = Counter()
+        self.counts: Counter[str] = Counter()
 
     @property
     def session(self) -> Session:
-        """The open one."""
+        """The session of the open drawing."""
         assert self.editor.session is not None
         return self.editor.session
 
     def operate(self) -> None:
-        """One operation, then a short while in which the pose may settle."""
+        """Apply one random operation, then sometimes draw a frame in which the pose settles."""
         name = str(self.rng.choice(list(SHARES), p=list(SHARES.values())))
         try:
             getattr(self, "_" + name.replace(" ", "_"))()
             self._frames(int(self.rng.random() < 0.2))
-        except (InputError, SolverError) as error:  # e.g. what was baked keeps its mesh
-            self.done[f"{name}: {type(error).__name__}"] += 1
-        self.done[name] += 1
+        except (
+            InputError,
+            SolverError,
+        ) as error:  # e.g. no new mesh after a new rest pose
+            self.counts[f"{name}: {type(error).__name__}"] += 1
+        self.counts[name] += 1
 
     def _frames(self, count: int) -> None:
         for _ in range(count):
@@ -105,7 +108,7 @@ class Soak:
             self.autosave.watch(session.document, self.editor.modified, session.history.last)
         self.now += 0.2
 
-    def _screen(self, pin: int) -> tuple[float, float]:
+    def _pin_on_screen(self, pin: int) -> tuple[float, float]:
         return self.editor.pins_on_screen()[pin]
 
     def _press(self) -> tuple[float, float] | None:
@@ -113,7 +116,7 @@ class Soak:
         if not pins:
             self._add_pin()
             return None
-        at = self._screen(int(self.rng.choice(pins)))
+        at = self._pin_on_screen(int(self.rng.choice(pins)))
         self.editor.handle_event(PointerEvent("press", at))
         for _ in range(int(self.rng.integers(1, 5))):
             at = at[0] + self.rng.normal(0, 12), at[1] + self.rng.normal(0, 12)
@@ -132,7 +135,7 @@ class Soak:
 
     def _add_pin(self) -> None:
         mesh, state = self.session.drawing.mesh, self.session.state
-        if len(state.pins) < MOST_PINS:
+        if len(state.pins) < MAX_PINS:
             corners = state.positions[mesh.faces[self.rng.integers(len(mesh.faces))]]
             x, y = corners.mean(axis=0)
             self.editor.add_pin((float(x), float(y)))
@@ -154,7 +157,7 @@ class Soak:
 
     def _bake(self) -> None:
         self.editor.bake_pose()
-        self.editor.undo()  # else the drawing gets out of shape, bake by bake
+        self.editor.undo()  # otherwise each new rest pose distorts the drawing further
 
     def _pose(self) -> None:
         path = self.folder / "a.pose.json"
@@ -167,9 +170,9 @@ class Soak:
         assert drawing.meshing is not None
         meshing = replace(drawing.meshing, vertices=int(self.rng.integers(80, 200)))
         self.editor.cancel()
-        made = remeshed(drawing, meshing)
-        self.session.begin("Change density")
-        self.session.apply(Remesh.to(made))
+        remesh = Remesh.to(remeshed(drawing, meshing))
+        self.session.begin("Change Density")
+        self.session.apply(remesh)
         self.session.commit()
 
     def _save(self) -> None:
@@ -181,16 +184,18 @@ class Soak:
         export(self.session.document, self.folder / name, ExportOptions(), self.painter)
 
     def finish(self) -> None:
-        """The file and the recording hold what is there."""
+        """Check that the saved file equals the document and that no recovery copy is left."""
         self._save()
-        assert encode(load(self.path)) == encode(self.session.document), "the file differs from the document"
+        assert encode(load(self.path)) == encode(self.session.document), (
+            "the saved file differs from the document"
+        )
         write_recording(self.session.recording, self.folder / "session.akaprec")
         self.autosave.close()
-        assert not list((self.folder / "state").glob("*")), "a copy of saved work is left"
+        assert not list((self.folder / "state").glob("*")), "a recovery copy of saved work is left"
 
 
 def main() -> None:
-    """Run it, print a table."""
+    """Run the operations and print a table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--operations", type=int, default=20_000)
     parser.add_argument("--drawing", type=Path, default=resource("assets", "drawings", "elephant.png"))
@@ -207,17 +212,17 @@ def main() -> None:
             soak.operate()
             if count % max(options.operations // 10, 1) == 0:
                 gc.collect()
-                sizes.append(resident())
+                sizes.append(resident_memory())
                 events, depth = len(soak.session.recording.events), soak.session.history.depth
                 seconds = time.perf_counter() - started
                 print(f"{count:10} {depth:13} {events:16} {sizes[-1] / 1e6:10.1f} {seconds:8.0f}", flush=True)
         soak.finish()
         recording = (Path(folder) / "session.akaprec").stat().st_size
     growth = sizes[-1] - sizes[len(sizes) // 2 - 1]
-    print(", ".join(f"{name}: {number}" for name, number in sorted(soak.done.items())))
+    print(", ".join(f"{name}: {number}" for name, number in sorted(soak.counts.items())))
     print(f"{soak.now / 60:.0f} minutes; recording {recording / 1e6:.1f} MB; the file equals the document")
     print(f"memory of the second half {growth / 1e6:+.1f} MB")
-    sys.exit(growth > MOST_GROWTH)
+    sys.exit(growth > MAX_GROWTH)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from timing import Clock
+from timing import FunctionTimer
 
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.akap.killing_field import KillingSystem
@@ -72,18 +72,18 @@ def elephant(vertices: int) -> Drag:
     return Drag("elephant", mesh, points, path)
 
 
-def run_ours(drag: Drag, clock: Clock, memory: float, exact: bool) -> float:
+def run_ours(drag: Drag, timer: FunctionTimer, memory: float, exact: bool) -> float:
     """Print one row; the median of a frame in milliseconds."""
     deformer = AkapDeformer(drag.mesh, memory=memory, exact=exact)
     deformer.set_pins(drag.points)
     # From here on only: the figures are those of a drag that is under way.
     pose, frames, parts, creep = drag.mesh.vertices, [], [], 0.0
-    clock.take()
+    timer.take()
     for targets in drag.path:
         started = time.perf_counter()
         result = deformer.step(pose, targets)
         frames.append(1000 * (time.perf_counter() - started))
-        parts.append(clock.take())
+        parts.append(timer.take())
         pose = result.positions
         held = (drag.path[0] == drag.path[-1]).all(axis=1)
         off = drag.mesh.evaluate(drag.points, pose) - targets
@@ -132,16 +132,16 @@ def run_libigl(drag: Drag, iterations: int) -> None:
     )
 
 
-def instrument() -> Clock:
+def instrument() -> FunctionTimer:
     """Sort the engine's time by part."""
-    clock = Clock(PARTS)
-    clock.wrap(KillingMatrix, "nonzeros", "assemble")
-    clock.wrap(SparseCholesky, "factorize", "factor")
-    clock.wrap(PreconditionedCholesky, "solve", "solve")
-    clock.wrap(KillingSystem, "field", "solve")
-    clock.wrap(AkapDeformer, "_move", "spirals")
-    clock.wrap(AkapDeformer, "_remember", "memory")
-    return clock
+    timer = FunctionTimer(PARTS)
+    timer.wrap(KillingMatrix, "nonzeros", "assemble")
+    timer.wrap(SparseCholesky, "factorize", "factor")
+    timer.wrap(PreconditionedCholesky, "solve", "solve")
+    timer.wrap(KillingSystem, "field", "solve")
+    timer.wrap(AkapDeformer, "_move", "spirals")
+    timer.wrap(AkapDeformer, "_remember", "memory")
+    return timer
 
 
 def main() -> None:
@@ -150,7 +150,7 @@ def main() -> None:
     parser.add_argument("--sizes", type=int, nargs="+", default=[1000, 3000, 10000, 30000])
     parser.add_argument("--no-plain", action="store_true", help="leave out the slow rows")
     options = parser.parse_args()
-    clock = instrument()
+    timer = instrument()
     head = "  ".join(f"{part:>7}"[-8:] for part in PARTS)
     print(
         f"{'milliseconds a frame':<24}{'median':>8} {'95 %':>8}  {head}  fact. iter."
@@ -161,9 +161,9 @@ def main() -> None:
             drag = make(size)
             print(f"{drag.name}, {len(drag.mesh.vertices):,} vertices")
             for memory in (0.0, 1.0):
-                ours = run_ours(drag, clock, memory, exact=False)
+                ours = run_ours(drag, timer, memory, exact=False)
                 if not options.no_plain:
-                    plain = run_ours(drag, clock, memory, exact=True)
+                    plain = run_ours(drag, timer, memory, exact=True)
                     print(f"    {plain / ours:.2f} times as fast as plain")
             if not options.no_plain:
                 run_libigl(drag, 10)

@@ -1,4 +1,4 @@
-"""Writes docs/shortcuts.md from the program's own table of commands.
+"""Writes docs/shortcuts.md from the table of commands.
 
 Run from the project's root: python tools/make_shortcuts.py
 """
@@ -8,31 +8,33 @@ from pathlib import Path
 from akap_editor.app.commands.shortcuts_page import groups
 
 PAGE = Path("docs/shortcuts.md")
-HEAD = """# Keys and mouse
+HEAD = """# Keyboard and mouse
 
-`?` or `F1` shows these keys in the program:
+`?` or `F1` shows these shortcuts in the program:
 
-![The page of keys over the window](images/keys.png)
+![The shortcuts page over the window](images/keys.png)
 
-`Ctrl+K` or `F3` finds every command by a few of its letters, also those without a key:
+`Ctrl+K` or `F3` opens the command palette, which finds every command by a few letters of its name, with or
+without a shortcut:
 
-![The command palette with the letters "sho" typed](images/palette.png)
+![The command palette after typing "sho"](images/palette.png)
 
-Menus open with `F10`, or `Alt` and their first letter; arrows walk through them, `Enter` takes a line, `Esc`
-leaves. `Tab` goes from the drawing to the side panel, `Shift+Tab` to the tools, `F6` from one panel to the
-next: side panel, tools, timeline, second method, scale of colors, first steps, and back to the drawing. There
-and in dialogs, `Tab` and the arrows move from one thing to the next, `Enter` uses it, `Shift+F10` opens its
-menu, `Esc` gives the keys back to the drawing. Pins are set [without a mouse](posing.md#without-a-mouse).
+`F10`, or `Alt` and its first letter, opens a menu; the arrow keys move through it, `Enter` chooses, `Esc`
+closes. `Tab` moves the keyboard focus from the drawing to the side panel, `Shift+Tab` to the toolbar, and
+`F6` from one panel to the next: side panel, toolbar, timeline, second method, color scale, first steps, and
+back to the drawing. In panels and dialogs, `Tab` and the arrow keys move between controls, `Enter` presses
+one, `Shift+F10` opens its menu, and `Esc` returns the focus to the drawing. Pins can be placed
+[without a mouse](posing.md#without-a-mouse), too.
 
-This page is written by `tools/make_shortcuts.py`.
+`tools/make_shortcuts.py` writes this page.
 """
 
 
 def page() -> str:
-    """The whole page."""
+    """Return the page as Markdown."""
     parts = [HEAD]
     for title, lines in groups():
-        rows = "".join(f"| {keys.replace('|', chr(92) + '|')} | {what} |\n" for keys, what in lines)
+        rows = "".join(f"| {keys.replace('|', chr(92) + '|')} | {action} |\n" for keys, action in lines)
         parts.append(f"\n## {title}\n\n| | |\n|---|---|\n{rows}")
     return "".join(parts)
 
