@@ -5,7 +5,7 @@ came out.
 """
 
 import sys
-from collections.abc import Callable
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -42,11 +42,11 @@ def bend(drawing: akap.Drawing, spec: str, degrees: float, moves: int, held: int
     return f"{after.area:.3f} / {after.angle:.3f}{flipped}"
 
 
-def table(head: str, rows: list[tuple[str, Callable[[], list[str]]]]) -> None:
-    """A table for the documentation, row by row."""
+def print_table(head: str, rows: Iterable[tuple[str, list[str]]]) -> None:
+    """Print a Markdown table; each row as soon as it is computed."""
     print(f"\n| {head} |\n|{'---|' * (head.count('|') + 1)}")
     for name, cells in rows:
-        print(f"| {name} | {' | '.join(cells())} |", flush=True)
+        print(f"| {name} | {' | '.join(cells)} |", flush=True)
 
 
 def main() -> None:
@@ -64,15 +64,12 @@ def main() -> None:
             bend(drawing, "mls", degrees, 1),
         ]
 
-    rows = [(f"{degrees}°", lambda degrees=degrees: by_bend(degrees)) for degrees in range(177, 212, 5)]
-    table("bend | Cauchy–Green | ARAP | AKAP | MLS", rows)
+    rows = ((f"{degrees}°", by_bend(degrees)) for degrees in range(177, 212, 5))
+    print_table("bend | Cauchy–Green | ARAP | AKAP | MLS", rows)
     print(f"| {PAPER} |")
     spec = "akap:exact,max_step=100"  # one field a move, as in the paper
-    rows = [
-        (f"{moves}", lambda moves=moves: [bend(drawing, spec, 207, moves)])
-        for moves in (8, 9, 10, 12, 16, 30, 60)
-    ]
-    table("moves of 207° | AKAP, one field a move", rows)
+    rows = ((f"{moves}", [bend(drawing, spec, 207, moves)]) for moves in (8, 9, 10, 12, 16, 30, 60))
+    print_table("moves of 207° | AKAP, one field a move", rows)
 
 
 if __name__ == "__main__":

@@ -76,7 +76,7 @@ def instrument(timer: FunctionTimer, window: Window) -> list[float]:
     timer.wrap(Renderer, "show", "upload")
     timer.wrap(Renderer, "draw", "draw")
     # Without a screen no frame ever ends by itself, and what was drawn for it stays in memory.
-    window_module.glfw.swap_buffers = lambda _: window.ctx.finish()
+    window_module.glfw.swap_buffers = lambda _: window.ctx.finish()  # type: ignore[assignment]
     timer.wrap(window_module.glfw, "swap_buffers", "draw")
     timer.wrap(Window, "_frame", "interface")
     steps: list[float] = []
@@ -104,7 +104,7 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
             window.frame()
         steps = instrument(timer, window)
         hand = Hand(window, seconds)
-        window_module.glfw.wait_events_timeout = hand.sleep
+        window_module.glfw.wait_events_timeout = hand.sleep  # type: ignore[assignment]
         rows: list[dict[str, float]] = []
         before = window.frames, time.perf_counter()
         while hand.passed < seconds:

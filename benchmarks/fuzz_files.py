@@ -53,7 +53,7 @@ BOMB_SHARE = 1 / 8000
 Rng = np.random.Generator
 Entries = list[tuple[str, bytes]]
 
-JUNK = [
+JUNK: list[Any] = [
     *(None, True, False, -1, 0, 1, 2, 7, 2**31 - 1, 2**31, 2**53, 2**64, 10**400, 0.5, -0.0, 1e308, -1e308),
     *(float("nan"), float("inf"), "", "x", "../../etc/passwd", "/etc/passwd", "\ud800", "a" * 5000),
     *([], [1, 2], [1e308] * 3, [[]], [[0, 0]] * 3, {}, {"id": 1}),
@@ -77,7 +77,10 @@ def seed_documents() -> list[Document]:
         width = 2 * (columns - 1)
         image = np.random.default_rng(columns).integers(0, 256, (4, width, 4), dtype=np.uint8)
         uv = (vertices / [width, 4]).astype(np.float32)
-        pins = Pin(1, 0, [0.25, 0.25, 0.5], [0.1 + 0.2, -3.0]), Pin(7, 1, [1.0, 0.0, 0.0], [1e3, 5e-3])
+        pins = (
+            Pin(1, 0, np.array([0.25, 0.25, 0.5]), np.array([0.1 + 0.2, -3.0])),
+            Pin(7, 1, np.array([1.0, 0.0, 0.0]), np.array([1e3, 5e-3])),
+        )
         poses = NamedPose("Wave", vertices + 1.0), NamedPose("Rest", vertices)
         state = EditState(pins, vertices * 1.25 + 0.5, poses=poses)
         documents.append(Document(Drawing(image, mesh, uv, "seed"), state))

@@ -6,6 +6,7 @@ Run from the project's root: python tools/make_experiments.py
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -107,8 +108,8 @@ def circle_tail() -> Recording:
     """Section 3.2: lead the raptor's tail around two loops, one in each direction, back to its start."""
     script = ScriptedSession("raptor", [(352, 740), (655, 745), (520, 400)], vertices=1000)
     tail = script.add_pin((32, 215))
-    for sign in (-1, 1):
-        script.drag(tail, arc((150, 130), (32, 215), lambda t, s=sign: s * 2 * np.pi * t), 3.0)
+    for angle in (-2 * np.pi, 2 * np.pi):
+        script.drag(tail, arc((150, 130), (32, 215), partial(np.multiply, angle)), 3.0)
     return script.session.recording
 
 

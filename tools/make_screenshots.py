@@ -1,22 +1,23 @@
-"""Makes the pictures in README and docs from the running program, so that they never go stale.
+"""Makes the screenshots in README and docs from the running program.
 
-Run from the project's root, all pictures or those that are named:
+Run from the project's root, for all screenshots or for some:
 
     python tools/make_screenshots.py [NAME ...] [--scale 2] [--folder docs/images]
 
-Needs no display: the window opens on GLFW's null platform. A new picture is one function with @shot here.
+Needs no display: the window opens on GLFW's null platform. To add a screenshot, add a function with @shot.
 """
 
 from imgui_bundle import imgui  # isort: skip
 import argparse
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
 
 from akap_editor.app.app_state import AppState, Palette
 from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
+from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.preferences import Preferences
 from akap_editor.app.window import SIZE, Window
 from akap_editor.editor.document.document import Document, new_document
@@ -25,6 +26,7 @@ from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
 from akap_editor.editor.session.edits import PaintStiffness
 from akap_editor.editor.session.pin_edits import hold_angles
 from akap_editor.editor.session.replay import replay
+from akap_editor.editor.session.session import Session
 from akap_editor.editor.tools.keyboard_pointer import toggle_keyboard_pointer
 from akap_editor.editor.tools.rotate import RING
 from akap_editor.io.akap.recording import read_recording
@@ -32,14 +34,14 @@ from akap_editor.io.images import read_image, write_png
 from akap_editor.resources import resource
 
 FOLDER = Path("docs/images")
-SETTLE = 12  # frames in which dialogs have their size and numbers their values
+SETTLE_FRAMES = 12  # until dialogs have their size and measurements their values
 RECENT = ("dragon.akap", "walk cycle/goose 03.png", "sketches/robot.webp")
 
 SHOTS: dict[str, Callable[[Window], None]] = {}
 
 
 def shot(name: str) -> Callable[[Callable[[Window], None]], Callable[[Window], None]]:
-    """Register what brings the window from the posed elephant to what NAME.png shows."""
+    """Register a function that prepares a window with the posed elephant for the screenshot NAME.png."""
 
     def register(prepare: Callable[[Window], None]) -> Callable[[Window], None]:
         SHOTS[name] = prepare
@@ -50,7 +52,7 @@ def shot(name: str) -> Callable[[Callable[[Window], None]], Callable[[Window], N
 
 @cache
 def posed_elephant() -> Document:
-    """The elephant as the bundled recording leaves it."""
+    """Return the elephant in the last pose of the bundled recording."""
     recording = read_recording(resource("assets", "recordings", "elephant.akaprec"))
     image = read_image(resource("assets", "drawings", "elephant.png"))
     document = new_document(make_drawing(image, name="elephant"))
@@ -58,14 +60,14 @@ def posed_elephant() -> Document:
     return document.with_state(last.state)
 
 
-def rest(window: Window) -> None:
-    """The elephant without pins instead."""
+def show_rest_pose(window: Window) -> None:
+    """Show the elephant at rest, without pins."""
     window.state.show(new_document(posed_elephant().drawing))
 
 
 @shot("editor")
 def editor(window: Window) -> None:
-    """The editor, and nothing else."""
+    """The posed elephant."""
 
 
 @shot("mesh")
@@ -85,35 +87,35 @@ def start(window: Window) -> None:
 
 @shot("first-steps")
 def first_steps(window: Window) -> None:
-    """What a newcomer sees."""
-    rest(window)
+    """The first steps for newcomers."""
+    show_rest_pose(window)
     window.state.first_steps = True
 
 
 @shot("palette")
 def palette(window: Window) -> None:
-    """The command palette while something is searched."""
+    """The command palette after a few letters."""
     window.state.palette = Palette("sho")
 
 
 @shot("keys")
 def keys(window: Window) -> None:
-    """The page of keys."""
+    """The shortcuts page."""
     window.state.keys = True
 
 
 @shot("pins")
 def pins(window: Window) -> None:
-    """Two pins selected, and the values of one of them."""
+    """Two selected pins, and the values of one of them."""
     state = window.state
-    chosen = [pin.id for pin in posed_elephant().state.pins][-2:]
-    state.editor.select(chosen)
-    state.editor.request = PinRequest("values", chosen[-1])
+    last_two = [pin.id for pin in posed_elephant().state.pins][-2:]
+    state.editor.select(last_two)
+    state.editor.request = PinRequest("values", last_two[-1])
 
 
 @shot("crosshair")
 def crosshair(window: Window) -> None:
-    """The pointer that is moved by keys, where a pin may be added."""
+    """The keyboard pointer on the drawing."""
     editor = window.state.editor
     width, height = posed_elephant().drawing.size
     editor.last_pointer = editor.camera.to_screen((0.42 * width, 0.5 * height))
@@ -122,51 +124,52 @@ def crosshair(window: Window) -> None:
 
 @shot("ring")
 def ring(window: Window) -> None:
-    """The drawing while it is turned around a pin, and another pin that holds its angle."""
+    """The drawing being rotated around a pin; another pin holds its angle."""
     editor = window.state.editor
     pins = [pin.id for pin in posed_elephant().state.pins]
     editor.edit("Hold angle", lambda session: hold_angles(session, pins[:1]))
     x, y = editor.pins_on_screen()[pins[-1]]
-    way = [(RING * np.cos(turn), RING * np.sin(turn)) for turn in np.radians((0, 15, 30, 35))]
-    at = [(x + window.scale * dx, y + window.scale * dy) for dx, dy in way]
+    radius = window.scale * RING
+    path = [(x + radius * np.cos(a), y + radius * np.sin(a)) for a in np.radians((0, 15, 30, 35))]
     editor.handle_event(KeyEvent("alt"))
-    editor.handle_event(PointerEvent("move", at[0]))
-    editor.handle_event(PointerEvent("press", at[0], alt=True))
-    for place in at[1:]:
-        editor.handle_event(PointerEvent("move", place, alt=True))
+    editor.handle_event(PointerEvent("move", path[0]))
+    editor.handle_event(PointerEvent("press", path[0], alt=True))
+    for point in path[1:]:
+        editor.handle_event(PointerEvent("move", point, alt=True))
 
 
 @shot("brush")
 def brush(window: Window) -> None:
-    """The back and a tusk of the elephant made stiff, and the brush."""
-    rest(window)
+    """The stiffness brush; the back and a tusk of the elephant are stiff."""
+    show_rest_pose(window)
     editor = window.state.editor
     editor.chosen_tool = "brush"
     width, height = posed_elephant().drawing.size
-    for factor, places in (
+    for factor, points in (
         (1000.0, [(0.30, 0.35), (0.36, 0.42)]),
         (10.0, [(0.70, 0.55), (0.78, 0.50)]),
     ):
-        dabs = [(x * width, y * height) for x, y in places]
-        editor.edit("Stiffen", lambda session, f=factor, d=dabs: session.apply(PaintStiffness(d, 110.0, f)))
+        dabs = [(x * width, y * height) for x, y in points]
+        stroke = PaintStiffness(dabs, 110.0, factor)
+        editor.edit("Paint Stiffness", partial(Session.apply, edit=stroke))
     editor.handle_event(PointerEvent("move", editor.camera.to_screen((0.5 * width, 0.4 * height))))
 
 
 @shot("field")
 def field(window: Window) -> None:
-    """The vector fields in the middle of a drag."""
+    """The vector fields during a drag."""
     state, camera = window.state, window.state.editor.camera
     state.view.vectors = True
     pin = posed_elephant().state.pins[-1]
     x, y = camera.to_screen((pin.target[0], pin.target[1]))
     state.editor.handle_event(PointerEvent("press", (x, y)))
-    for way in (10.0, 40.0):
-        state.editor.handle_event(PointerEvent("move", (x - way, y)))
+    for distance in (10.0, 40.0):
+        state.editor.handle_event(PointerEvent("move", (x - distance, y)))
 
 
 @shot("heat")
 def heat(window: Window) -> None:
-    """The map of distortion, with its scale."""
+    """The distortion map with its color scale."""
     window.state.view.heat = "angle"
     window.state.show_pins = False
 
@@ -179,18 +182,18 @@ def ghost(window: Window) -> None:
 
 @shot("split")
 def split(window: Window) -> None:
-    """Two methods side by side."""
+    """Two methods compared on the same pins."""
     window.state.split = True
 
 
 @shot("export")
 def export(window: Window) -> None:
     """The export dialog."""
-    window.state.ask_export()
+    window.state.dialog(ExportPoseDialog).open(window.state)
 
 
-def animated(window: Window) -> None:
-    """Three keyframes of the elephant's trunk on the timeline, looked at between the first two."""
+def add_keyframes(window: Window) -> None:
+    """Add three keyframes and poses of the elephant's trunk; show a time between the first two."""
     state, editor = window.state, window.state.editor
     state.show_timeline, state.timeline = True, "keyframes"
     window.frame()
@@ -200,6 +203,7 @@ def animated(window: Window) -> None:
     state.keyframe_playback.put(0.0, rest)
     state.keyframe_playback.put(0.8, posed_elephant().state.positions)
     editor.place_pin(pin.id, (x - 120.0, y + 260.0))
+    assert editor.session is not None
     editor.session.settle()
     state.keyframe_playback.put(1.6)
     for time, name in ((0.0, "Rest"), (0.8, "Trunk up"), (1.6, "Reach")):
@@ -212,7 +216,7 @@ def animated(window: Window) -> None:
 @shot("keyframes")
 def keyframes(window: Window) -> None:
     """Keyframes on the timeline, with onion skin."""
-    animated(window)
+    add_keyframes(window)
     window.state.show_pins = False
     window.state.keyframe_playback.onion.shown = True
     window.state.keyframe_playback.chosen = frozenset({0.8})
@@ -220,7 +224,7 @@ def keyframes(window: Window) -> None:
 
 @shot("timeline")
 def timeline(window: Window) -> None:
-    """A recording that was opened, looked at in its middle."""
+    """An opened recording at a time in its middle."""
     window.state.open_path(resource("assets", "recordings", "elephant.akaprec"))
     while window.state.waiting:
         window.frame()
@@ -231,13 +235,13 @@ def timeline(window: Window) -> None:
 
 @shot("animation")
 def animation(window: Window) -> None:
-    """The dialog for exports of the timeline."""
-    animated(window)
+    """The export dialog of the timeline."""
+    add_keyframes(window)
     window.state.dialog(ExportAnimationDialog).open(window.state)
 
 
 def take(window: Window, name: str, folder: Path) -> None:
-    """Write one picture, starting from the posed elephant."""
+    """Write one screenshot, starting from the posed elephant."""
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         imgui.internal.close_popup_to_level(0, False)
     imgui.set_window_focus(None)
@@ -248,20 +252,21 @@ def take(window: Window, name: str, folder: Path) -> None:
     state.editor.mark_saved(Path("elephant.akap"))
     window.frame()
     SHOTS[name](window)
-    for _ in range(SETTLE):
+    for _ in range(SETTLE_FRAMES):
         window.frame()
-    shots: list[np.ndarray] = []
-    window.after_draw.append(lambda: shots.append(window.screenshot()))
+    screenshots: list[np.ndarray] = []
+    window.after_draw.append(lambda: screenshots.append(window.screenshot()))
     window.frame()
     window.after_draw.clear()
     assert not state.error, state.error
-    write_png(folder / f"{name}.png", np.dstack([shots[0], np.full(shots[0].shape[:2], 255, np.uint8)]))
-    print(folder / f"{name}.png")
+    (rgb,), path = screenshots, folder / f"{name}.png"
+    write_png(path, np.dstack([rgb, np.full(rgb.shape[:2], 255, np.uint8)]))
+    print(path)
 
 
 def main() -> None:
-    """All pictures, or those that are named."""
-    parser = argparse.ArgumentParser(description="Makes the pictures in README and docs.")
+    """Make all screenshots, or those named on the command line."""
+    parser = argparse.ArgumentParser(description="Makes the screenshots in README and docs.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(SHOTS))
     parser.add_argument("--scale", type=float, default=1.0)
     parser.add_argument("--folder", type=Path, default=FOLDER)
