@@ -9,6 +9,8 @@ in `PARTS`, and of the steps that the engine's thread computes meanwhile; and th
 
 import os
 
+from akap_editor.editor import gestures
+
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -99,7 +101,7 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
         window.state.show(new_document(make_drawing(image, vertices=vertices, name=name)))
         editor = window.state.editor
         for pin in PINS:
-            editor.add_pin(pin)
+            gestures.add_pin(editor, pin)
         for _ in range(20):  # panels find their places, and the drawing is fitted between them
             window.frame()
         steps = instrument(timer, window)

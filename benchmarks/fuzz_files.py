@@ -12,6 +12,8 @@ on any other exception, a case of over 20 seconds, or a gigabyte of memory. A fa
 
 import os
 
+from akap_editor.editor import gestures
+
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import argparse
@@ -94,17 +96,17 @@ def seed_recording(document: Document) -> bytes:
     session = editor.session
     assert session is not None
     for at in ((1.0, 1.0), (1.5, 3.0)):
-        editor.add_pin(at)
+        gestures.add_pin(editor, at)
     session.begin("Drag")
     session.apply(SetTargets({1: (1.2, 0.8)}))
     for _ in range(3):
         session.step()
     session.commit()
-    editor.apply_pose(session.state.pins, session.state.positions * 1.01)
-    editor.reset_pose()
+    gestures.apply_pose(editor, session.state.pins, session.state.positions * 1.01)
+    gestures.reset_pose(editor)
     editor.undo()
     editor.redo()
-    editor.remove_pins({2})
+    gestures.remove_pins(editor, {2})
     return session.recording.to_text().encode()
 
 

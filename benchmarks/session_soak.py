@@ -10,6 +10,8 @@ otherwise, and after any exception, the exit code is 1.
 
 import os
 
+from akap_editor.editor import gestures
+
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -138,12 +140,12 @@ class Soak:
         if len(state.pins) < MAX_PINS:
             corners = state.positions[mesh.faces[self.rng.integers(len(mesh.faces))]]
             x, y = corners.mean(axis=0)
-            self.editor.add_pin((float(x), float(y)))
+            gestures.add_pin(self.editor, (float(x), float(y)))
 
     def _remove_pin(self) -> None:
         pins = [pin.id for pin in self.session.state.pins]
         if pins:
-            self.editor.remove_pins({int(self.rng.choice(pins))})
+            gestures.remove_pins(self.editor, {int(self.rng.choice(pins))})
 
     def _undo(self) -> None:
         for _ in range(int(self.rng.integers(1, 4))):
@@ -153,17 +155,17 @@ class Soak:
         self.editor.redo()
 
     def _reset(self) -> None:
-        self.editor.reset_pose()
+        gestures.reset_pose(self.editor)
 
     def _bake(self) -> None:
-        self.editor.bake_pose()
+        gestures.set_rest_pose(self.editor)
         self.editor.undo()  # otherwise each new rest pose distorts the drawing further
 
     def _pose(self) -> None:
         path = self.folder / "a.pose.json"
         save_pose(self.session.document, path)
         pose = load_pose(path, self.session.drawing)
-        self.editor.apply_pose(pose.pins, pose.positions)
+        gestures.apply_pose(self.editor, pose.pins, pose.positions)
 
     def _density(self) -> None:
         drawing = self.session.drawing

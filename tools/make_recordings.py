@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.editor import Editor
@@ -38,7 +39,7 @@ class ScriptedPointer:
 
     def add_pin(self, x: float, y: float) -> int:
         """Add a pin at a point of the drawing; return its id."""
-        pin = self.editor.add_pin((x, y))
+        pin = gestures.add_pin(self.editor, (x, y))
         assert pin is not None
         self.pause(0.1)
         return pin

@@ -10,7 +10,7 @@ Needs no display: the window opens on GLFW's null platform. To add a screenshot,
 from imgui_bundle import imgui  # isort: skip
 import argparse
 from collections.abc import Callable
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -20,13 +20,13 @@ from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.preferences import Preferences
 from akap_editor.app.window import SIZE, Window
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
 from akap_editor.editor.session.edits import PaintStiffness
 from akap_editor.editor.session.pin_edits import hold_angles
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.session.session import Session
 from akap_editor.editor.tools.keyboard_pointer import toggle_keyboard_pointer
 from akap_editor.editor.tools.rotate import RING
 from akap_editor.io.akap.recording import read_recording
@@ -150,8 +150,7 @@ def brush(window: Window) -> None:
         (10.0, [(0.70, 0.55), (0.78, 0.50)]),
     ):
         dabs = [(x * width, y * height) for x, y in points]
-        stroke = PaintStiffness(dabs, 110.0, factor)
-        editor.edit("Paint Stiffness", partial(Session.apply, edit=stroke))
+        editor.apply("Paint Stiffness", PaintStiffness(dabs, 110.0, factor))
     editor.handle_event(PointerEvent("move", editor.camera.to_screen((0.5 * width, 0.4 * height))))
 
 
@@ -202,13 +201,13 @@ def add_keyframes(window: Window) -> None:
     rest = posed_elephant().drawing.mesh.vertices
     state.keyframe_playback.put(0.0, rest)
     state.keyframe_playback.put(0.8, posed_elephant().state.positions)
-    editor.place_pin(pin.id, (x - 120.0, y + 260.0))
+    gestures.move_pin(editor, pin.id, (x - 120.0, y + 260.0))
     assert editor.session is not None
     editor.session.settle()
     state.keyframe_playback.put(1.6)
     for time, name in ((0.0, "Rest"), (0.8, "Trunk up"), (1.6, "Reach")):
         state.keyframe_playback.scrub(time)
-        editor.keep_pose(name)
+        gestures.add_pose(editor, name)
     state.keyframe_playback.scrub(0.45)
     editor.select(())
 

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
+from ..editor import gestures
 from ..editor.animation.keyframe_playback import KeyframePlayback
 from ..editor.animation.playback import Playback
 from ..editor.animation.pose_blend import PoseBlend
@@ -225,7 +226,7 @@ class AppState:
 
     def change_settings(self, settings: Settings) -> None:
         """Bend differently from now on, new drawings too. Raises InputError on what no method knows."""
-        self.editor.set_settings(settings)
+        gestures.set_settings(self.editor, settings)
         values = {"method": settings.method, "parameters": dict(settings.parameters)}
         self.preferences.put("settings", values)
 

@@ -3,6 +3,7 @@
 from functools import partial
 from pathlib import Path
 
+from ..editor import gestures
 from ..io.akap.pose import POSE_SUFFIX, load_pose, save_pose
 from .app_state import AppState
 from .dialogs.file_dialog import FileRequest
@@ -34,7 +35,7 @@ def apply(state: AppState, path: Path) -> None:
     def take() -> None:
         assert state.document is not None
         pose = load_pose(path, state.document.drawing)
-        state.editor.apply_pose(pose.pins, pose.positions)
+        gestures.apply_pose(state.editor, pose.pins, pose.positions)
         state.notice = f"Applied {path.name}"
 
     state.attempt(take)

@@ -1,19 +1,22 @@
 """The one door through which a window, a script or a test changes anything."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import Literal
 
 from ..errors import SolverError
+from ..geometry.mesh import TriMesh
+from ..geometry.validation import Floats
 from .camera import Camera, Point, fit
 from .document.document import Document
 from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
-from .gestures import Edits
+from .gestures import NudgeSeries, T
+from .pin_trails import Trails
+from .session.edits import Edit
 from .session.session import Session
 from .session.stepper import INLINE
-from .sight import Sight
 from .tools.base import Tool, distance
 from .tools.keyboard_pointer import KeyboardPointer
 from .tools.pins import ZOOM_STEP, Idle
@@ -25,14 +28,17 @@ NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
 HELD_KEYS = ("space", "alt", "shift", "h")  # what they mean lasts as long as they are held
 
 
-class Editor(Edits):
-    """A session with a selection, a pointer and a camera.
+class Editor:
+    """A session with the selected pins, the active tool, the pointer and the camera.
 
-    worker: computes the steps of `advance`, one at a time; by default they are done at once.
+    clock: returns seconds, for the recording and for nudges; worker: computes the steps of `advance`, one at
+    a time; by default they are computed at once.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic, worker: Executor = INLINE) -> None:
-        super().__init__(clock)
+        self.session: Session | None = None
+        self.selection: frozenset[int] = frozenset()
+        self.trails = Trails()
         self.worker = worker
         self.camera = Camera()
         self._canvas = (0.0, 0.0, 1280.0, 800.0)
@@ -46,8 +52,9 @@ class Editor(Edits):
         self.request: PinRequest | None = None
         self.newest_pin: int | None = None  # added by the last click: a second one on it is no double click
         self.tool: Tool = Idle(self)
-        self._sight = Sight()
         self._clock = clock
+        self._nudges = NudgeSeries(clock)
+        self._last_hit_test: tuple[TriMesh, Floats, Point, bool] | None = None  # mesh, pose, place, result
 
     # -- document ------------------------------------------------------------------------------------------
 
@@ -112,7 +119,7 @@ class Editor(Edits):
         elif event.key in ARROWS and event.pressed:
             size = BIG_NUDGE if event.shift else NUDGE
             x, y = ARROWS[event.key]
-            self.nudge_selected(size * x, size * y)
+            self._nudges.nudge(self, size * x, size * y)
 
     def pointer_left(self) -> None:
         """The mouse is no longer over the canvas."""
@@ -138,6 +145,77 @@ class Editor(Edits):
     def hint(self) -> str:
         """What can be done now, in words."""
         return self.tool.hint
+
+    # -- edits and selection -------------------------------------------------------------------------------
+
+    def edit(self, label: str, change: Callable[[Session], T]) -> T | None:
+        """Change the session in one gesture, and return what ``change`` does; on an error nothing changes.
+
+        Does nothing and returns None without a session or during a gesture.
+        """
+        if self.session is None or self.busy:
+            return None
+        self.session.begin(label)
+        try:
+            result = change(self.session)
+        except Exception:
+            self.session.abort()
+            raise
+        self.session.commit()
+        self._drop_missing_pins()
+        return result
+
+    def apply(self, label: str, *edits: Edit) -> None:
+        """Apply edits in one gesture; on an error nothing changes. Does nothing during a gesture."""
+
+        def apply_all(session: Session) -> None:
+            for edit in edits:
+                session.apply(edit)
+
+        self.edit(label, apply_all)
+
+    def undo(self) -> None:
+        """Undo the last gesture; during a gesture, cancel it."""
+        self.trails.clear()
+        if self.busy:
+            self.cancel()
+        elif self.session is not None:
+            self.session.undo()
+            self._drop_missing_pins()
+
+    def redo(self) -> None:
+        """Redo the gesture that was undone last."""
+        self.trails.clear()
+        if self.session is not None and not self.busy:
+            self.session.redo()
+            self._drop_missing_pins()
+
+    def undo_or_redo_to(self, depth: int) -> None:
+        """Undo or redo until ``depth`` gestures can be undone, or as many as there are."""
+        if self.session is None or self.busy:
+            return
+        history = self.session.history
+        while history.depth > max(depth, 0):
+            self.undo()
+        while history.depth < depth and history.redo_label is not None:
+            self.redo()
+
+    def select(self, pins: Iterable[int]) -> None:
+        """Select exactly these pins, by id."""
+        self.selection = frozenset(pins)
+        self._drop_missing_pins()
+
+    def select_all(self) -> None:
+        """Select every pin."""
+        if self.session is not None:
+            self.select(pin.id for pin in self.session.state.pins)
+
+    def _drop_missing_pins(self) -> None:
+        """Keep the selection and the popup request to pins that exist."""
+        pins = set() if self.session is None else {pin.id for pin in self.session.state.pins}
+        self.selection &= pins
+        if self.request is not None and self.request.pin not in pins:
+            self.request = None
 
     # -- motion --------------------------------------------------------------------------------------------
 
@@ -193,12 +271,6 @@ class Editor(Edits):
 
     # -- view ----------------------------------------------------------------------------------------------
 
-    def _prune_selection(self) -> None:
-        super()._prune_selection()
-        there = () if self.session is None else [pin.id for pin in self.session.state.pins]
-        if self.request is not None and self.request.pin not in there:
-            self.request = None
-
     def request_pin_popup(self, kind: Literal["values", "menu"], pin: int) -> None:
         """Ask the window to open something for a pin, which becomes selected."""
         if pin not in self.selection or kind == "values":
@@ -218,6 +290,20 @@ class Editor(Edits):
         best = min(near, default=None)
         return best[1] if best is not None and best[0] <= PICK_RADIUS * self.ui_scale else None
 
+    def is_on_drawing(self, position: Point) -> bool:
+        """Whether the drawing is under a point of the screen. Caches the last result."""
+        if self.session is None:
+            return False
+        mesh, pose, place = (
+            self.session.drawing.mesh,
+            self.session.state.positions,
+            self.camera.to_drawing(position),
+        )
+        last = self._last_hit_test
+        if last is None or last[0] is not mesh or last[1] is not pose or last[2] != place:
+            last = self._last_hit_test = mesh, pose, place, mesh.find(place, pose) is not None
+        return last[3]
+
     @property
     def hovered_pin(self) -> int | None:
         """The pin under the pointer, if a press would take it."""
@@ -234,7 +320,7 @@ class Editor(Edits):
             return False
         if self.hovered_pin is not None:
             return False
-        return self._sight.sees_drawing(self.session, self.camera.to_drawing(self.pointer))
+        return self.is_on_drawing(self.pointer)
 
     @property
     def pans_on_drag(self) -> bool:

@@ -1,189 +1,199 @@
-"""What can be done to an open session, one gesture each."""
+"""Functions that edit an open session, each in one gesture: one entry of the history."""
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
+from typing import Protocol, TypeVar
 
 from ..geometry.validation import Floats
 from .camera import Point
 from .document.named_poses import free_name
 from .document.pin import Pin
 from .document.settings import Settings
-from .nudges import Nudges
-from .pin_trails import Trails
+from .session import pin_edits
 from .session.edits import (
     AddPose,
     DeletePose,
+    Edit,
     ResetPose,
+    SetAngles,
     SetPins,
     SetPose,
     SetRestPose,
     SetSettings,
     SetTargets,
 )
-from .session.pin_edits import add_pin, remove_pins, set_depths
+from .session.history import Entry
 from .session.session import Session
 
+T = TypeVar("T")
 
-class Edits(ABC):
-    """A session with a selection of its pins, and whatever changes the two at once. clock: in seconds."""
+SERIES_PAUSE = 1.0  # seconds: a longer pause between two nudges starts a new gesture
 
-    def __init__(self, clock: Callable[[], float]) -> None:
-        self.session: Session | None = None
-        self.selection: frozenset[int] = frozenset()
-        self.trails = Trails()
-        self._nudges = Nudges(clock)
+
+class EditContext(Protocol):
+    """An open session with the pins that are selected, and the way to edit it in one gesture."""
+
+    session: Session | None
+    selection: frozenset[int]
 
     @property
-    @abstractmethod
     def busy(self) -> bool:
-        """Whether a gesture is under way."""
+        """Whether a gesture is under way; no other one can start before its end."""
 
-    @abstractmethod
-    def cancel(self) -> None:
-        """The one way out of a gesture: Escape, focus loss and errors all come here."""
+    def edit(self, label: str, change: Callable[[Session], T]) -> T | None:
+        """Change the session in one gesture, and return what ``change`` does.
 
-    # -- one gesture each ----------------------------------------------------------------------------------
+        Does nothing and returns None without a session or during a gesture.
+        """
 
-    def add_pin(self, at: Point) -> int | None:
-        """A pin at a place in the drawing (pixels); its id, or None beside the drawing."""
-        if self.session is None or self.busy:
-            return None
-        self.session.begin("Add pin")
-        try:
-            added = add_pin(self.session, at)
-        except Exception:
-            self.session.abort()
-            raise
-        self.session.commit()
-        if added is not None:
-            self.select({added})
-        return added
+    def apply(self, label: str, *edits: Edit) -> None:
+        """Apply edits in one gesture; does nothing without a session or during a gesture."""
 
-    def remove_pins(self, ids: Iterable[int]) -> None:
-        """Take pins off the drawing; it keeps its pose."""
-        if self.session is None:
-            return
-        gone = frozenset(ids) & {pin.id for pin in self.session.state.pins}
-        if gone:
-            label = "Remove pin" if len(gone) == 1 else f"Remove {len(gone)} pins"
-            self.edit(label, lambda session: remove_pins(session, gone))
-
-    def remove_selected(self) -> None:
-        """Take the selected pins off the drawing."""
-        self.remove_pins(self.selection)
-
-    def remove_last(self) -> None:
-        """Take off the pin that was added last."""
-        if self.session is not None and self.session.state.pins:
-            self.remove_pins({self.session.state.pins[-1].id})
-
-    def place_pin(self, pin_id: int, at: Point) -> None:
-        """Send a pin to a place (pixels); the drawing follows. Raises InputError on an unknown id or NaN."""
-        self.edit("Place pin", lambda session: session.apply(SetTargets({pin_id: at})))
-
-    def set_depth(self, pin_id: int, depth: int) -> None:
-        """Bring a pin to the front or back. Raises InputError on a depth out of range."""
-        self.edit("Set depth", lambda session: set_depths(session, {pin_id: depth}))
-
-    def shift_depth(self, by: int) -> None:
-        """Bring the selected pins so much to the front, or to the back."""
-        if self.session is not None and self.selection:
-            depths = {pin.id: pin.depth + by for pin in self.session.state.pins if pin.id in self.selection}
-            label = "Bring forward" if by > 0 else "Send back"
-            self.edit(label, lambda session: set_depths(session, depths))
-
-    def nudge_selected(self, dx: float, dy: float) -> None:
-        """Send the selected pins so many pixels on; nudges in a row are one gesture."""
-        if self.session is not None and not self.busy and self.selection:
-            self._nudges.move(self.session, self.selection, dx, dy)
-
-    def reset_pose(self) -> None:
-        """The rest pose, with the pins where they then are."""
-        self.edit("Reset pose", lambda session: session.apply(ResetPose()))
-
-    def bake_pose(self) -> None:
-        """Make the pose the rest pose; nothing moves. Raises InputError where faces are flipped."""
-        self.edit("Make pose the rest pose", lambda session: session.apply(SetRestPose()))
-
-    def keep_pose(self, name: str | None = None) -> None:
-        """Remember the current pose by a name, by default "Pose" and a number. Raises InputError."""
-        if self.session is not None:
-            wanted = name if name is not None else free_name(self.session.state.poses)
-            self.edit("Keep pose", lambda session: session.apply(AddPose(wanted)))
-
-    def forget_pose(self, name: str) -> None:
-        """Forget a pose; undo brings it back."""
-        self.edit("Forget pose", lambda session: session.apply(DeletePose(name)))
-
-    def set_pose(self, positions: Floats, label: str = "Apply pose") -> None:
-        """Take over a pose (n, 2) of this mesh; pins go with it. Raises InputError."""
-        self.edit(label, lambda session: session.apply(SetPose(positions)))
-
-    def apply_pose(self, pins: tuple[Pin, ...], positions: Floats) -> None:
-        """Take over pins and pose (n, 2) from another session on the same mesh. Raises InputError."""
-
-        def take(session: Session) -> None:
-            session.apply(SetPins(pins))
-            session.apply(SetPose(positions))
-
-        self.edit("Apply pose", take)
-
-    def set_settings(self, settings: Settings) -> None:
-        """Bend differently from now on. Raises InputError on unknown methods or parameters."""
-        if self.session is not None and settings != self.session.state.settings:
-            self.edit("Change settings", lambda session: session.apply(SetSettings(settings)))
-
-    def undo(self) -> None:
-        """Take back the last gesture; in the middle of one, that one."""
-        self.trails.clear()
-        if self.busy:
-            self.cancel()
-        elif self.session is not None:
-            self.session.undo()
-            self._prune_selection()
-
-    def redo(self) -> None:
-        """Do again what was undone."""
-        self.trails.clear()
-        if self.session is not None and not self.busy:
-            self.session.redo()
-            self._prune_selection()
-
-    def go_to(self, depth: int) -> None:
-        """Undo or redo until so many gestures can be undone, or there are no more."""
-        if self.session is None or self.busy:
-            return
-        history = self.session.history
-        while history.depth > max(depth, 0):
-            self.undo()
-        while history.depth < depth and history.redo_label is not None:
-            self.redo()
-
-    def edit(self, label: str, change: Callable[[Session], None]) -> None:
-        """Change the session in one gesture; what goes wrong is taken back and raised."""
-        if self.session is None or self.busy:
-            return
-        self.session.begin(label)
-        try:
-            change(self.session)
-        except Exception:
-            self.session.abort()
-            raise
-        self.session.commit()
-        self._prune_selection()
-
-    # -- selection -----------------------------------------------------------------------------------------
-
-    def select(self, ids: Iterable[int]) -> None:
+    def select(self, pins: Iterable[int]) -> None:
         """Select exactly these pins."""
-        self.selection = frozenset(ids)
-        self._prune_selection()
 
-    def select_all(self) -> None:
-        """Select every pin."""
-        if self.session is not None:
-            self.select(pin.id for pin in self.session.state.pins)
 
-    def _prune_selection(self) -> None:
-        there = {pin.id for pin in self.session.state.pins} if self.session is not None else set()
-        self.selection &= there
+# -- pins ----------------------------------------------------------------------------------------------------
+
+
+def add_pin(editor: EditContext, place: Point) -> int | None:
+    """Add a pin at a place of the drawing (pixels) and select it.
+
+    Returns its id; None beside the drawing. Raises InputError if the place is not finite.
+    """
+    pin = editor.edit("Add pin", lambda session: pin_edits.add_pin(session, place))
+    if pin is not None:
+        editor.select({pin})
+    return pin
+
+
+def remove_pins(editor: EditContext, pins: Iterable[int]) -> None:
+    """Remove pins by their ids; the drawing keeps its pose. Unknown ids are ignored."""
+    if editor.session is None:
+        return
+    removed = frozenset(pins) & {pin.id for pin in editor.session.state.pins}
+    if removed:
+        label = "Remove pin" if len(removed) == 1 else f"Remove {len(removed)} pins"
+        editor.edit(label, lambda session: pin_edits.remove_pins(session, removed))
+
+
+def remove_selected_pins(editor: EditContext) -> None:
+    """Remove the selected pins; the drawing keeps its pose."""
+    remove_pins(editor, editor.selection)
+
+
+def remove_last_pin(editor: EditContext) -> None:
+    """Remove the pin that was added last; the drawing keeps its pose."""
+    if editor.session is not None and editor.session.state.pins:
+        remove_pins(editor, {editor.session.state.pins[-1].id})
+
+
+def move_pin(editor: EditContext, pin: int, place: Point) -> None:
+    """Set the target of a pin (drawing pixels). Raises InputError on an unknown id or a place not finite."""
+    editor.apply("Place pin", SetTargets({pin: place}))
+
+
+def set_depth(editor: EditContext, pin: int, depth: int) -> None:
+    """Set the depth of a pin: higher is nearer to the viewer. Raises InputError on a depth out of range."""
+    editor.edit("Set depth", lambda session: pin_edits.set_depths(session, {pin: depth}))
+
+
+def shift_depths(editor: EditContext, by: int) -> None:
+    """Add to the depths of the selected pins. Raises InputError on a depth out of range."""
+    if editor.session is not None and editor.selection:
+        depths = {pin.id: pin.depth + by for pin in editor.session.state.pins if pin.id in editor.selection}
+        label = "Bring forward" if by > 0 else "Send back"
+        editor.edit(label, lambda session: pin_edits.set_depths(session, depths))
+
+
+def toggle_held_angles(editor: EditContext) -> None:
+    """Let the selected pins hold their current angles; if all of them hold one already, release them."""
+    if editor.session is None:
+        return
+    free = [pin.id for pin in editor.session.state.pins if pin.id in editor.selection and pin.angle is None]
+    if free:
+        editor.edit("Hold angle", lambda session: pin_edits.hold_angles(session, free))
+    else:
+        editor.edit("Release angle", lambda session: pin_edits.hold_angles(session, editor.selection, False))
+
+
+def set_pin_angle(editor: EditContext, pin: int, angle: float | None) -> None:
+    """Let a pin hold an angle (radians from rest); None releases it. Raises InputError out of range."""
+    if angle is None:
+        editor.edit("Release angle", lambda session: pin_edits.hold_angles(session, {pin}, False))
+    else:
+        editor.apply("Turn", SetAngles({pin: angle}))
+
+
+class NudgeSeries:
+    """Moves the selected pins by small steps; steps in quick succession are one gesture.
+
+    clock: returns seconds.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._last: tuple[Entry | None, frozenset[int], float] | None = None  # entry, pins, time
+
+    def nudge(self, editor: EditContext, dx: float, dy: float) -> None:
+        """Move the targets of the selected pins by (dx, dy) drawing pixels."""
+        session, pins = editor.session, editor.selection
+        if session is None or editor.busy or not pins:
+            return
+        now = self._clock()
+        entry, last_pins, last_time = self._last or (None, pins, now)
+        joins = entry is not None and entry is session.history.last and last_pins == pins
+        session.begin("Nudge" if len(pins) == 1 else f"Nudge {len(pins)} pins")
+        try:
+            pin_edits.hold_pins(session)
+            moved = (session.state.pin(pin) for pin in sorted(pins))
+            targets = {pin.id: (pin.target[0] + dx, pin.target[1] + dy) for pin in moved}
+            session.apply(SetTargets(targets))
+        except Exception:
+            session.abort()
+            raise
+        session.commit(join=joins and now - last_time < SERIES_PAUSE)
+        self._last = session.history.last, pins, now
+
+
+# -- poses and settings --------------------------------------------------------------------------------------
+
+
+def reset_pose(editor: EditContext) -> None:
+    """Return to the rest pose; the pins stay on the drawing and move with it."""
+    editor.apply("Reset pose", ResetPose())
+
+
+def set_rest_pose(editor: EditContext) -> None:
+    """Make the current pose the rest pose; nothing moves. Raises InputError if it has flipped faces."""
+    editor.apply("Make pose the rest pose", SetRestPose())
+
+
+def add_pose(editor: EditContext, name: str | None = None) -> None:
+    """Add the current pose to the named poses; it replaces one of the same name.
+
+    name: "Pose" and a number by default. Raises InputError on a name that is empty or too long.
+    """
+    if editor.session is not None:
+        pose_name = free_name(editor.session.state.poses) if name is None else name
+        editor.apply("Keep pose", AddPose(pose_name))
+
+
+def delete_pose(editor: EditContext, name: str) -> None:
+    """Delete the pose of this name, if there is one."""
+    editor.apply("Forget pose", DeletePose(name))
+
+
+def set_pose(editor: EditContext, positions: Floats, label: str = "Apply pose") -> None:
+    """Set the pose (n, 2); the pins stay on the drawing and move with it. Raises InputError."""
+    editor.apply(label, SetPose(positions))
+
+
+def apply_pose(editor: EditContext, pins: tuple[Pin, ...], positions: Floats) -> None:
+    """Replace the pins and the pose (n, 2), as saved from the same mesh. Raises InputError."""
+    editor.apply("Apply pose", SetPins(pins), SetPose(positions))
+
+
+def set_settings(editor: EditContext, settings: Settings) -> None:
+    """Change the deformation method or its parameters. Raises InputError on unknown ones."""
+    if editor.session is not None and settings != editor.session.state.settings:
+        editor.apply("Change settings", SetSettings(settings))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import Drawing, make_drawing
 from akap_editor.editor.editor import Editor
@@ -69,7 +70,7 @@ def pinned(module_window: WindowDriver, document: Document) -> WindowDriver:
     editor = Editor()
     editor.open(document)
     for at in ((50.0, 80.0), (130.0, 80.0), (210.0, 80.0)):
-        editor.add_pin(at)
+        gestures.add_pin(editor, at)
     assert editor.session is not None
     module_window.reset(editor.session.document)
     return module_window

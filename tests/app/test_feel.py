@@ -10,6 +10,7 @@ import pytest
 
 from akap_editor.app import window as window_module
 from akap_editor.app.canvas import scene as picture_module
+from akap_editor.editor import gestures
 from akap_editor.editor.editor import FRAME_BUDGET
 from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.stepper import INLINE
@@ -157,7 +158,7 @@ def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkey
     gate, deformer = Event(), pinned.session._bending.deformer
     fields = deformer.vector_fields
     monkeypatch.setattr(deformer, "vector_fields", lambda *way: gate.wait(60) and fields(*way))
-    pinned.editor.place_pin(3, tuple(pinned.pin_place(3) - (0, 20)))
+    gestures.move_pin(pinned.editor, 3, tuple(pinned.pin_place(3) - (0, 20)))
     while not pinned.state.view.waiting:
         pinned.frame()
     if ends == "switched off":
@@ -243,9 +244,9 @@ def test_a_kept_picture_shows_every_change(pinned, monkeypatch):
         lambda: setattr(pinned.state.view, "ghost", True),
         lambda: setattr(pinned.state.view, "trails", True),
         lambda: setattr(pinned.state.view, "heat", "area"),
-        lambda: pinned.editor.place_pin(3, (x, y - 30)),
+        lambda: gestures.move_pin(pinned.editor, 3, (x, y - 30)),
         lambda: setattr(pinned.state.view, "heat_range", 0),
-        lambda: pinned.editor.set_depth(3, 2),
+        lambda: gestures.set_depth(pinned.editor, 3, 2),
         lambda: setattr(pinned.state, "split", True),
         lambda: setattr(pinned.state, "split", False),
         pinned.editor.undo,

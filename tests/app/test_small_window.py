@@ -11,6 +11,7 @@ from akap_editor.app.commands import registry as commands
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.dialogs.file_dialog import UnsavedChangesQuestion
 from akap_editor.app.window import SMALLEST
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 
 LONG = "a drawing whose name somebody has typed without thinking of panels at all, final version 27"
@@ -141,7 +142,7 @@ def test_the_captions_of_two_methods_stay_in_their_halves(pinned):
 def test_a_long_name_of_a_pose_moves_no_other(ui):
     names = ("Rest", LONG[:80], "Wave")
     for name in names:
-        ui.editor.keep_pose(name)
+        gestures.add_pose(ui.editor, name)
     ui.state.preferences.put("sections", {"Drawing": False, "Pins": False, "Bending": False, "Mesh": False})
     ui.settle()
     found = {}
@@ -157,7 +158,7 @@ def test_a_long_name_of_a_pose_moves_no_other(ui):
 
 def test_the_pin_that_is_selected_is_seen_in_the_list(ui):
     for x in range(50, 220, 10):
-        ui.editor.add_pin((float(x), 80.0))
+        gestures.add_pin(ui.editor, (float(x), 80.0))
     for pin in (17, 1):
         ui.editor.select({pin})
         ui.settle()
@@ -168,10 +169,10 @@ def test_the_pin_that_is_selected_is_seen_in_the_list(ui):
 
 def test_the_present_step_of_a_long_history_is_seen_below_whole_rows(pinned):
     for depth in range(1, 21):
-        pinned.editor.set_depth(1, depth)
+        gestures.set_depth(pinned.editor, 1, depth)
     folded = dict.fromkeys(("Drawing", "Pins", "Bending", "Mesh", "Poses", "Numbers"), False)
     pinned.state.preferences.put("sections", folded)
-    pinned.editor.go_to(11)
+    pinned.editor.undo_or_redo_to(11)
     pinned.settle()
     (rows,) = (window for window in imgui.get_current_context().windows if "##history" in window.name)
     height = imgui.get_text_line_height_with_spacing()

@@ -7,6 +7,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import KeyEvent, PointerEvent
 from akap_editor.editor.session.replay import replay
@@ -106,15 +107,17 @@ def machine(drawing, worker):
         def remove_selected(self, everything):
             if everything:
                 self.editor.select_all()
-            self.editor.remove_selected()
+            gestures.remove_selected_pins(self.editor)
             self.driver.check()
 
         @rule(memory=st.sampled_from([0.0, 1.0, None]))
         def change_memory_or_reset_pose(self, memory):
             if memory is None:
-                self.editor.reset_pose()
+                gestures.reset_pose(self.editor)
             else:
-                self.editor.set_settings(self.driver.state.settings.with_parameter("memory", memory))
+                gestures.set_settings(
+                    self.editor, self.driver.state.settings.with_parameter("memory", memory)
+                )
             self.driver.check()
 
         def teardown(self):

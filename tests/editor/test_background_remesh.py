@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.background_remesh import BackgroundRemesh
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing, make_drawing
@@ -19,7 +20,7 @@ def editor():
     result = Editor()
     result.open(new_document(make_drawing(image, vertices=150)))
     for at in [(30.0, 60.0), (100.0, 60.0), (170.0, 60.0)]:
-        result.add_pin(at)
+        gestures.add_pin(result, at)
     return result
 
 
@@ -82,7 +83,7 @@ def test_what_was_done_meanwhile_stays(editor):
     remesher = BackgroundRemesh(editor)
     remesher.want(Meshing(300))
     remesher.advance()
-    editor.add_pin((65.0, 60.0))
+    gestures.add_pin(editor, (65.0, 60.0))
     remesher.finish()
     assert len(editor.session.state.pins) == 4
     assert editor.session.drawing.meshing == Meshing(300)

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from akap_editor.deform.akap.deformer import AkapDeformer
+from akap_editor.editor import gestures
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
@@ -19,11 +20,12 @@ def test_without_a_drawing_nothing_happens():
     editor = Editor()
     for kind in ("press", "move", "release"):
         editor.handle_event(PointerEvent(kind, (50.0, 50.0)))
-    for act in (editor.undo, editor.redo, editor.reset_pose, editor.select_all, editor.fit, editor.cancel):
+    for act in (editor.undo, editor.redo, editor.select_all, editor.fit, editor.cancel):
         act()
-    editor.remove_pins([1])
-    editor.set_settings(Settings("akap"))
-    assert editor.add_pin((1.0, 1.0)) is None
+    gestures.reset_pose(editor)
+    gestures.remove_pins(editor, [1])
+    gestures.set_settings(editor, Settings("akap"))
+    assert gestures.add_pin(editor, (1.0, 1.0)) is None
     assert not any([editor.moving, editor.advance(), editor.modified, editor.would_add_pin])
     assert editor.hovered_pin is None
     assert "Open" in editor.hint
@@ -156,29 +158,29 @@ def test_the_hint_of_idle_says_what_a_press_would_do(driver):
 
 
 def edit_add(d):
-    assert d.editor.add_pin((45.0, 45.0)) == 4
+    assert gestures.add_pin(d.editor, (45.0, 45.0)) == 4
     return "Add pin"
 
 
 def edit_remove_one(d):
-    d.editor.remove_pins([2])
+    gestures.remove_pins(d.editor, [2])
     return "Remove pin"
 
 
 def edit_remove_selected(d):
     d.editor.select({1, 3})
-    d.editor.remove_selected()
+    gestures.remove_selected_pins(d.editor)
     assert d.ids == [2]
     return "Remove 2 pins"
 
 
 def edit_reset(d):
-    d.editor.reset_pose()
+    gestures.reset_pose(d.editor)
     return "Reset pose"
 
 
 def edit_settings(d):
-    d.editor.set_settings(d.state.settings.with_parameter("memory", 0.0))
+    gestures.set_settings(d.editor, d.state.settings.with_parameter("memory", 0.0))
     return "Change settings"
 
 
@@ -200,7 +202,7 @@ def test_an_edit_is_one_entry_and_undo_and_redo_are_exact(pinned, edit):
 
 def test_removed_pins_leave_the_selection_and_undo_does_not_select_them(pinned):
     pinned.editor.select({1, 2})
-    pinned.editor.remove_pins([2])
+    gestures.remove_pins(pinned.editor, [2])
     assert pinned.editor.selection == {1}
     pinned.undo()
     assert pinned.ids == [1, 2, 3]
@@ -210,28 +212,28 @@ def test_removed_pins_leave_the_selection_and_undo_does_not_select_them(pinned):
 @pytest.mark.parametrize("ids", [[], [99]])
 def test_removing_nothing_is_no_edit(pinned, ids):
     before = pinned.everything
-    pinned.editor.remove_pins(ids)
+    gestures.remove_pins(pinned.editor, ids)
     assert pinned.everything == before
 
 
 def test_a_pin_beside_the_drawing_is_no_edit(pinned):
     before = pinned.everything
-    assert pinned.editor.add_pin(BESIDE) is None
+    assert gestures.add_pin(pinned.editor, BESIDE) is None
     assert pinned.everything == before
 
 
 def test_the_same_settings_again_are_no_edit(pinned):
     before = pinned.everything
-    pinned.editor.set_settings(Settings())
+    gestures.set_settings(pinned.editor, Settings())
     assert pinned.everything == before
 
 
 @pytest.mark.parametrize(
     "bad",
     [
-        lambda editor: editor.add_pin((np.nan, 0.0)),
-        lambda editor: editor.set_settings(Settings("no such method")),
-        lambda editor: editor.set_settings(Settings("akap", (("no such parameter", 1),))),
+        lambda editor: gestures.add_pin(editor, (np.nan, 0.0)),
+        lambda editor: gestures.set_settings(editor, Settings("no such method")),
+        lambda editor: gestures.set_settings(editor, Settings("akap", (("no such parameter", 1),))),
     ],
 )
 def test_a_failed_edit_changes_nothing_and_leaves_no_gesture_open(pinned, bad):
@@ -248,13 +250,13 @@ def test_a_failed_edit_changes_nothing_and_leaves_no_gesture_open(pinned, bad):
 def test_a_new_edit_ends_redo(pinned):
     pinned.undo()
     assert pinned.session.history.redo_label == "Add pin"
-    pinned.editor.remove_pins([1])
+    gestures.remove_pins(pinned.editor, [1])
     assert pinned.session.history.redo_label is None
 
 
 def test_resetting_a_pose_that_is_at_rest_is_no_edit(pinned):
     before = pinned.everything
-    pinned.editor.reset_pose()
+    gestures.reset_pose(pinned.editor)
     assert pinned.everything == before
 
 

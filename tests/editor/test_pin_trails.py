@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
 
@@ -52,6 +53,6 @@ def test_fields_are_those_of_the_last_move_of_the_pins(pinned):
 
 
 def test_methods_without_fields_have_none(pinned):
-    pinned.editor.set_settings(Settings("mls", ()))
+    gestures.set_settings(pinned.editor, Settings("mls", ()))
     pinned.drag(END, (95.0, 50.0))
     assert pinned.session.vector_fields() is None

@@ -6,8 +6,8 @@ from typing import Literal
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...editor import gestures
 from ...editor.session.edits import SetStiffness
-from ...editor.tools.rotate import toggle_hold
 from ...resources import bundled_drawings
 from .. import masking, poses, recordings, reference
 from ..app_state import AppState
@@ -65,7 +65,7 @@ def _holds(state: AppState) -> bool:
 def _remove(state: AppState) -> None:
     """Pins, or where none is selected, keyframes."""
     if state.editor.selection:
-        state.editor.remove_selected()
+        gestures.remove_selected_pins(state.editor)
     else:
         state.keyframe_playback.remove()
 
@@ -182,21 +182,21 @@ REMOVE = Command(
 )
 BRING_FORWARD = Command(
     "Bring Forward",
-    lambda state: state.editor.shift_depth(1),
+    lambda state: gestures.shift_depths(state.editor, 1),
     (CTRL | Key.right_bracket,),
     "",
     lambda state: bool(state.editor.selection),
 )
 SEND_BACK = Command(
     "Send Back",
-    lambda state: state.editor.shift_depth(-1),
+    lambda state: gestures.shift_depths(state.editor, -1),
     (CTRL | Key.left_bracket,),
     "",
     lambda state: bool(state.editor.selection),
 )
 REMOVE_LAST = Command(
     "Remove Last Pin",
-    lambda state: state.editor.remove_last(),
+    lambda state: gestures.remove_last_pin(state.editor),
     (Key.backspace,),
     "",
     lambda state: state.editor.session is not None and bool(state.editor.session.state.pins),
@@ -213,14 +213,14 @@ DESELECT = Command(
 )
 RESET_POSE = Command(
     "Reset Pose",
-    lambda state: state.editor.reset_pose(),
+    lambda state: gestures.reset_pose(state.editor),
     (CTRL | Key.r,),
     icons.ICON_FA_PERSON,
     lambda state: state.editor.session is not None and state.editor.session.is_posed,
 )
 BAKE = Command(
     "Make Pose the Rest Pose",
-    lambda state: state.editor.bake_pose(),
+    lambda state: gestures.set_rest_pose(state.editor),
     (),
     "",
     lambda state: state.editor.session is not None and state.editor.session.is_posed,
@@ -237,7 +237,9 @@ DEFAULTS = Command(
 )
 REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _is_akap, remembers)
 
-HOLD_ANGLE = Command("Hold Angle", lambda state: toggle_hold(state.editor), (), "", _can_hold, _holds)
+HOLD_ANGLE = Command(
+    "Hold Angle", lambda state: gestures.toggle_held_angles(state.editor), (), "", _can_hold, _holds
+)
 
 PIN_TOOL = _tool("pins", "Pins", Key.p, icons.ICON_FA_THUMBTACK)
 HAND_TOOL = _tool("hand", "Move Canvas", Key.n, icons.ICON_FA_HAND)
@@ -247,7 +249,7 @@ SMALLER = Command("Smaller Brush", _resize(False), (Key.left_bracket,), "", _has
 LARGER = Command("Larger Brush", _resize(True), (Key.right_bracket,), "", _has_brush)
 SOFTEN_ALL = Command(
     "Remove All Stiffness",
-    lambda state: state.editor.edit("Remove stiffness", lambda session: session.apply(SetStiffness(None))),
+    lambda state: state.editor.apply("Remove stiffness", SetStiffness(None)),
     (),
     "",
     lambda state: state.editor.session is not None and state.editor.session.state.stiffness is not None,

@@ -7,6 +7,7 @@ import moderngl
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...editor import gestures
 from ...editor.document.framing import frame_box
 from ...editor.document.named_poses import NamedPose
 from ...editor.session.edits import RenamePose, ReorderPoses
@@ -57,7 +58,7 @@ def draw(state: AppState, scale: float) -> None:
     _all_poses(state, poses, scale)
     if imgui.button(f"{icons.ICON_FA_PLUS}  Keep this pose", ImVec2(widgets.FULL, 0)):
         state.notice = ""
-        state.attempt(state.editor.keep_pose)
+        state.attempt(lambda: gestures.add_pose(state.editor))
     if len(poses) > 1:
         _mixer(state, scale)
 
@@ -85,7 +86,7 @@ def _pose(state: AppState, pose: NamedPose, scale: float) -> None:
     imgui.begin_group()
     if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side), imgui.ButtonFlags_.enable_nav):
         state.notice = ""
-        state.attempt(lambda: state.editor.set_pose(pose.positions, f"Apply {pose.name}"))
+        state.attempt(lambda: gestures.set_pose(state.editor, pose.positions, f"Apply {pose.name}"))
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
     widgets.explain(
         f"{pose.name}: click to apply, drag to the timeline or another place, right-click for more"
@@ -124,7 +125,7 @@ def _menu(state: AppState, pose: NamedPose) -> None:
     if imgui.menu_item("Rename", "F2", False)[0]:
         _begin_renaming(state, pose)
     if imgui.menu_item_simple("Change to the Present Pose"):
-        state.attempt(lambda: state.editor.keep_pose(pose.name))
+        state.attempt(lambda: gestures.add_pose(state.editor, pose.name))
     if imgui.menu_item_simple("Keyframe of It"):
         state.show_in_timeline("keyframes")
         state.show_timeline = True
@@ -138,7 +139,7 @@ def _menu(state: AppState, pose: NamedPose) -> None:
             _order(state, at, to)
     imgui.separator()
     if imgui.menu_item_simple("Forget"):
-        state.editor.forget_pose(pose.name)
+        gestures.delete_pose(state.editor, pose.name)
 
 
 def _begin_renaming(state: AppState, pose: NamedPose) -> None:
@@ -160,9 +161,7 @@ def _rename(state: AppState, pose: NamedPose, width: float) -> None:
         name, state.renaming = state.new_name.strip(), None
         if name and name != pose.name and not imgui.is_key_pressed(imgui.Key.escape, False):
             label = f"Rename {pose.name}"
-            state.attempt(
-                lambda: state.editor.edit(label, lambda session: session.apply(RenamePose(pose.name, name)))
-            )
+            state.attempt(lambda: state.editor.apply(label, RenamePose(pose.name, name)))
 
 
 def _dragging(state: AppState, pose: NamedPose) -> None:
@@ -184,9 +183,7 @@ def _order(state: AppState, old: int, new: int) -> None:
     assert state.document is not None
     names = [each.name for each in state.document.state.poses]
     names.insert(new, names.pop(old))
-    state.attempt(
-        lambda: state.editor.edit("Order poses", lambda session: session.apply(ReorderPoses(names)))
-    )
+    state.attempt(lambda: state.editor.apply("Order poses", ReorderPoses(names)))
 
 
 def _mixer(state: AppState, scale: float) -> None:
@@ -216,4 +213,4 @@ def _mixer(state: AppState, scale: float) -> None:
         session.end_preview()
         pose = pose_blend.pose(session)
         if pose is not None:
-            state.attempt(lambda: state.editor.set_pose(pose, "In-between"))
+            state.attempt(lambda: gestures.set_pose(state.editor, pose, "In-between"))

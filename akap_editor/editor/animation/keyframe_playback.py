@@ -274,7 +274,7 @@ class KeyframePlayback(Playback):
         if session is None or self._editor.busy:
             return
         session.end_preview()
-        self._editor.edit(label, lambda session: session.apply(edit))
+        self._editor.apply(label, edit)
         if self.following:
             self._show()
 

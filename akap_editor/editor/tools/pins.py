@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import gestures
 from ..camera import Point
 from ..events import PointerEvent
 from ..session.edits import SetTargets
@@ -140,7 +141,7 @@ class RemovingPin(Pointing):
 
     def clicked(self, event: PointerEvent) -> None:
         self.editor.set_tool(Idle(self.editor))
-        self.editor.remove_pins({self.pin})
+        gestures.remove_pins(self.editor, {self.pin})
 
 
 class OpeningPinMenu(Pointing):

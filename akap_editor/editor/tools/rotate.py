@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from ..camera import Point
 from ..events import PointerEvent
 from ..session.edits import SetAngles
-from ..session.pin_edits import hold_angles, hold_pins
+from ..session.pin_edits import hold_pins
 from .base import Pointing, Tool, distance
 
 if TYPE_CHECKING:
@@ -46,26 +46,6 @@ def ring_at(editor: "Editor", position: Point) -> int | None:
 def hovered_ring(editor: "Editor") -> int | None:
     """The pin whose ring is under the pointer."""
     return ring_at(editor, editor.pointer) if editor.pointer is not None else None
-
-
-def toggle_hold(editor: "Editor") -> None:
-    """Let the selected pins hold the angles that they have, or turn as they will if all of them hold one."""
-    if editor.session is None:
-        return
-    chosen = [pin for pin in editor.session.state.pins if pin.id in editor.selection]
-    free = [pin.id for pin in chosen if pin.angle is None]
-    if free:
-        editor.edit("Hold angle", lambda session: hold_angles(session, free))
-    else:
-        editor.edit("Release angle", lambda session: hold_angles(session, editor.selection, False))
-
-
-def set_angle(editor: "Editor", pin: int, angle: float | None) -> None:
-    """Let a pin hold an angle (radians from rest), or none. Raises InputError on one out of range."""
-    if angle is None:
-        editor.edit("Release angle", lambda session: hold_angles(session, {pin}, False))
-    else:
-        editor.edit("Turn", lambda session: session.apply(SetAngles({pin: angle})))
 
 
 class PointingRotationRing(Pointing):

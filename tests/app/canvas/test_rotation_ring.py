@@ -103,7 +103,7 @@ def test_the_options_of_the_brush(pinned):
     pinned.tool_button(commands.BRUSH_TOOL)
     pinned.panel("Erase")
     assert pinned.editor.brush.erasing
-    pinned.editor.edit("Stiffen", lambda session: session.apply(PaintStiffness([(50.0, 80.0)], 30.0, 100.0)))
+    pinned.editor.apply("Stiffen", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
     pinned.panel(commands.SOFTEN_ALL.label.capitalize())
     assert pinned.session.state.stiffness is None
 

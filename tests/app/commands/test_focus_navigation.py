@@ -5,6 +5,7 @@ import pytest
 
 from akap_editor.app.canvas.view_options import RANGES
 from akap_editor.app.commands.command import SHIFT, Key
+from akap_editor.editor import gestures
 from akap_editor.editor.tools.keyboard_pointer import BIG_STEP, STEP
 
 ALT, CTRL = Key.mod_alt, Key.mod_ctrl
@@ -149,7 +150,7 @@ def keyed(pinned):
     pinned.state.show_timeline, pinned.state.timeline = True, "keyframes"
     pinned.settle()
     playback.put(0.0)
-    pinned.editor.place_pin(3, (210.0, 50.0))
+    gestures.move_pin(pinned.editor, 3, (210.0, 50.0))
     pinned.settle()
     playback.put(1.0)
     playback.scrub(0.0)
@@ -178,7 +179,7 @@ def test_stepping_stops_what_plays(keyed):
 
 def test_the_session_is_looked_back_at_by_keys(pinned):
     pinned.state.show_timeline = True
-    pinned.editor.place_pin(3, (210.0, 50.0))
+    gestures.move_pin(pinned.editor, 3, (210.0, 50.0))
     pinned.settle()
     playback = pinned.state.session_playback
     keys(pinned, Key.home)
@@ -251,7 +252,7 @@ def test_lists_of_the_panel_are_walked_into(pinned):
 
 def test_a_pose_is_ordered_and_forgotten_from_its_menu(ui):
     for _ in range(3):
-        ui.editor.keep_pose()
+        gestures.add_pose(ui.editor)
     ui.settle()
     names = [pose.name for pose in ui.session.state.poses]
     walk_to(ui, f"pose {names[2]}", SHIFT | Key.f10, *[Key.down_arrow] * 3, Key.enter)

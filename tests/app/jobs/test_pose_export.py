@@ -8,6 +8,7 @@ import pytest
 
 from akap_editor.app.dialogs.export_pose import PoseExportOptions, export_pose
 from akap_editor.app.jobs.pose_export import PoseExportQueue
+from akap_editor.editor import gestures
 from akap_editor.errors import InputError
 from akap_editor.io import export as exports
 from akap_editor.io.images import read_image
@@ -87,7 +88,7 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
     drawing, pose = pinned.session.drawing, pinned.session.state.positions
     pinned.do(lambda hand: hand.yield_(3), settle=False)
     assert pinned.state.notice == "Exporting pose.png ..."
-    pinned.editor.place_pin(3, (x, y - 40))
+    gestures.move_pin(pinned.editor, 3, (x, y - 40))
     while pinned.editor.moving:
         pinned.frame()
     np.testing.assert_allclose(pinned.pin_place(3), (x, y - 40), atol=0.25)

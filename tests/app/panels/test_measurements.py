@@ -3,6 +3,7 @@
 import pytest
 
 from akap_editor.app.panels.measurements import KEPT, Measurements
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.session.edits import SetTargets
@@ -13,8 +14,8 @@ from akap_editor.geometry.distortion import distortion
 def session(drawing):
     editor = Editor()
     editor.open(new_document(drawing))
-    editor.add_pin((50.0, 80.0))
-    editor.add_pin((210.0, 80.0))
+    gestures.add_pin(editor, (50.0, 80.0))
+    gestures.add_pin(editor, (210.0, 80.0))
     return editor.session
 
 

@@ -10,6 +10,7 @@ from akap_editor.app.panels import method_parameters as settings_panel
 from akap_editor.app.panels.method_parameters import PARAMETERS, default
 from akap_editor.app.preferences import Preferences
 from akap_editor.deform.deformer import make_deformer, method_class, method_names
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.editor import Editor
@@ -107,11 +108,11 @@ def test_a_click_on_a_step_goes_there_and_back(pinned):
 
 def test_there_is_no_going_beyond_the_ends(drawing):
     editor = Editor()
-    editor.go_to(3)
+    editor.undo_or_redo_to(3)
     editor.open(new_document(drawing))
-    editor.add_pin((50.0, 80.0))
+    gestures.add_pin(editor, (50.0, 80.0))
     for depth, expected in ((-2, 0), (9, 1)):
-        editor.go_to(depth)
+        editor.undo_or_redo_to(depth)
         assert editor.session.history.depth == expected
 
 

@@ -1,5 +1,6 @@
 """A pose goes into a file and comes back, through the menus."""
 
+from akap_editor.editor import gestures
 from akap_editor.io.akap.pose import load_pose
 
 
@@ -15,7 +16,7 @@ def test_a_pose_is_carried_through_a_file(pinned, tmp_path):
         posed.positions.tobytes()
     )
     pinned.menu("Edit", "Reset Pose")
-    pinned.editor.remove_pins({1})
+    gestures.remove_pins(pinned.editor, {1})
     pinned.menu("File", "Apply Pose...")
     pinned.type_name("Apply pose", "wave.pose.json")
     assert pinned.state.notice == "Applied wave.pose.json"

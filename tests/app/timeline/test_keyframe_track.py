@@ -5,6 +5,7 @@ import pytest
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from akap_editor.editor import gestures
 from akap_editor.editor.session.replay import replay
 from akap_editor.io.akap.project import load, save
 
@@ -158,7 +159,7 @@ def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
 
 def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
     for name in ("Up", "Down"):
-        keyed.editor.keep_pose(name)
+        gestures.add_pose(keyed.editor, name)
 
     keyed.state.keyframe_playback.set_time(1.0, 0.5)
     keyed.settle()
@@ -171,7 +172,7 @@ def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
 
 
 def test_a_pose_is_renamed_with_f2(keyed):
-    keyed.editor.keep_pose("Up")
+    gestures.add_pose(keyed.editor, "Up")
     keyed.settle()
 
     def rename(hand):
@@ -185,7 +186,7 @@ def test_a_pose_is_renamed_with_f2(keyed):
 
 
 def test_a_pose_is_renamed_with_a_double_click(keyed):
-    keyed.editor.keep_pose("Up")
+    gestures.add_pose(keyed.editor, "Up")
     keyed.settle()
 
     def rename(hand):

@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from PIL import Image
 
 from akap_editor.app.dialogs.export_animation import AnimationExportOptions, export_animation
+from akap_editor.editor import gestures
 from akap_editor.editor.session.replay import replay
 
 
@@ -118,8 +119,8 @@ def test_the_range_is_exported(bent, tmp_path):
 
 
 def test_poses_are_kept_and_applied_with_a_click(bent):
-    bent.editor.keep_pose("Up")
-    bent.editor.reset_pose()
+    gestures.add_pose(bent.editor, "Up")
+    gestures.reset_pose(bent.editor)
     bent.panel("pose Up")
     np.testing.assert_array_equal(bent.session.state.positions, bent.session.state.poses[0].positions)
     assert bent.session.history.labels[-1] == "Apply Up"

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.animation.pose_blend import PoseBlend
 from akap_editor.editor.animation.session_playback import LONGEST_PAUSE, SessionPlayback
 from akap_editor.editor.session.recording import parse_recording
@@ -192,7 +193,7 @@ def test_long_sessions_keep_to_their_memory(player, pinned, clock, monkeypatch):
     monkeypatch.setattr("akap_editor.editor.animation.session_playback.MOST_BYTES", 20 * size)
     for step in range(100):
         clock.now += 0.1
-        pinned.editor.set_pose(pinned.state.positions + 0.01 * step)
+        gestures.set_pose(pinned.editor, pinned.state.positions + 0.01 * step)
         player.watch(pinned.session)
     assert len(player.snapshots) <= 20
     assert player.snapshots[0].time == 0
@@ -202,10 +203,10 @@ def test_long_sessions_keep_to_their_memory(player, pinned, clock, monkeypatch):
 def test_the_pose_between_two_is_looked_at_and_taken(pinned, drawing):
     session, pose_blend = pinned.session, PoseBlend()
     assert pose_blend.pose(session) is None
-    pinned.editor.keep_pose("Rest")
+    gestures.add_pose(pinned.editor, "Rest")
     pinned.drag(END, (90.0, 60.0))
     pinned.settle()
-    pinned.editor.keep_pose("Bent")
+    gestures.add_pose(pinned.editor, "Bent")
     now, events = bits(session.state), len(session.recording.events)
     for share in (0.0, 0.4, 1.0):
         pose_blend.share = share
@@ -216,7 +217,7 @@ def test_the_pose_between_two_is_looked_at_and_taken(pinned, drawing):
     assert len(session.recording.events) == events
     pose_blend.share = 0.5
     pose_blend.show(session)
-    pinned.editor.set_pose(pose_blend.pose(session), "In-between")
+    gestures.set_pose(pinned.editor, pose_blend.pose(session), "In-between")
     assert bits(recorded(session, drawing)) == bits(session.state)
     session.undo()
     assert bits(session.state) == now

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.depth import MOST, depth_at, face_order
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
@@ -102,9 +103,9 @@ def test_forward_and_back_are_one_entry_each_and_move_nothing(pinned):
     pinned.editor.select({2, 3})
     before, depth = bits(pinned.state), pinned.depth
     pose = pinned.state.positions
-    pinned.editor.shift_depth(1)
+    gestures.shift_depths(pinned.editor, 1)
     assert [pin.depth for pin in pinned.state.pins] == [0, 1, 1]
-    pinned.editor.set_depth(3, -5)
+    gestures.set_depth(pinned.editor, 3, -5)
     assert [pin.depth for pin in pinned.state.pins] == [0, 1, -5]
     assert pinned.state.positions is pose
     assert pinned.session.history.labels[depth:] == ["Bring forward", "Set depth"]
@@ -116,15 +117,15 @@ def test_forward_and_back_are_one_entry_each_and_move_nothing(pinned):
 def test_a_depth_out_of_range_changes_nothing(pinned):
     before = pinned.everything
     with pytest.raises(InputError, match="depth of pin 2"):
-        pinned.editor.set_depth(2, MOST + 1)
+        gestures.set_depth(pinned.editor, 2, MOST + 1)
     assert pinned.everything == before
 
 
 def test_a_new_pin_takes_the_depth_of_the_place(pinned):
-    pinned.editor.set_depth(3, 4)
-    added = pinned.editor.add_pin((103.0, 45.0))
+    gestures.set_depth(pinned.editor, 3, 4)
+    added = gestures.add_pin(pinned.editor, (103.0, 45.0))
     assert pinned.state.pin(added).depth == 4
-    added = pinned.editor.add_pin((18.0, 45.0))
+    added = gestures.add_pin(pinned.editor, (18.0, 45.0))
     assert pinned.state.pin(added).depth == 0
 
 
@@ -153,8 +154,8 @@ def test_a_click_takes_what_is_seen_in_front(drawing):
 
 
 def test_depths_are_saved_recorded_and_replayed(pinned, drawing, tmp_path):
-    pinned.editor.set_depth(2, 7)
-    pinned.editor.set_depth(3, -2)
+    gestures.set_depth(pinned.editor, 2, 7)
+    gestures.set_depth(pinned.editor, 3, -2)
     pinned.drag(END, (95.0, 55.0))
     pinned.settle()
     save(pinned.session.document, tmp_path / "deep.akap")
@@ -171,9 +172,9 @@ def test_a_cartoon_limb_changes_sides(shared_data):
     editor.open(new_document(drawing))
     vertices = drawing.mesh.vertices
     low, high = vertices[np.argmin(vertices[:, 0])], vertices[np.argmax(vertices[:, 0])]
-    pins = [editor.add_pin(tuple(at)) for at in (low, high)]
+    pins = [gestures.add_pin(editor, tuple(at)) for at in (low, high)]
     for depth in (1, -1):
-        editor.set_depth(pins[1], depth)
+        gestures.set_depth(editor, pins[1], depth)
         order = rank(editor.session.document.order)
         faces = [editor.session.state.pin(pin).face for pin in pins]
         assert (order[faces[1]] > order[faces[0]]) == (depth > 0)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from akap_editor.deform.pose_interpolation import InterpolationCache
+from akap_editor.editor import gestures
 from akap_editor.editor.animation.keyframe_playback import KeyframePlayback, keyed_frame, pose_at, stretched
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing
@@ -183,7 +184,7 @@ def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, dra
 
 
 def test_a_document_with_poses_and_keyframes_is_recorded_from_its_start(player, pinned, drawing):
-    pinned.editor.keep_pose("Bent")
+    gestures.add_pose(pinned.editor, "Bent")
     player.ease("out", general=True)
     opened = Session(new_document(drawing).with_state(pinned.session.present))
     assert bits(recorded(opened, drawing)) == bits(opened.state)
@@ -192,9 +193,9 @@ def test_a_document_with_poses_and_keyframes_is_recorded_from_its_start(player, 
 def test_poses_are_renamed_and_ordered_and_recorded(pinned, drawing):
     session = pinned.session
     for name in ("a", "b", "c"):
-        pinned.editor.keep_pose(name)
-    pinned.editor.edit("Rename", lambda s: s.apply(RenamePose("b", "Wave")))
-    pinned.editor.edit("Order", lambda s: s.apply(ReorderPoses(["c", "a", "Wave"])))
+        gestures.add_pose(pinned.editor, name)
+    pinned.editor.apply("Rename", RenamePose("b", "Wave"))
+    pinned.editor.apply("Order", ReorderPoses(["c", "a", "Wave"]))
     assert [pose.name for pose in session.state.poses] == ["c", "a", "Wave"]
     assert bits(recorded(session, drawing)) == bits(session.state)
     before = bits(session.state)
@@ -205,7 +206,7 @@ def test_poses_are_renamed_and_ordered_and_recorded(pinned, drawing):
         ReorderPoses(["a", "c"]),
     ):
         with pytest.raises(InputError):
-            pinned.editor.edit("Bad", lambda s, edit=edit: s.apply(edit))
+            pinned.editor.apply("Bad", edit)
         assert bits(session.state) == before
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.named_poses import MAX_NAME, NamedPose, free_name
 from akap_editor.editor.session.recording import parse_recording
 from akap_editor.editor.session.replay import replay
@@ -18,10 +19,10 @@ def names(driver):
 @pytest.fixture
 def posed(pinned):
     """Two poses: at rest, and with the neck bent."""
-    pinned.editor.keep_pose()
+    gestures.add_pose(pinned.editor)
     pinned.drag(END, (90.0, 60.0))
     pinned.settle()
-    pinned.editor.keep_pose("Bent")
+    gestures.add_pose(pinned.editor, "Bent")
     return pinned
 
 
@@ -29,7 +30,7 @@ def test_a_kept_pose_is_applied_bit_for_bit_and_undone(posed):
     rest, bent = posed.state.poses
     assert names(posed) == ["Pose 1", "Bent"]
     before = posed.state
-    posed.editor.set_pose(rest.positions)
+    gestures.set_pose(posed.editor, rest.positions)
     np.testing.assert_array_equal(posed.state.positions, posed.session.drawing.mesh.vertices)
     assert posed.session.pin_error() < 1e-9, "the pins went along"
     posed.undo()
@@ -39,7 +40,7 @@ def test_a_kept_pose_is_applied_bit_for_bit_and_undone(posed):
 
 def test_keeping_and_forgetting_are_undoable_and_unsaved(posed):
     posed.session.mark_saved(None)
-    posed.editor.forget_pose("Pose 1")
+    gestures.delete_pose(posed.editor, "Pose 1")
     assert names(posed) == ["Bent"]
     assert posed.editor.modified
     posed.undo()
@@ -50,14 +51,14 @@ def test_keeping_and_forgetting_are_undoable_and_unsaved(posed):
 
 
 def test_a_pose_of_the_same_name_takes_its_place(posed):
-    posed.editor.keep_pose("Pose 1")
+    gestures.add_pose(posed.editor, "Pose 1")
     assert names(posed) == ["Pose 1", "Bent"]
     np.testing.assert_array_equal(posed.state.poses[0].positions, posed.state.positions)
 
 
 def test_a_replay_keeps_the_same_poses_and_undoes_the_same(posed, drawing):
-    posed.editor.forget_pose("no such pose")
-    posed.editor.set_pose(posed.state.poses[0].positions)
+    gestures.delete_pose(posed.editor, "no such pose")
+    gestures.set_pose(posed.editor, posed.state.poses[0].positions)
     posed.undo()
     posed.undo()
     posed.undo()
@@ -74,7 +75,7 @@ def test_names_that_are_free(posed):
 @pytest.mark.parametrize("name", ["", "  ", "x" * (MAX_NAME + 1)])
 def test_bad_names_are_refused_and_nothing_is_kept(pinned, name):
     with pytest.raises(InputError, match=f"expected a name of 1 to {MAX_NAME} characters"):
-        pinned.editor.keep_pose(name)
+        gestures.add_pose(pinned.editor, name)
     assert names(pinned) == []
     assert pinned.session.history.depth == 3
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document.rest_pose import bake
 from akap_editor.editor.session.edits import SetTargets
@@ -25,7 +26,7 @@ def bent(pinned):
 def test_nothing_moves(bent):
     session = bent.editor.session
     before, pins, where = session.state, session.state.pins, session.pin_positions()
-    bent.editor.bake_pose()
+    gestures.set_rest_pose(bent.editor)
     assert not session.is_posed
     np.testing.assert_array_equal(session.state.positions, before.positions)
     np.testing.assert_array_equal(session.drawing.mesh.vertices, before.positions)
@@ -40,7 +41,7 @@ def test_nothing_moves(bent):
 
 def test_the_picture_stays_on_the_mesh(bent):
     before = bent.editor.session.drawing
-    bent.editor.bake_pose()
+    gestures.set_rest_pose(bent.editor)
     after = bent.editor.session.drawing
     assert after.image is before.image
     np.testing.assert_array_equal(after.uv, before.uv)
@@ -50,7 +51,7 @@ def test_the_picture_stays_on_the_mesh(bent):
 
 
 def test_the_drawing_springs_back_to_the_new_rest_pose(bent):
-    bent.editor.bake_pose()
+    gestures.set_rest_pose(bent.editor)
     session = bent.editor.session
     baked = session.state.positions
     session.begin("There and back")
@@ -59,14 +60,14 @@ def test_the_drawing_springs_back_to_the_new_rest_pose(bent):
         session.settle()
     session.commit()
     assert np.abs(session.state.positions - baked).max() < 1.0
-    bent.editor.reset_pose()
+    gestures.reset_pose(bent.editor)
     np.testing.assert_array_equal(session.state.positions, baked)
 
 
 def test_undo_and_redo_restore_every_bit(bent):
     session = bent.editor.session
     before, drawing = bits(session.state), session.drawing
-    bent.editor.bake_pose()
+    gestures.set_rest_pose(bent.editor)
     after, baked = bits(session.state), session.drawing
     assert session.history.undo_label == "Make pose the rest pose"
     bent.editor.undo()
@@ -88,7 +89,7 @@ def test_after_undo_it_bends_from_the_old_rest_pose(new_driver):
         driver.drag((105.0, 40.0), (95.0, 18.0))
         driver.editor.session.settle()
         if baking:
-            driver.editor.bake_pose()
+            gestures.set_rest_pose(driver.editor)
             driver.editor.undo()
         session = driver.editor.session
         session.begin("Drag")
@@ -100,25 +101,25 @@ def test_after_undo_it_bends_from_the_old_rest_pose(new_driver):
 
 def test_at_rest_there_is_nothing_to_do(pinned):
     depth = pinned.editor.session.history.depth
-    pinned.editor.bake_pose()
+    gestures.set_rest_pose(pinned.editor)
     assert pinned.editor.session.history.depth == depth
 
 
 def test_a_flipped_face_is_told_and_nothing_has_changed(pinned):
     session = pinned.editor.session
     pose = session.state.positions * [-1.0, 1.0]
-    pinned.editor.apply_pose(session.state.pins, pose)
+    gestures.apply_pose(pinned.editor, session.state.pins, pose)
     before, depth = session.state, session.history.depth
     count = len(session.drawing.mesh.faces)
     with pytest.raises(InputError, match=rf"the right way up, but {count} of {count} are flipped or flat"):
-        pinned.editor.bake_pose()
+        gestures.set_rest_pose(pinned.editor)
     assert session.state is before
     assert session.history.depth == depth
     assert not session.history.is_open
 
 
 def test_it_is_saved_and_opened_as_any_drawing(bent, tmp_path):
-    bent.editor.bake_pose()
+    gestures.set_rest_pose(bent.editor)
     document = bent.editor.session.document
     opened = load(save(document, tmp_path / "a.akap").path)
     np.testing.assert_array_equal(opened.drawing.mesh.vertices, document.state.positions)
@@ -126,7 +127,7 @@ def test_it_is_saved_and_opened_as_any_drawing(bent, tmp_path):
 
 
 def test_a_recording_bakes_again(bent, drawing):
-    bent.editor.bake_pose()
+    gestures.set_rest_pose(bent.editor)
     bent.drag((95.0, 18.0), (90.0, 50.0))
     session = bent.editor.session
     session.settle()

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.settings import Settings
@@ -49,7 +50,9 @@ def edit_at_random(driver, seed, edits=25):
             end()
 
     def memory():
-        editor.set_settings(driver.state.settings.with_parameter("memory", dice.choice([0.0, 0.5, 1.0])))
+        gestures.set_settings(
+            editor, driver.state.settings.with_parameter("memory", dice.choice([0.0, 0.5, 1.0]))
+        )
 
     def there_and_back():
         driver.undo()
@@ -63,10 +66,10 @@ def edit_at_random(driver, seed, edits=25):
         driver.settle,
         driver.undo,
         there_and_back,
-        editor.remove_selected,
+        lambda: gestures.remove_selected_pins(editor),
         editor.select_all,
         memory,
-        editor.reset_pose,
+        lambda: gestures.reset_pose(editor),
     ]
     for at in (HEAD, NECK, END):
         driver.click(at)
@@ -215,7 +218,7 @@ def test_on_another_mesh_a_pin_beside_the_drawing_is_named(drawing):
 
 
 def test_a_recording_is_replayed_with_other_settings(driver, drawing):
-    a = driver.editor.add_pin(NECK)
+    a = gestures.add_pin(driver.editor, NECK)
     assert a is not None
     other = Settings("akap", (("dirichlet", False), ("memory", 0.0)))
     states = [moment.state for moment in replay(driver.session.recording, drawing, lambda _: other)]
@@ -223,7 +226,7 @@ def test_a_recording_is_replayed_with_other_settings(driver, drawing):
 
 
 def test_pins_with_the_same_id_are_refused_with_their_line(driver, drawing):
-    assert driver.editor.add_pin(NECK) is not None
+    assert gestures.add_pin(driver.editor, NECK) is not None
     recording = written_and_read(driver.session.recording)
     event = next(event for event in recording.events if event["do"] == "pins")
     line = recording.events.index(event) + 2

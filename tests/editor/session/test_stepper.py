@@ -5,6 +5,7 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.session.edits import (
     AddPose,
@@ -233,7 +234,7 @@ def test_fields_and_edits_wait_for_a_step_in_a_real_thread(drawing):
         driver.settle()
         found = thread.submit(driver.session.vector_fields).result()
         driver.release(driver.where(3))
-        driver.editor.add_pin((45.0, 40.0))
+        gestures.add_pin(driver.editor, (45.0, 40.0))
     assert found is not None
     assert found[0].shape == driver.state.positions.shape
     assert driver.session.vector_fields() is None, "of other pins"

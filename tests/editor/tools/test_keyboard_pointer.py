@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import KeyEvent, PointerEvent
 from akap_editor.editor.tools.keyboard_pointer import (
@@ -165,7 +166,7 @@ def test_the_mouse_takes_over_again(driver):
 def test_it_hinders_no_edit_and_stays(pinned):
     toggle_keyboard_pointer(pinned.editor)
     pinned.editor.select({pinned.ids[0]})
-    pinned.editor.remove_selected()
+    gestures.remove_selected_pins(pinned.editor)
     pinned.undo()
     pinned.editor.cancel()
     assert len(pinned.ids) == 3

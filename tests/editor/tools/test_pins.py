@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.editor import PICK_RADIUS
 from akap_editor.editor.events import PointerEvent
@@ -145,11 +146,11 @@ def test_other_buttons_do_not_end_a_gesture(pinned, enter):
 def test_edits_wait_for_the_end_of_a_gesture(pinned, enter):
     name = enter(pinned)
     before = pinned.everything
-    pinned.editor.remove_pins([1, 2, 3])
-    pinned.editor.reset_pose()
+    gestures.remove_pins(pinned.editor, [1, 2, 3])
+    gestures.reset_pose(pinned.editor)
     pinned.redo()
-    assert pinned.editor.add_pin((50.0, 50.0)) is None
-    pinned.editor.set_settings(pinned.state.settings.with_parameter("memory", 0.0))
+    assert gestures.add_pin(pinned.editor, (50.0, 50.0)) is None
+    gestures.set_settings(pinned.editor, pinned.state.settings.with_parameter("memory", 0.0))
     assert pinned.tool == name
     assert pinned.everything == before
 
@@ -222,7 +223,7 @@ def test_adding_and_removing_pins_moves_no_vertex_even_while_it_settles(pinned):
     pinned.drag(HEAD, (25.0, 45.0), steps=2)
     assert pinned.editor.moving
     pose = pinned.state.positions.tobytes()
-    pinned.editor.remove_pins([1, 2])
+    gestures.remove_pins(pinned.editor, [1, 2])
     pinned.settle()
     assert pinned.state.positions.tobytes() == pose
 
@@ -268,8 +269,8 @@ def test_pins_are_picked_within_a_radius_on_the_screen(driver, zoom, ui_scale):
 
 
 def test_the_nearest_of_several_pins_is_picked(driver):
-    driver.editor.add_pin(NECK)
-    driver.editor.add_pin((64.0, 40.0))
+    gestures.add_pin(driver.editor, NECK)
+    gestures.add_pin(driver.editor, (64.0, 40.0))
     driver.editor.camera = Camera()
     assert driver.editor.pin_at((62.5, 40.0)) == 1
     assert driver.editor.pin_at((63.5, 40.0)) == 2

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.comparison import MethodComparison
 from akap_editor.editor.document.remesh import carried_over
 from akap_editor.editor.document.rest_pose import baked_state
@@ -12,7 +13,7 @@ from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.edits import PaintStiffness, SetAngles
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.tools.rotate import RING, ring_pin, set_angle, toggle_hold
+from akap_editor.editor.tools.rotate import RING, ring_pin
 from akap_editor.errors import InputError
 from tests.support.editor_driver import Driver, bits
 
@@ -136,7 +137,7 @@ def test_the_ring_is_that_of_the_pin_nearby_or_of_the_only_selected_one(pinned):
 
 def test_a_method_that_cannot_turn_pins_has_no_ring_and_keeps_the_angles(pinned):
     turn(pinned, 2, 20)
-    pinned.editor.set_settings(Settings("arap", ()))
+    gestures.set_settings(pinned.editor, Settings("arap", ()))
     pinned.key("alt")
     point(pinned, "move", on_ring(pinned, 2, 0))
     assert ring_pin(pinned.editor) is None
@@ -152,12 +153,12 @@ def test_holding_and_releasing_move_nothing(pinned):
     pose, here = pinned.state.positions, pinned.session.pin_angle(3)
     assert abs(here) > 0.05
     pinned.editor.select({2, 3})
-    toggle_hold(pinned.editor)
+    gestures.toggle_held_angles(pinned.editor)
     assert pinned.state.pin(3).angle == pytest.approx(here)
     assert pinned.state.pin(1).angle is None
     pinned.settle()
     assert pinned.state.positions is pose
-    toggle_hold(pinned.editor)
+    gestures.toggle_held_angles(pinned.editor)
     pinned.settle()
     assert pinned.state.positions is pose
     assert np.isnan(pinned.state.angles).all()
@@ -165,20 +166,20 @@ def test_holding_and_releasing_move_nothing(pinned):
 
 
 def test_angles_by_number(pinned):
-    set_angle(pinned.editor, 2, math.radians(-30))
+    gestures.set_pin_angle(pinned.editor, 2, math.radians(-30))
     pinned.settle()
     assert pinned.session.pin_angle(2) == pytest.approx(math.radians(-30), abs=NEAR)
     before = pinned.everything
     for bad in (np.nan, np.inf, 1e6):
         with pytest.raises(InputError, match="angle of pin 2: expected a number"):
-            set_angle(pinned.editor, 2, bad)
+            gestures.set_pin_angle(pinned.editor, 2, bad)
     assert pinned.everything == before
-    set_angle(pinned.editor, 2, None)
+    gestures.set_pin_angle(pinned.editor, 2, None)
     assert pinned.state.pin(2).angle is None
 
 
 def test_a_pin_turns_a_little_in_each_step_and_the_rest_comes_later(pinned):
-    set_angle(pinned.editor, 2, 1.0)
+    gestures.set_pin_angle(pinned.editor, 2, 1.0)
     pinned.advance()
     assert 0.05 < pinned.session.pin_angle(2) < 0.3
     pinned.settle()
@@ -190,7 +191,7 @@ def test_a_reset_or_baked_drawing_holds_the_angles_that_it_has_then(pinned):
     baked = baked_state(pinned.state, pinned.session.drawing)
     assert baked.pin(2).angle == pytest.approx(0.0, abs=1e-12)
     assert baked.pin(1).angle is None
-    pinned.editor.reset_pose()
+    gestures.reset_pose(pinned.editor)
     assert pinned.state.pin(2).angle == pytest.approx(0.0, abs=1e-12)
     pinned.settle()
     assert not pinned.session.is_posed
@@ -204,7 +205,7 @@ def test_angles_are_carried_over_to_another_mesh(pinned, finer_drawing):
 
 def test_a_replay_gives_the_same_poses_to_the_last_bit(pinned, drawing):
     turn(pinned, 2, 30, 60)
-    toggle_hold(pinned.editor)
+    gestures.toggle_held_angles(pinned.editor)
     pinned.drag(pinned.where(1), (24.0, 48.0))
     pinned.settle()
     *_, last = replay(pinned.session.recording, drawing)
@@ -220,7 +221,7 @@ def test_a_second_method_beside_turns_as_well(pinned):
         comparison.follow(pinned.session)
     assert comparison.session is not None
     assert comparison.session.pin_angle(2) == pytest.approx(math.radians(40), abs=NEAR)
-    set_angle(pinned.editor, 2, None)
+    gestures.set_pin_angle(pinned.editor, 2, None)
     comparison.follow(pinned.session)
     assert comparison.session.state.pin(2).angle is None
 

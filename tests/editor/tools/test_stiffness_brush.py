@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.remesh import carried_over
 from akap_editor.editor.document.rest_pose import baked_state
 from akap_editor.editor.document.settings import Settings
@@ -174,7 +175,7 @@ def test_other_methods_keep_it_and_bend_without(pinned):
     stroke(pinned, NECK)
     factors = pinned.state.stiffness
     pinned.editor.chosen_tool = "pins"
-    pinned.editor.set_settings(Settings("arap", ()))
+    gestures.set_settings(pinned.editor, Settings("arap", ()))
     pinned.drag(pinned.where(3), (90.0, 60.0))
     pinned.settle()
     assert pinned.state.stiffness is factors

@@ -166,6 +166,7 @@ EDIT = """
 import sys
 from dataclasses import replace
 from pathlib import Path
+from akap_editor.editor import gestures
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
 from akap_editor.io.akap.autosave import Autosave
@@ -183,7 +184,7 @@ def act(kind, at):
     frame()
 
 for index in range(10):
-    editor.add_pin((20.0 + 18 * index, 80.0))
+    gestures.add_pin(editor, (20.0 + 18 * index, 80.0))
     frame()
 at = editor.session.state.pins[3].target
 act("press", at)

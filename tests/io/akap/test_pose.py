@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.editor import Editor
 from akap_editor.errors import InputError
@@ -46,7 +47,7 @@ def test_applying_is_one_gesture_that_keeps_the_pose(make_document, picture):
     editor = Editor()
     editor.open(make_document(picture, pins=(), positions=document.drawing.mesh.vertices))
     before = editor.session.state
-    editor.apply_pose(pose.pins, pose.positions)
+    gestures.apply_pose(editor, pose.pins, pose.positions)
     state = editor.session.state
     assert state.positions.tobytes() == document.state.positions.tobytes()
     assert [(pin.id, pin.face, pin.weights.tolist()) for pin in state.pins] == [(3, 1, [0.5, 0.25, 0.25])]

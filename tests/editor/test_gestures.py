@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
 from akap_editor.editor.session.replay import replay
@@ -70,7 +71,7 @@ def test_a_series_ends_with_whatever_else_is_done(pinned, between):
     elif between == "selection":
         pinned.editor.select({2})
     elif between == "other edit":
-        pinned.editor.add_pin((45.0, 55.0))
+        gestures.add_pin(pinned.editor, (45.0, 55.0))
         pinned.editor.select({3})
         depth += 1
     else:
@@ -106,12 +107,12 @@ def test_a_series_is_replayed_as_one_entry(pinned, drawing):
 
 
 def test_backspace_removes_the_last_added(pinned):
-    pinned.editor.remove_pins({2})
+    gestures.remove_pins(pinned.editor, {2})
     pinned.click((45.0, 55.0))
     for left in ([1, 3], [1], []):
-        pinned.editor.remove_last()
+        gestures.remove_last_pin(pinned.editor)
         assert pinned.ids == left
-    pinned.editor.remove_last()
+    gestures.remove_last_pin(pinned.editor)
     pinned.undo()
     assert pinned.ids == [1]
 
@@ -223,16 +224,16 @@ def test_a_request_goes_with_its_pin(pinned):
 
 def test_a_pin_goes_to_the_values_given_in_one_gesture(pinned):
     depth = pinned.depth
-    pinned.editor.place_pin(3, (95.0, 55.0))
+    gestures.move_pin(pinned.editor, 3, (95.0, 55.0))
     pinned.settle()
     np.testing.assert_allclose(pinned.where(3), (95.0, 55.0), atol=0.25)
     assert (pinned.depth, pinned.session.history.undo_label) == (depth + 1, "Place pin")
     pinned.undo()
     before = pinned.everything
     with pytest.raises(InputError):
-        pinned.editor.place_pin(3, (np.nan, 0.0))
+        gestures.move_pin(pinned.editor, 3, (np.nan, 0.0))
     with pytest.raises(InputError):
-        pinned.editor.place_pin(9, (1.0, 1.0))
+        gestures.move_pin(pinned.editor, 9, (1.0, 1.0))
     assert pinned.everything == before
 
 
