@@ -7,6 +7,7 @@ import glfw
 import numpy as np
 import pytest
 
+from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.editor import PICK_RADIUS
 from akap_editor.editor.session.stepper import PIN_TOLERANCE
@@ -297,14 +298,14 @@ def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkey
         pinned.begin_drag(hand, start)
         move(hand, (start[0], start[1] + 100))
         hand.yield_(2)
-        monkeypatch.setattr(pinned.session._bending.deformer, "step", fail)
+        monkeypatch.setattr(AkapDeformer, "step", fail)
         move(hand, (start[0], start[1] + 200))
         hand.yield_(2)
         seen.append((pinned.state.error, pinned.tool))
         hand.mouse_up(0)
         hand.item_click("//That did not work###dialog That did not work/OK")
 
-    def fail(positions, targets):
+    def fail(deformer, positions, targets):
         raise SolverError("the pose became infinite")
 
     pinned.do(actions)
