@@ -10,6 +10,7 @@ import pytest
 
 from akap_editor.app import window as window_module
 from akap_editor.app.canvas import scene as picture_module
+from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor import gestures
 from akap_editor.editor.editor import FRAME_BUDGET
 from akap_editor.editor.session.edits import SetTargets
@@ -93,14 +94,13 @@ def test_a_frame_stops_stepping_when_its_time_is_over(pinned, monkeypatch):
 @pytest.fixture
 def held(pinned, monkeypatch):
     """A drag whose first step is computed until ``open`` is set."""
-    gate, deformer = Event(), pinned.session._bending.deformer
-    step = deformer.step
+    gate, step = Event(), AkapDeformer.step
 
     def wait(*arguments):
         assert gate.wait(60)
         return step(*arguments)
 
-    monkeypatch.setattr(deformer, "step", wait)
+    monkeypatch.setattr(AkapDeformer, "step", wait)
     x, y = pinned.pin_place(3)
     pinned.session.begin("Bend")
     pinned.session.apply(SetTargets({3: (x, y - 40)}))
@@ -118,7 +118,7 @@ def test_menus_view_and_drags_answer_while_a_step_is_computed(held):
         hand.menu_click("View")
         assert imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
         hand.key_press(imgui.Key.escape)
-        hand.mouse_move_to_pos(imgui.ImVec2(*ui.comparison))
+        hand.mouse_move_to_pos(imgui.ImVec2(*ui.empty_place))
         hand.mouse_wheel_y(2.0)
         hand.yield_(2)
         assert ui.editor.camera.zoom > zoom
@@ -155,9 +155,8 @@ def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, monkey
 @pytest.mark.parametrize("ends", ["at rest", "switched off", "closed"])
 def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkeypatch, ends):
     pinned.state.view.vectors = True
-    gate, deformer = Event(), pinned.session._bending.deformer
-    fields = deformer.vector_fields
-    monkeypatch.setattr(deformer, "vector_fields", lambda *way: gate.wait(60) and fields(*way))
+    gate, fields = Event(), AkapDeformer.vector_fields
+    monkeypatch.setattr(AkapDeformer, "vector_fields", lambda *motion: gate.wait(60) and fields(*motion))
     gestures.move_pin(pinned.editor, 3, tuple(pinned.pin_place(3) - (0, 20)))
     while not pinned.state.view.waiting:
         pinned.frame()
@@ -175,9 +174,8 @@ def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkey
 
 def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatch):
     pinned.state.view.vectors = True
-    gate, deformer = Event(), pinned.session._bending.deformer
-    fields = deformer.vector_fields
-    monkeypatch.setattr(deformer, "vector_fields", lambda *way: gate.wait(60) and fields(*way))
+    gate, fields = Event(), AkapDeformer.vector_fields
+    monkeypatch.setattr(AkapDeformer, "vector_fields", lambda *motion: gate.wait(60) and fields(*motion))
     x, y = pinned.pin_place(3)
     pinned.session.begin("Bend")
     pinned.session.apply(SetTargets({3: (x, y - 40)}))
@@ -200,7 +198,7 @@ def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatc
 @pytest.mark.parametrize("press", ["wheel", "key"])
 def test_view_changes_are_seen_in_the_very_next_frame(ui, press):
     io = imgui.get_io()
-    io.add_mouse_pos_event(*ui.comparison)
+    io.add_mouse_pos_event(*ui.empty_place)
     ui.settle()
     before = one_frame(ui)
     if press == "wheel":
@@ -238,7 +236,7 @@ def test_a_kept_picture_shows_every_change(pinned, monkeypatch):
     x, y = pinned.pin_place(3)
     changes = [
         lambda: hover(pinned.screen(pinned.pin_place(2))),
-        lambda: setattr(pinned.editor, "camera", pinned.editor.camera.zoomed(1.3, pinned.comparison)),
+        lambda: setattr(pinned.editor, "camera", pinned.editor.camera.zoomed(1.3, pinned.empty_place)),
         lambda: setattr(pinned.state, "checker", False),
         lambda: setattr(pinned.state, "show_mesh", True),
         lambda: setattr(pinned.state.view, "ghost", True),

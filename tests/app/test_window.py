@@ -75,7 +75,7 @@ def test_it_wakes_for_a_tooltip(loop):
     assert imgui.get_current_context().hover_item_delay_id != 0
     assert all(0 < seconds <= imgui.get_style().hover_delay_normal + 0.02 for seconds, _ in waits)
     assert waits[1][1] == waits[0][1] + SETTLE_FRAMES
-    glfw.set_cursor_pos(loop.ui.window._handle, *loop.ui.comparison)
+    glfw.set_cursor_pos(loop.ui.window._handle, *loop.ui.empty_place)
     loop.ui.settle()
     assert widgets.tooltip_due() == 0.0
 
@@ -151,8 +151,8 @@ def test_without_a_document_the_window_shows_how_to_begin(ui):
     for label in ("Save", "Export...", "Fit in Window"):
         command = next(c for c in window_module.commands.COMMANDS if c.label == label)
         assert not command.enabled(ui.state)
-    ui.click(ui.comparison)
-    ui.wheel(ui.comparison, 1.0)
+    ui.click(ui.empty_place)
+    ui.wheel(ui.empty_place, 1.0)
     assert not ui.state.error
 
 

@@ -138,8 +138,8 @@ def machine(drawing, worker):
     return Editing
 
 
-@pytest.mark.parametrize("comparison", [False, True], ids=["at once", "in a thread"])
-def test_whatever_is_done_can_be_undone_and_redone_and_replayed(drawing, comparison):
+@pytest.mark.parametrize("in_thread", [False, True], ids=["at once", "in a thread"])
+def test_whatever_is_done_can_be_undone_and_redone_and_replayed(drawing, in_thread):
     with ThreadPoolExecutor(1) as thread:
-        kind = machine(drawing, thread if comparison else INLINE)
+        kind = machine(drawing, thread if in_thread else INLINE)
         run_state_machine_as_test(kind, settings=settings(max_examples=20, stateful_step_count=30))

@@ -362,8 +362,8 @@ def test_the_drawing_under_the_pointer_is_looked_up_once_for_each_place_and_pose
     looked, find = [], TriMesh.find
     monkeypatch.setattr(TriMesh, "find", lambda mesh, *args: looked.append(args) or find(mesh, *args))
     editor = pinned.editor
-    inside, comparison = editor.camera.to_screen((84.0, 45.0)), editor.camera.to_screen((2.0, 2.0))
-    for place, there in ((inside, True), (comparison, False), (inside, True)):
+    inside, outside = editor.camera.to_screen((84.0, 45.0)), editor.camera.to_screen((2.0, 2.0))
+    for place, there in ((inside, True), (outside, False), (inside, True)):
         editor.handle_event(PointerEvent("move", place))
         assert [editor.would_add_pin, editor.would_add_pin] == [there, there]
     assert len(looked) == 3

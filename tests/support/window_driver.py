@@ -62,7 +62,7 @@ class WindowDriver:
         self.window.state = AppState(editor, exporter=self.window.state.exporter)
         self.editor.ui_scale = self.window.scale
         self.state.show(document)
-        self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.comparison)))
+        self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.empty_place)))
         assert not self.state.error
 
     # -- what is there -------------------------------------------------------------------------------------
@@ -93,7 +93,7 @@ class WindowDriver:
         return type(self.editor.tool).__name__
 
     @property
-    def comparison(self) -> Point:
+    def empty_place(self) -> Point:
         """A place on the canvas where no drawing is."""
         left, top, _, _ = self.editor.canvas
         return left + 8, top + 8

@@ -53,7 +53,7 @@ def test_h_hides_the_pins_while_it_is_held(pinned):
     snapshots = []
 
     def hold(hand):
-        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.comparison))
+        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.empty_place))
         hand.key_down(Key.h)
         hand.yield_(2)
         pinned.on_main_thread(hand, lambda: pinned.window.after_draw.append(shoot))

@@ -90,7 +90,7 @@ def test_the_mouse_takes_over_where_it_really_moves(ui):
     tools = []
 
     def act(hand):
-        x, y = ui.comparison
+        x, y = ui.empty_place
         hand.mouse_move_to_pos(imgui.ImVec2(x, y))
         hand.key_press(Key.c)
         for way in (2, 60):

@@ -173,7 +173,7 @@ def test_escape_and_a_click_beside_it_close_it_and_run_nothing(pinned):
     def click_beside(hand):
         hand.key_press(Key.f3)
         hand.yield_(3)
-        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.comparison))
+        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.empty_place))
         hand.mouse_click(0)
 
     pinned.do(click_beside)

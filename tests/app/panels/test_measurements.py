@@ -33,7 +33,7 @@ def measuring(session, clock, cost):
 def frames(measurements, session, clock, measure, count, step=1 / 60):
     for _ in range(count):
         session.step()
-        session._settling = 100  # goes on moving, wherever the pins are
+        session.apply(SetTargets({2: session.state.pin(2).target}))  # goes on moving, wherever the pins are
         measurements.look(session, measure)
         clock.now += step
 
@@ -54,7 +54,7 @@ def test_the_pose_at_rest_is_measured_at_once_and_only_once(session, clock):
     session.begin("Bend")
     session.apply(SetTargets({2: (190.0, 60.0)}))
     frames(measurements, session, clock, measure, 3)
-    session._settling = 0
+    session.stop_motion()
     before = len(calls)
     for _ in range(5):
         measurements.look(session, measure)

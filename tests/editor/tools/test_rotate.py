@@ -122,14 +122,14 @@ def test_the_ring_is_that_of_the_pin_nearby_or_of_the_only_selected_one(pinned):
         point(pinned, "move", at)
         return ring_pin(pinned.editor)
 
-    comparison = pinned.editor.camera.to_screen((2.0, 78.0))
+    outside = pinned.editor.camera.to_screen((2.0, 78.0))
     assert shown(on_ring(pinned, 2, 30)) is None, "only with Alt"
     pinned.key("alt")
     assert shown(on_ring(pinned, 2, 30)) == 2
     assert shown(pinned.editor.pins_on_screen()[3]) == 3
-    assert shown(comparison) is None
+    assert shown(outside) is None
     pinned.editor.select({1})
-    assert shown(comparison) == 1
+    assert shown(outside) == 1
     assert shown(on_ring(pinned, 2, 30)) == 2
     pinned.editor.chosen_tool = "hand"
     assert shown(on_ring(pinned, 2, 30)) is None
