@@ -41,7 +41,7 @@ def test_a_click_adds_a_pin_exactly_there(ui):
 
 def test_a_click_beside_the_drawing_adds_none_and_deselects(pinned):
     pinned.editor.select({1})
-    pinned.click(pinned.comparison)
+    pinned.click(pinned.empty_place)
     assert len(pinned.pins) == 3
     assert not pinned.editor.selection
     assert pinned.session.history.depth == 0
@@ -162,7 +162,7 @@ def test_escape_in_a_pan_goes_back(ui):
 
 def test_space_released_where_the_canvas_does_not_hear_it_leaves_no_hand(ui):
     def actions(hand):
-        move(hand, ui.comparison)
+        move(hand, ui.empty_place)
         hand.key_down(Key.space)
         hand.yield_(2)
         assert ui.editor.pans_on_drag
@@ -345,7 +345,7 @@ def test_pins_are_drawn_where_they_are_and_only_when_shown(pinned):
 
 
 def test_the_drawing_is_shown_where_the_camera_says(ui, image):
-    background = ui.screenshot()[int(ui.comparison[1]) + 2, int(ui.comparison[0]) + 2]
+    background = ui.screenshot()[int(ui.empty_place[1]) + 2, int(ui.empty_place[0]) + 2]
     ui.state.checker = False
     shot = ui.screenshot().astype(int)
     inside = ui.screen((70.0, 80.0))
