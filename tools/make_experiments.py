@@ -147,7 +147,7 @@ EXPERIMENTS = (
         circle_tail,
         {
             "AKAP, as in the paper": (None, ""),
-            "AKAP with rest memory": (None, "memory"),
+            "AKAP with memory": (None, "memory"),
             "ARAP": ("arap", ""),
         },
     ),
