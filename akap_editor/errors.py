@@ -1,5 +1,9 @@
 """The exceptions that callers may want to tell apart."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
 
 class AkapError(Exception):
     """Base of every error this package raises on purpose; the message is one sentence for the user."""
@@ -19,3 +23,12 @@ class DisplayError(AkapError):
 
 class GraphicsError(AkapError):
     """There is no OpenGL 3.3."""
+
+
+@contextmanager
+def error_context(name: str | Path) -> Iterator[None]:
+    """Put ``name``, e.g. of a file or an entry, before the message of an InputError raised in the block."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from error

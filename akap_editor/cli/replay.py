@@ -12,8 +12,7 @@ from ..editor.document.easing import EASINGS
 from ..editor.document.framing import frame_box, union_of_boxes
 from ..editor.document.settings import Settings
 from ..editor.session.replay import replay
-from ..errors import InputError
-from ..io.akap.json_records import inside
+from ..errors import InputError, error_context
 from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.animation.frames import export_frames, export_kind
 from ..io.open_document import PROJECT_SUFFIX, open_document
@@ -104,7 +103,7 @@ def replay_recording(
     duration, play = _source(path, drawing_path, method, variant, pause)
     first, last = _range(duration, start, end)
     times = [last] if kind == "picture" else frame_times(first, last, fps, speed, ease)
-    with inside(path), click.progressbar(play(times), length=len(times), label="Bending") as bar:
+    with error_context(path), click.progressbar(play(times), length=len(times), label="Bending") as bar:
         frames = list(bar)
     frames = _in_turn(frames, ping_pong, kind == "animation" and plays != 1)
     box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])

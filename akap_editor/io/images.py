@@ -73,11 +73,11 @@ def decode_image(
             picture = Image.open(BytesIO(data), formats=formats)
         except UnidentifiedImageError:
             came = f"a damaged file or one of another kind (it begins with {data[:8]!r})"
-            raise InputError(f"expected a {either(formats)} picture, got {came}") from None
+            raise InputError(f"expected a {join_with_or(formats)} picture, got {came}") from None
         except Image.DecompressionBombError as error:
             raise InputError(f"{too_large} a much larger one") from error
         except Exception as error:  # Pillow meets damage with exceptions of many kinds
-            raise InputError(f"expected a {either(formats)} picture, got a damaged one") from error
+            raise InputError(f"expected a {join_with_or(formats)} picture, got a damaged one") from error
         if picture.width * picture.height > MAX_PIXELS:
             raise InputError(f"{too_large} {picture.width} x {picture.height} pixels")
         if size not in (None, picture.size):
@@ -92,7 +92,7 @@ def decode_image(
             raise InputError(f"expected a whole {kind} picture, got a damaged or truncated one") from error
 
 
-def either(names: Sequence[str]) -> str:
+def join_with_or(names: Sequence[str]) -> str:
     """Names for a sentence: "a, b or c"."""
     return " or ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
 

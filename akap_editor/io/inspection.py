@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..geometry.distortion import distortion
 from ..meshing.picture_mesh import mesh_picture
 from .akap import project as project_file
-from .akap.json_records import get, pairs, parse_record
+from .akap.json_records import pairs, parse_record, require
 from .akap.pose import FORMAT as POSE_FORMAT
 from .akap.state_records import read_pins
 from .atomic import read_file
@@ -118,10 +118,13 @@ def _inspect_drawing(data: bytes) -> tuple[Facts, list[str]]:
 
 def _inspect_pose(data: bytes) -> tuple[Facts, list[str]]:
     record = parse_record(data)
-    header = get(record, "drawing", dict)
-    count, positions = get(header, "vertices", int), pairs(get(record, "positions", list), "positions")
-    pins = read_pins(get(record, "pins", list))
-    facts = {"drawing": get(header, "name", str), "vertices": count, "pins": len(pins)}
+    header = require(record, "drawing", dict)
+    count, positions = (
+        require(header, "vertices", int),
+        pairs(require(record, "positions", list), "positions"),
+    )
+    pins = read_pins(require(record, "pins", list))
+    facts = {"drawing": require(header, "name", str), "vertices": count, "pins": len(pins)}
     if len(positions) != count:
         return facts, [f"expected positions of {count} vertices, got {len(positions)}"]
     return facts, []

@@ -5,9 +5,8 @@ from pathlib import Path
 from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import make_drawing
 from ..editor.session.replay import Replay
-from ..errors import InputError
+from ..errors import InputError, error_context
 from .akap import project as project_file
-from .akap.json_records import inside
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
 from .images import read_image, read_mask
 from .mesh_files import reader as mesh_files
@@ -46,7 +45,7 @@ def open_document(path: str | Path, mask: str | Path | None = None) -> Document:
 def _end_of(path: Path) -> Document:
     """What a recording leads to."""
     recording = read_recording(path)
-    with inside(path):
+    with error_context(path):
         done = Replay(recording, recorded_drawing(recording))
         for _ in done.events():
             pass

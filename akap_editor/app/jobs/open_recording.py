@@ -6,8 +6,7 @@ from pathlib import Path
 from ...editor.animation.session_playback import SessionPlayback
 from ...editor.session.replay import Replay
 from ...editor.session.session import Session
-from ...errors import InputError
-from ...io.akap.json_records import inside
+from ...errors import InputError, error_context
 from ...io.akap.recording import read_recording, recorded_drawing
 from .task import Progress, Steps, Task
 
@@ -20,7 +19,7 @@ def reenacting(path: Path, show: Show) -> Task:
     Raises InputError where the file is no recording.
     """
     recording = read_recording(path)
-    with inside(path):
+    with error_context(path):
         replay = Replay(recording, recorded_drawing(recording))
     playback = SessionPlayback(replay.clock)
     if not recording.events:

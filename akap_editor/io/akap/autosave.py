@@ -14,12 +14,12 @@ import platformdirs
 from filelock import FileLock, Timeout
 
 from ...editor.document.document import Document, EditState
-from ...errors import InputError
+from ...errors import InputError, error_context
 from ..atomic import read_file, write_atomic
 from ..open_document import PROJECT_SUFFIX
 from . import project as project_file
 from .archive import Archive
-from .json_records import get, inside, parse_record
+from .json_records import parse_record, require
 
 FOLDER_VARIABLE = "AKAP_EDITOR_STATE"  # environment: another folder, e.g. for tests
 SECONDS = 60.0
@@ -61,9 +61,9 @@ class RecoveryCopy:
     def read(self) -> Document:
         """The document; ``path`` is that of the file it belongs to, if any. Raises InputError."""
         data = read_file(self.path, "a copy of a drawing")
-        with inside(self.path):
+        with error_context(self.path):
             document = project_file.decode(data)
-            origin = get(parse_record(Archive(data).read(ORIGIN, MAX_ORIGIN_BYTES)), "path", str)
+            origin = require(parse_record(Archive(data).read(ORIGIN, MAX_ORIGIN_BYTES)), "path", str)
         return replace(document, path=Path(origin) if origin else None)
 
     def write(self, document: Document) -> None:

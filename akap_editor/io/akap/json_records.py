@@ -2,11 +2,8 @@
 
 import json
 import reprlib
-from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib import metadata
 from itertools import chain
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -20,15 +17,6 @@ Json = dict[str, Any]
 T = TypeVar("T", bool, int, str, list[Any], Json)
 
 _KINDS = {bool: "true or false", int: "an integer", str: "a text", list: "a list", dict: "an object"}
-
-
-@contextmanager
-def inside(name: str | Path) -> Iterator[None]:
-    """An InputError from within the block begins with the name of the file or entry that it is about."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from error
 
 
 def parse_record(text: bytes) -> Json:
@@ -49,14 +37,14 @@ def parse_record(text: bytes) -> Json:
     return record
 
 
-def get(record: Json, name: str, kind: type[T], missing: T | None = None) -> T:
-    """The value of a key, of exactly this kind; ``missing`` where an optional key is not there.
+def optional(record: Json, name: str, kind: type[T], default: T) -> T:
+    """The value of a key, of exactly this type; ``default`` if there is no such key. Raises InputError."""
+    return require(record, name, kind) if name in record else default
 
-    Raises InputError on another kind, or where a key without ``missing`` is not there.
-    """
+
+def require(record: Json, name: str, kind: type[T]) -> T:
+    """The value of a key, of exactly this type. Raises InputError if it is missing or of another type."""
     if name not in record:
-        if missing is not None:
-            return missing
         raise InputError(f"expected {name} to be {_KINDS[kind]}, but it is missing")
     value = record[name]
     if type(value) is not kind:  # to isinstance, true would be an integer
@@ -80,9 +68,9 @@ def pairs(values: list[Any], name: str) -> Floats:
 
 def file_version(record: Json, expected: str) -> int:
     """The version of a record in the format ``expected``. Raises InputError on one of another format."""
-    if get(record, "format", str) != expected:
+    if require(record, "format", str) != expected:
         raise InputError(f"expected format {expected!r}, got {reprlib.repr(record['format'])}")
-    version = get(record, "version", int)
+    version = require(record, "version", int)
     if version < 1:
         raise InputError(f"expected a version from 1, got {version}")
     return version

@@ -3,10 +3,10 @@
 import json
 
 from ...editor.document.keyframes import NO_ANIMATION, Animation, Keyframe
-from ...errors import InputError
+from ...errors import InputError, error_context
 from ...geometry.validation import Floats
 from .archive import Archive, Entry
-from .json_records import Json, get, inside, numbers, parse_record
+from .json_records import Json, numbers, optional, parse_record, require
 from .poses import MAX_POINTS
 
 INDEX = "animation.json"
@@ -46,24 +46,27 @@ def read_keyframes(archive: Archive, vertices: int) -> Animation:
     if INDEX not in archive:
         return NO_ANIMATION
     text = archive.read(INDEX, _MAX_INDEX_BYTES)
-    with inside(INDEX):
+    with error_context(INDEX):
         record = parse_record(text)
-        keys, count = get(record, "keyframes", list), get(record, "poses", int)
+        keys, count = require(record, "keyframes", list), require(record, "poses", int)
         if len(keys) > MAX_KEYS:
             raise InputError(f"expected at most {MAX_KEYS} keyframes, got {len(keys)}")
         if not 0 <= count <= len(keys) or count * vertices > MAX_POINTS:
             most = min(len(keys), MAX_POINTS // vertices)
             raise InputError(f"expected poses to be a number from 0 to {most}, got {count}")
     poses = [archive.read_array(f"animation/{number}", "<f8", vertices, 2) for number in range(count)]
-    with inside(INDEX):
-        ease, loop = get(record, "ease", str, Animation.ease), get(record, "loop", bool, Animation.loop)
+    with error_context(INDEX):
+        ease, loop = (
+            optional(record, "ease", str, Animation.ease),
+            optional(record, "loop", bool, Animation.loop),
+        )
         return Animation(tuple(_key(key, poses) for key in keys), ease, loop)
 
 
 def _key(record: Json, poses: list[Floats]) -> Keyframe:
     if type(record) is not dict:
         raise InputError(f"expected keyframes to be objects, got {record!r:.40}")
-    time, number = numbers([record.get("time")], "time")[0], get(record, "pose", int)
+    time, number = numbers([record.get("time")], "time")[0], require(record, "pose", int)
     if not 0 <= number < len(poses):
         raise InputError(f"expected a pose below {len(poses)}, got {number}")
-    return Keyframe(float(time), poses[number], get(record, "ease", str) if "ease" in record else None)
+    return Keyframe(float(time), poses[number], require(record, "ease", str) if "ease" in record else None)

@@ -9,11 +9,11 @@ from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing
 from ...editor.document.pin import Pin
 from ...editor.session.recording import drawing_header
-from ...errors import InputError
+from ...errors import InputError, error_context
 from ...geometry.validation import Floats
 from ..atomic import read_file, write_atomic
-from .json_records import file_version, get, inside, pairs, parse_record, program_name, refuse_newer
-from .state_records import check_state, describe_pins, read_pins
+from .json_records import file_version, pairs, parse_record, program_name, refuse_newer, require
+from .state_records import check_state, read_pins
 
 POSE_SUFFIX = ".pose.json"
 FORMAT = "akap-pose"
@@ -34,7 +34,7 @@ def save_pose(document: Document, path: str | Path) -> None:
 
     Raises InputError where the file cannot be written or could not be read again; the old file is then kept.
     """
-    with inside(f"cannot write {path}"):
+    with error_context(f"cannot write {path}"):
         data = encode_pose(document)
     write_atomic(path, data)
 
@@ -46,7 +46,7 @@ def load_pose(path: str | Path, drawing: Drawing) -> SavedPose:
     of another mesh.
     """
     data = read_file(path, "a pose")
-    with inside(path):
+    with error_context(path):
         return decode_pose(data, drawing)
 
 
@@ -59,7 +59,7 @@ def encode_pose(document: Document) -> bytes:
         "version": VERSION,
         "program": program_name(),
         "drawing": drawing_header(drawing),
-        "pins": describe_pins(state.pins),
+        "pins": [pin.to_json() for pin in state.pins],
         "positions": state.positions.tolist(),
     }
     data = json.dumps(record, allow_nan=False, separators=(",", ":")).encode() + b"\n"
@@ -72,16 +72,16 @@ def decode_pose(data: bytes, drawing: Drawing) -> SavedPose:
     _check_size(data)
     record = parse_record(data)
     refuse_newer(file_version(record, FORMAT), VERSION)
-    header, there = get(record, "drawing", dict), drawing_header(drawing)
-    if get(header, "mesh", str) != there["mesh"]:
-        name, count = get(header, "name", str), get(header, "vertices", int)
+    header, there = require(record, "drawing", dict), drawing_header(drawing)
+    if require(header, "mesh", str) != there["mesh"]:
+        name, count = require(header, "name", str), require(header, "vertices", int)
         raise InputError(
             f"expected a pose of this very mesh, with {there['vertices']} vertices, got one of the drawing "
             f"{reprlib.repr(name)} with {count}"
         )
     vertices, faces = len(drawing.mesh.vertices), len(drawing.mesh.faces)
-    positions = pairs(get(record, "positions", list), "positions")
-    state = EditState(read_pins(get(record, "pins", list)), positions)
+    positions = pairs(require(record, "positions", list), "positions")
+    state = EditState(read_pins(require(record, "pins", list)), positions)
     check_state(state, vertices, faces)
     return SavedPose(state.pins, state.positions)
 

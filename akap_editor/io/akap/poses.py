@@ -4,9 +4,9 @@ import json
 from collections.abc import Sequence
 
 from ...editor.document.named_poses import NamedPose
-from ...errors import InputError
+from ...errors import InputError, error_context
 from .archive import Archive, Entry
-from .json_records import get, inside, parse_record
+from .json_records import parse_record, require
 
 INDEX = "poses.json"
 MAX_POSES = 1000
@@ -33,8 +33,8 @@ def read_poses(archive: Archive, vertices: int) -> tuple[NamedPose, ...]:
     if INDEX not in archive:
         return ()
     text = archive.read(INDEX, _MAX_INDEX_BYTES)
-    with inside(INDEX):
-        names = get(parse_record(text), "poses", list)
+    with error_context(INDEX):
+        names = require(parse_record(text), "poses", list)
         if len(names) > MAX_POSES:
             raise InputError(f"expected at most {MAX_POSES} poses, got {len(names)}")
         if not all(type(name) is str for name in names) or len(set(names)) < len(names):
@@ -43,5 +43,5 @@ def read_poses(archive: Archive, vertices: int) -> tuple[NamedPose, ...]:
         if points > MAX_POINTS:
             raise InputError(f"expected at most {MAX_POINTS} vertices in all poses, got {points}")
     arrays = (archive.read_array(f"poses/{number}", "<f8", vertices, 2) for number in range(len(names)))
-    with inside("poses"):
+    with error_context("poses"):
         return tuple(NamedPose(name, array) for name, array in zip(names, arrays, strict=True))

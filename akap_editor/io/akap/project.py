@@ -12,16 +12,25 @@ from PIL import Image
 
 from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing, Meshing
-from ...errors import InputError
+from ...errors import InputError, error_context
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, as_number, frozen
 from ..atomic import read_file, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
 from .archive import Archive, Entry, pack
-from .json_records import Json, file_version, get, inside, numbers, parse_record, program_name, refuse_newer
+from .json_records import (
+    Json,
+    file_version,
+    numbers,
+    optional,
+    parse_record,
+    program_name,
+    refuse_newer,
+    require,
+)
 from .keyframes import keyframe_entries, read_keyframes
 from .poses import pose_entries, read_poses
-from .state_records import check_state, describe_pins, describe_settings, read_pins, read_settings
+from .state_records import check_state, read_pins, read_settings
 
 MIMETYPE = b"application/x-akap"
 FORMAT = "akap"
@@ -43,7 +52,7 @@ def save(document: Document, path: str | Path) -> Document:
     Equal documents give equal bytes. Raises InputError where the file cannot be written or could not be
     opened again, e.g. for two pins with one id; the old file is then kept.
     """
-    with inside(f"cannot write {path}"):
+    with error_context(f"cannot write {path}"):
         data = encode(document)
     write_atomic(path, data)
     return replace(document, path=Path(path))
@@ -55,7 +64,7 @@ def load(path: str | Path) -> Document:
     Raises InputError, and nothing else, on a file that is missing, damaged, malicious or of a newer version.
     """
     data = read_file(path, "an .akap file")
-    with inside(path):
+    with error_context(path):
         document = decode(data)
     return replace(document, path=Path(path))
 
@@ -160,8 +169,8 @@ def _describe(document: Document) -> Json:
             "tied": drawing.mesh.tied,
             **({"made": _describe_meshing(drawing)} if drawing.meshing is not None else {}),
         },
-        "pins": describe_pins(document.state.pins),
-        "settings": describe_settings(document.state.settings),
+        "pins": [pin.to_json() for pin in document.state.pins],
+        "settings": document.state.settings.to_json(),
     }
 
 
@@ -192,25 +201,25 @@ def _decode(archive: Archive) -> Document:
     if "mimetype" not in archive or archive.read("mimetype", 256) != MIMETYPE:
         raise InputError("expected an .akap file, got a zip archive of another kind")
     text = archive.read("document.json", MAX_DOCUMENT_BYTES)
-    with inside("document.json"):
+    with error_context("document.json"):
         record = parse_record(text)
         version = file_version(record, FORMAT)
     refuse_newer(version, VERSION)
-    with inside("document.json"):
+    with error_context("document.json"):
         name, picture, mesh = (
-            get(record, "name", str),
-            get(record, "picture", dict),
-            get(record, "mesh", dict),
+            require(record, "name", str),
+            require(record, "picture", dict),
+            require(record, "mesh", dict),
         )
-        width, height = get(picture, "width", int), get(picture, "height", int)
-        n, m = get(mesh, "vertices", int), get(mesh, "faces", int)
-        tied = get(mesh, "tied", bool, missing=True)
-        meshing = _read_meshing(get(mesh, "made", dict)) if "made" in mesh else None
+        width, height = require(picture, "width", int), require(picture, "height", int)
+        n, m = require(mesh, "vertices", int), require(mesh, "faces", int)
+        tied = optional(mesh, "tied", bool, True)
+        meshing = _read_meshing(require(mesh, "made", dict)) if "made" in mesh else None
         _check_sizes(width, height, n, m)
     positions = archive.read_array("pose/positions", "<f8", n, 2)
-    with inside("document.json"):
-        pins = read_pins(get(record, "pins", list))
-        settings = read_settings(get(record, "settings", dict))
+    with error_context("document.json"):
+        pins = read_pins(require(record, "pins", list))
+        settings = read_settings(require(record, "settings", dict))
     stiffness = archive.read_array(STIFFNESS, "<f8", m, 1)[:, 0] if STIFFNESS in archive else None
     poses, animation = read_poses(archive, n), read_keyframes(archive, n)
     state = EditState(pins, positions, settings, None, poses, stiffness, animation)
@@ -230,12 +239,12 @@ def _read_meshing(record: Json) -> Meshing:
     if "background" in record:
         (tolerance,) = numbers([record["background"]], "background")
         background = as_number(float(tolerance), "background", 0.0, 1.0)
-    return Meshing(get(record, "vertices", int), float(expand), float(threshold), background)
+    return Meshing(require(record, "vertices", int), float(expand), float(threshold), background)
 
 
 def _picture(archive: Archive, name: str, width: int, height: int) -> NDArray[np.uint8]:
     content = archive.read(name, MAX_PICTURE_BYTES)
-    with inside(name):
+    with error_context(name):
         image = decode_image(content, ("PNG",), (width, height))
         if image.shape[:2] != (height, width):
             raise InputError("expected a picture that stands upright, got one turned by its EXIF data")

@@ -6,12 +6,11 @@ from pathlib import Path
 from ...editor.document.document import new_document
 from ...editor.document.drawing import Drawing, make_drawing
 from ...editor.session.recording import Recording, mesh_digest, parse_recording
-from ...errors import InputError
+from ...errors import InputError, error_context
 from ...resources import bundled_drawings
 from ..atomic import read_file, write_atomic
 from ..images import read_image
 from . import project as project_file
-from .json_records import inside
 
 RECORDING_SUFFIX = ".akaprec"
 
@@ -19,7 +18,7 @@ RECORDING_SUFFIX = ".akaprec"
 def read_recording(path: str | Path) -> Recording:
     """The recording in a file. Raises InputError with the file's name and the number of the bad line."""
     data = read_file(path, "a recording")
-    with inside(path):
+    with error_context(path):
         return decode_recording(data)
 
 

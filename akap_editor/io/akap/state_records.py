@@ -2,7 +2,6 @@
 
 import reprlib
 from collections import Counter
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -15,29 +14,14 @@ from ...editor.document.settings import Settings
 from ...editor.document.stiffness import as_stiffness
 from ...errors import InputError
 from ...geometry.validation import as_points
-from .json_records import MAX_INTEGER, Json, get, numbers
+from .json_records import MAX_INTEGER, Json, numbers, optional, require
 
 WEIGHT_TOLERANCE = 1e-9
 MAX_PINS = 10_000
 
 
-def describe_pins(pins: Iterable[Pin]) -> list[Json]:
-    """The pins of a file, in order."""
-    return [
-        {
-            "id": int(pin.id),
-            "face": int(pin.face),
-            "weights": pin.weights.tolist(),
-            "target": pin.target.tolist(),
-            **({"depth": int(pin.depth)} if pin.depth else {}),
-            **({"angle": float(pin.angle)} if pin.angle is not None else {}),
-        }
-        for pin in pins
-    ]
-
-
 def read_pins(records: list[Any]) -> tuple[Pin, ...]:
-    """What `describe_pins` wrote. Raises InputError on values of other kinds."""
+    """The pins that `Pin.to_json` wrote. Raises InputError on values of other kinds."""
     _check_count(len(records))
     return tuple(map(_pin, records))
 
@@ -50,20 +34,18 @@ def _check_count(pins: int) -> None:
 def _pin(record: Any) -> Pin:
     if not isinstance(record, dict):
         raise InputError(f"expected pins to be objects, got {reprlib.repr(record)}")
-    weights, target = (numbers(get(record, name, list), name) for name in ("weights", "target"))
-    depth = get(record, "depth", int) if "depth" in record else 0
+    weights, target = (numbers(require(record, name, list), name) for name in ("weights", "target"))
+    depth = optional(record, "depth", int, 0)
     angle = float(numbers([record["angle"]], "angle")[0]) if "angle" in record else None
-    return Pin(get(record, "id", int), get(record, "face", int), weights, target, depth, angle)
-
-
-def describe_settings(settings: Settings) -> Json:
-    """The settings of a file."""
-    return {"method": settings.method, "parameters": dict(settings.parameters)}
+    return Pin(require(record, "id", int), require(record, "face", int), weights, target, depth, angle)
 
 
 def read_settings(record: Json) -> Settings:
-    """What `describe_settings` wrote. Raises InputError on values of other kinds."""
-    return Settings(get(record, "method", str), tuple(get(record, "parameters", dict).items()))
+    """The settings that `Settings.to_json` wrote, parameters in the file's order.
+
+    Raises InputError on values of other kinds.
+    """
+    return Settings(require(record, "method", str), tuple(require(record, "parameters", dict).items()))
 
 
 def check_state(state: EditState, vertices: int, faces: int) -> None:

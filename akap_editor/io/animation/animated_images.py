@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ...errors import InputError
 from ..atomic import Write, write_atomic
-from ..images import Picture, check_picture, either
+from ..images import Picture, check_picture, join_with_or
 from .video import VIDEO_SUFFIXES, write_video
 
 MAX_ANIMATION_PIXELS = 1_000_000_000
@@ -28,7 +28,9 @@ def animation_suffix(path: str | Path) -> str:
     suffix = Path(path).suffix.lower()
     known = [*_ENCODERS, *VIDEO_SUFFIXES]
     if suffix not in known:
-        raise InputError(f"{path}: expected a name that ends in {either(known)}, got {suffix or 'none'}")
+        raise InputError(
+            f"{path}: expected a name that ends in {join_with_or(known)}, got {suffix or 'none'}"
+        )
     return suffix
 
 

@@ -11,7 +11,7 @@ from ...editor.document.framing import Box, Color, crop_box
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints
 from ..atomic import write_atomic
-from ..images import Picture, either, encode_png
+from ..images import Picture, encode_png, join_with_or
 from .gltf import encode_glb
 from .mesh_json import encode_json
 from .obj import encode_obj
@@ -130,7 +130,7 @@ def format_of(path: str | Path) -> Format:
             return each
     came = Path(path).suffix or "none"
     raise InputError(
-        f"{path}: expected a name that ends in {either([f.suffix for f in FORMATS])}, got {came}"
+        f"{path}: expected a name that ends in {join_with_or([f.suffix for f in FORMATS])}, got {came}"
     )
 
 

@@ -35,7 +35,7 @@ def encode_json(document: Document) -> bytes:
             }
             for index, pin in enumerate(state.pins)
         ],
-        "settings": {"method": state.settings.method, "parameters": dict(state.settings.parameters)},
+        "settings": state.settings.to_json(),
     }
     lines = (f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}" for key, value in record.items())
     return ("{\n" + ",\n".join(lines) + "\n}\n").encode()
