@@ -190,7 +190,7 @@ def test_real_cartoons(shared_data, name):
         int(np.flatnonzero((mesh.faces == corner).any(axis=1))[0]) for corner in (low, high, left, right)
     ]
     places = mesh.vertices[mesh.faces[faces]].mean(axis=1)
-    size = np.sqrt(mesh.rest_areas.sum())
+    size = mesh.length
     ways = size * np.array([[0.2, 0.1], [0.0, 0.0], [0.1, -0.25], [-0.1, 0.2]])
     recording = recorded(drawing, [tuple(place) for place in places.tolist()], 0.5 * ways, steps=6)
     after = {

@@ -81,7 +81,6 @@ def to_json(models: Sequence[Model]) -> str:
 def _numbers(run: Run) -> dict[str, Any]:
     """What the tables show of one run, and its curves."""
     method, settings = parse_method(run.spec)
-    size = float(np.sqrt(run.drawing.mesh.rest_areas.sum()))
     return {
         "spec": run.spec,
         "method": method,
@@ -93,7 +92,7 @@ def _numbers(run: Run) -> dict[str, Any]:
         "flipped": run.after.flipped,
         "most_flipped": int(run.trace.flipped.max()),
         "pin_error_pixels": run.pin_error,
-        "pin_error": run.pin_error / size,
+        "pin_error": run.pin_error / run.drawing.mesh.length,
         "frame_ms": 1e3 * float(np.median(run.step_seconds)),
         "slowest_frame_ms": 1e3 * float(run.step_seconds.max()),
         "setup_ms": 1e3 * run.setup_seconds,

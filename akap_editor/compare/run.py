@@ -101,7 +101,7 @@ def run(recording: Recording, drawing: Drawing, spec: str) -> Run:
     points, targets = bent.states[-1].points, bent.states[-1].targets
     deformer, setup, pins = _timed(_settings(spec), drawing, points)
     returned = _led_back(deformer, drawing, points, [state.positions for state in bent.states], bent.pose)
-    size = np.sqrt(drawing.mesh.rest_areas.sum())
+    size = drawing.mesh.length
     return Run(
         spec=spec,
         drawing=drawing,

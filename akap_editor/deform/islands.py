@@ -80,10 +80,8 @@ class IslandDeformer:
         self._mesh = mesh
         self._bending: Any = deformer  # of a method that may have more than the contract asks for
         self._rest = to_complex(mesh.vertices)
-        i, j = mesh.edges.T
-        lengths, n = np.abs(self._rest[i] - self._rest[j]), len(self._rest)
-        self._ways = csr_array((np.tile(lengths, 2), (np.r_[i, j], np.r_[j, i])), shape=(n, n))
-        self._masses = np.bincount(mesh.faces.ravel(), np.repeat(mesh.rest_areas / 3, 3), n)
+        corner_areas = np.repeat(mesh.rest_areas / 3, 3)
+        self._masses = np.bincount(mesh.faces.ravel(), corner_areas, len(self._rest))
         self._part_areas = np.bincount(mesh.component, self._masses)
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
@@ -144,8 +142,8 @@ class IslandDeformer:
         """
         gap = float(np.abs(self._rest[island] - self._rest[carrier]))
         size = math.sqrt(self._part_areas[self._mesh.component[island]])
-        reach = max(gap + size / 2, self._ways[[carrier]].data.max())
-        way = dijkstra(self._ways, indices=carrier, limit=_FARTHEST * reach)
+        reach = max(gap + size / 2, self._mesh.edge_graph[[carrier]].data.max())
+        way = dijkstra(self._mesh.edge_graph, indices=carrier, limit=_FARTHEST * reach)
         weights = self._masses * np.exp(-((way / reach) ** 2))
         return np.asarray(weights / weights.sum())
 

@@ -44,7 +44,6 @@ class PoseInterpolation:
         self._divergence = csr_array((signs * self._weights[edge], (ends, edge)), shape=(n, e))
         degree = np.bincount(ends, minlength=n)
         self._mean = csr_array((1.0 / degree[ends], (ends, edge)), shape=(n, e))
-        self._length = float(np.sqrt(mesh.rest_areas.sum()))
         self._edge_faces, self._neighbors = _adjacency(mesh)
 
     def between(self, start: Floats, end: Floats) -> Callable[[float], Floats]:
@@ -57,7 +56,7 @@ class PoseInterpolation:
         a, b = to_complex(first), to_complex(last)
         edges, rates = self._along(a), self._rates(a, b)
         local = self._mean @ rates
-        weights = 1.0 / (np.abs(b - a) ** 2 + (_STILL * self._length) ** 2)
+        weights = 1.0 / (np.abs(b - a) ** 2 + (_STILL * self._mesh.length) ** 2)
         weights /= np.bincount(self._mesh.component, weights)[self._mesh.component]
         most = max(worst_area_factor(self._mesh, first), worst_area_factor(self._mesh, last))
 

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.sparse import coo_array
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
 
@@ -138,10 +138,22 @@ class TriMesh:
     @cached_property
     def component(self) -> Ints:
         """(n,) int32: number of the connected component of each vertex."""
-        n = len(self.vertices)
-        i, j = self.edges.T
-        _, labels = connected_components(coo_array((np.ones(len(i)), (i, j)), shape=(n, n)), directed=False)
-        return frozen(labels.astype(np.int32))
+        return frozen(connected_components(self.edge_graph, directed=False)[1].astype(np.int32))
+
+    @cached_property
+    def edge_graph(self) -> csr_array:
+        """(n, n) symmetric: lengths of the rest edges in pixels, as `scipy.sparse.csgraph` takes them."""
+        return self._graph(self.edges)
+
+    @cached_property
+    def bridged_edge_graph(self) -> csr_array:
+        """`edge_graph` with the `gaps` as further edges, so that all components are connected."""
+        return self._graph(np.concatenate([self.edges, self.gaps]))
+
+    def _graph(self, edges: Ints) -> csr_array:
+        n, (i, j) = len(self.vertices), edges.T
+        lengths = np.abs((self.vertices[i] - self.vertices[j]).view(np.complex128)[:, 0])
+        return csr_array((np.tile(lengths, 2), (np.r_[i, j], np.r_[j, i])), shape=(n, n))
 
     @cached_property
     def gaps(self) -> Ints:
@@ -165,6 +177,11 @@ class TriMesh:
     def rest_areas(self) -> Floats:
         """(m,) areas of the rest faces, square pixels."""
         return frozen(signed_areas(self.vertices, self.faces))
+
+    @cached_property
+    def length(self) -> float:
+        """Square root of the total rest area, in pixels: the unit in which solvers state their tolerances."""
+        return float(np.sqrt(self.rest_areas.sum()))
 
     def find(
         self, point: ArrayLike, positions: ArrayLike | None = None, order: Ints | None = None

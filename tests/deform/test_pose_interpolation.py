@@ -187,7 +187,7 @@ def test_real_cartoons_are_distorted_no_more_than_at_the_worse_end(name):
     dice = np.random.default_rng(3)
     poses = [mesh.vertices]
     for _ in range(2):
-        moves = 0.25 * np.sqrt(mesh.rest_areas.sum()) * dice.normal(size=(len(pins), 2))
+        moves = 0.25 * mesh.length * dice.normal(size=(len(pins), 2))
         targets = {
             p: tuple(session.state.pin(p).target + move) for p, move in zip(pins, moves, strict=True) if p
         }

@@ -1,9 +1,11 @@
 """Laws of `TriMesh` and of points on it."""
 
+import math
 from collections import Counter
 
 import numpy as np
 import pytest
+from scipy.sparse.csgraph import connected_components
 
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import MeshPoints, TriMesh, barycentric, signed_areas
@@ -139,6 +141,29 @@ def test_component_joins_what_edges_join(mesh):
             break
     same = np.equal.outer(label, label)
     assert (np.equal.outer(mesh.component, mesh.component) == same).all()
+
+
+def test_edge_graph_holds_the_length_of_every_rest_edge(mesh):
+    n = len(mesh.vertices)
+    expected = np.zeros((n, n))
+    for a, b in mesh.edges.tolist():
+        expected[a, b] = expected[b, a] = math.dist(mesh.vertices[a], mesh.vertices[b])
+    found = mesh.edge_graph.toarray()
+    assert (found > 0).tolist() == (expected > 0).tolist()
+    assert found == pytest.approx(expected, rel=1e-15)
+
+
+def test_bridged_edge_graph_adds_the_gaps_and_connects_all(mesh):
+    bridges = (mesh.bridged_edge_graph - mesh.edge_graph).toarray()
+    expected = sorted(sorted(gap) for gap in mesh.gaps.tolist())
+    assert np.argwhere(np.triu(bridges)).tolist() == expected
+    for a, b in mesh.gaps.tolist():
+        assert bridges[a, b] == bridges[b, a] == pytest.approx(math.dist(mesh.vertices[a], mesh.vertices[b]))
+    assert connected_components(mesh.bridged_edge_graph)[0] == 1
+
+
+def test_length_is_the_square_root_of_the_rest_area(mesh):
+    assert mesh.length == pytest.approx(math.sqrt(mesh.rest_areas.sum()), rel=1e-15)
 
 
 def random_points(mesh: TriMesh, seed: int, count: int = 40) -> MeshPoints:

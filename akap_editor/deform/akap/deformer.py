@@ -106,8 +106,7 @@ class AkapDeformer:
         stiff = None if stiffness is None else _as_stiffness(stiffness, len(mesh.faces))
         self._mesh = mesh
         self._dirichlet = bool(dirichlet)
-        length = math.sqrt(mesh.rest_areas.sum())
-        self._length = length
+        length = mesh.length
         self._max_length = max_step * length
         # The soft pins give way a little to the rest memory; a field that took them back each time would
         # keep the pose from ever coming to rest.
@@ -291,7 +290,7 @@ class AkapDeformer:
         Faces that are flipped already, by another method, move freely. A part that hangs on the pins by a
         collapsed face is flung away by a small velocity: no vertex goes farther than the drawing is large.
         """
-        farthest = max(self._length, _LEVER * float(np.abs(velocities).max()))
+        farthest = max(self._mesh.length, _LEVER * float(np.abs(velocities).max()))
         t = 1.0
         while t >= _SHORTEST:
             moved = self._flow(pose, field, t)
@@ -332,7 +331,7 @@ class AkapDeformer:
             return pose + far * direction, far
 
         if moving:
-            tolerance = _TOLERANCE_OF_DESCENT * self._length
+            tolerance = _TOLERANCE_OF_DESCENT * self._mesh.length
             near, far = descended(-0.5 * self._system.solve(gradient, tolerance, "memory"))
             if far >= _CUT * length:
                 return near

@@ -43,7 +43,6 @@ class KillingSystem:
     ) -> None:
         self._mesh = mesh
         self._hard = hard
-        length = float(np.sqrt(mesh.rest_areas.sum()))
         self._weight = pin_weight**2
         size = 2 * len(mesh.vertices)
         self._tolerance, self._stiffness = tolerance, stiffness
@@ -61,7 +60,7 @@ class KillingSystem:
             inner, self._inner_nonzeros = self.pattern.restricted(kept)
             self._inner = PreconditionedCholesky(inner, exact)
         self._first_faces = np.unique(mesh.component[mesh.faces[:, 0]], return_index=True)[1]
-        self._same_place = _SAME_PLACE * length
+        self._same_place = _SAME_PLACE * mesh.length
         self._frames = _VertexFrames(mesh)
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 

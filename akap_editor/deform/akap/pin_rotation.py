@@ -24,7 +24,7 @@ class PinRotationConstraints:
     def __init__(self, mesh: TriMesh, points: MeshPoints, holding: NDArray[np.bool_]) -> None:
         self._mesh = mesh
         centers = mesh.vertices[mesh.faces].mean(axis=1)
-        radius = _RADIUS * np.sqrt(mesh.rest_areas.sum())
+        radius = _RADIUS * mesh.length
         component = mesh.component[mesh.faces[:, 0]]
         nearest, owner = np.full(len(centers), np.inf), np.full(len(centers), -1)
         for pin in np.flatnonzero(holding):

@@ -59,8 +59,7 @@ class ArapDeformer(RestBasedDeformer):
         self._iterations = _MOST if converge else wanted
         if rotations not in ("faces", "spokes-and-rims"):
             raise InputError(f"rotations: expected 'faces' or 'spokes-and-rims', got {rotations!r}")
-        length = float(np.sqrt(mesh.rest_areas.sum()))
-        self._tolerance = as_number(tolerance, "tolerance", 0, 1) * length
+        self._tolerance = as_number(tolerance, "tolerance", 0, 1) * mesh.length
         self._gradient = vstack(gradient_matrices(mesh), format="csr")
         self._areas = mesh.rest_areas
         self._divergence = csr_array(self._gradient.T * np.tile(self._areas, 2))

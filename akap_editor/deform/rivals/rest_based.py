@@ -31,7 +31,7 @@ class RestBasedDeformer(ABC):
     def __init__(self, mesh: TriMesh) -> None:
         self._mesh = mesh
         self._rest = to_complex(mesh.vertices)
-        self._same_place = _SAME_PLACE * float(np.sqrt(mesh.rest_areas.sum()))
+        self._same_place = _SAME_PLACE * mesh.length
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
     def set_pins(self, points: MeshPoints) -> None:

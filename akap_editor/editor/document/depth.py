@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
-from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from ...errors import InputError
@@ -55,7 +54,7 @@ def _order(mesh: TriMesh, pins: _Places) -> Ints:
 def _blended(mesh: TriMesh, pins: _Places) -> Floats:
     """(n,): mean of the pins' depths with weights 1/d², d being the way to a pin through the drawing."""
     ways = np.stack([_ways(mesh, face, weights) for face, weights, _ in pins])
-    shares = 1.0 / np.maximum(ways, _NEAR * np.sqrt(mesh.rest_areas.sum())) ** 2
+    shares = 1.0 / np.maximum(ways, _NEAR * mesh.length) ** 2
     depths: Floats = np.array([depth for *_, depth in pins]) @ shares / shares.sum(axis=0)
     return depths
 
@@ -66,11 +65,4 @@ def _ways(mesh: TriMesh, face: int, weights: bytes) -> Floats:
     corners = mesh.faces[face]
     point = np.frombuffer(weights) @ mesh.vertices[corners]
     first = np.linalg.norm(mesh.vertices[corners] - point, axis=1)
-    return (dijkstra(_graph(mesh), directed=False, indices=corners) + first[:, None]).min(axis=0)
-
-
-@lru_cache(maxsize=4)
-def _graph(mesh: TriMesh) -> csr_array:
-    i, j = np.concatenate([mesh.edges, mesh.gaps]).T
-    lengths = np.linalg.norm(mesh.vertices[i] - mesh.vertices[j], axis=1)
-    return csr_array((lengths, (i, j)), shape=(len(mesh.vertices),) * 2)
+    return (dijkstra(mesh.bridged_edge_graph, indices=corners) + first[:, None]).min(axis=0)

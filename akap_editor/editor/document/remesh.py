@@ -104,7 +104,7 @@ def _moved_pins(state: EditState, old: TriMesh, mesh: TriMesh) -> tuple[Pin, ...
         return ()
     places = old.evaluate(state.points, old.vertices)
     faces, on_face, weights = _nearest(places, mesh)
-    near = np.linalg.norm(places - on_face, axis=1) <= _LOST * np.sqrt(mesh.rest_areas.sum())
+    near = np.linalg.norm(places - on_face, axis=1) <= _LOST * mesh.length
     return tuple(
         replace(pin, face=int(face), weights=weight)
         for pin, face, weight, stays in zip(state.pins, faces, weights, near, strict=True)

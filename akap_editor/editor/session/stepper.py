@@ -84,7 +84,7 @@ class Stepper:
             self._pin_count = len(state.pins)
             self.last_motion: tuple[Floats, Floats] | None = None
         self._mesh, self._settings, self._stiffness = mesh, state.settings, state.stiffness
-        self._max_travel = MAX_PIN_TRAVEL * float(np.sqrt(mesh.rest_areas.sum()))
+        self._max_travel = MAX_PIN_TRAVEL * mesh.length
         self._full_turns = FullTurnCounter()
         self.steps_left = 0
 

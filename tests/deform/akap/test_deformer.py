@@ -52,7 +52,7 @@ def test_long_way_is_cut_into_equal_substeps(mesh, shapes):
     points = shapes.random_pins(mesh, 2)
     start = mesh.evaluate(points, mesh.vertices)
     goals = start + np.array([7.0, -3.0])
-    length = np.hypot(7.0, 3.0) / 3.5 / np.sqrt(mesh.rest_areas.sum())
+    length = np.hypot(7.0, 3.0) / 3.5 / mesh.length
     result = deformer_with(mesh, points, max_step=length).step(mesh.vertices, goals)
     assert result.report.substeps == 4
     single, pose = deformer_with(mesh, points, max_step=WHOLE), mesh.vertices
@@ -166,7 +166,7 @@ def test_memory_lowers_distortion(shapes):
 def wild_drag(mesh, points, memory, seed, moves=2):
     """Targets thrown about by the drawing's own size."""
     rng = np.random.default_rng(seed)
-    size = np.sqrt(mesh.rest_areas.sum())
+    size = mesh.length
     deformer, pose = deformer_with(mesh, points, memory=memory, max_step=0.05), mesh.vertices
     for _ in range(moves):
         goals = mesh.evaluate(points, mesh.vertices) + rng.normal(scale=size, size=(len(points), 2))

@@ -156,7 +156,7 @@ def test_a_bend_is_the_same_with_few_factorizations_as_with_many(shapes, memory)
     exact, reusing = (AkapDeformer(mesh, memory=memory, exact=on) for on in (True, False))
     exact.set_pins(points)
     reusing.set_pins(points)
-    visible = 0.01 * np.sqrt(mesh.rest_areas.sum()) / 1000
+    visible = 0.01 * mesh.length / 1000
     goal = start.copy()
     pose = other = mesh.vertices
     for share in np.linspace(0, 1, 31)[1:]:

@@ -179,7 +179,7 @@ def long_step(request, mesh, shapes):
     """A step of several substeps: where it began, and its result."""
     points = shapes.random_pins(mesh, 2)
     goals = mesh.evaluate(points, mesh.vertices)
-    goals[-1] += 0.12 * np.sqrt(mesh.rest_areas.sum()) * np.array([0.8, -0.6])
+    goals[-1] += 0.12 * mesh.length * np.array([0.8, -0.6])
     result = deformer_with(mesh, points, memory=request.param, max_step=0.05).step(mesh.vertices, goals)
     assert result.report.substeps == 3
     return mesh.vertices, result
@@ -257,7 +257,7 @@ def test_no_face_flips_in_many_random_gestures(shapes, name, count, memory, shar
     """Each from where the last one ended: 10,000 gestures in all cases, pins chosen anew after every ten."""
     mesh = shapes.SHAPES[name]
     rng = np.random.default_rng(len(name))
-    size = np.sqrt(mesh.rest_areas.sum())
+    size = mesh.length
     deformer, pose = AkapDeformer(mesh, memory=memory, max_step=0.5), mesh.vertices
     for gesture in range(int(share * count)):
         if gesture % 50 == 0:
@@ -318,7 +318,7 @@ def test_absurd_jump_flips_nothing_and_says_where_it_is_cut(mesh, shapes, memory
 
 @pytest.mark.parametrize(("memory", "far"), [(0.0, 1.0), (1.0, 1.0), (0.0, 3.0), (1.0, 3.0)])
 def test_going_back_frees_a_blocked_drag(mesh, shapes, memory, far):
-    way = far * np.sqrt(mesh.rest_areas.sum()) * np.array([1.0, -0.06])
+    way = far * mesh.length * np.array([1.0, -0.06])
     results = pulled_away_and_back(mesh, shapes, memory, way, 80)
     for result in results:
         check(mesh, result)
@@ -374,7 +374,7 @@ def test_deformer_works_after_a_solver_error(mesh, shapes, constraints, memory):
             with pytest.raises(SolverError):
                 deformer.vector_field(collapsed, goals)
         found = deformer.step(pose, goals).positions
-        assert np.abs(found - expected).max() < 1e-5 * np.sqrt(mesh.rest_areas.sum())
+        assert np.abs(found - expected).max() < 1e-5 * mesh.length
 
 
 def test_memory_of_nothing_is_the_method_without_memory(mesh, shapes):

@@ -193,7 +193,7 @@ def test_the_pose_so_far_does_not_matter(mesh, shapes):
 def test_pins_of_a_cartoon_arrive(cartoon, shapes, name):
     mesh = cartoon(name)
     points = shapes.random_pins(mesh, 1, 5)
-    size = np.sqrt(mesh.rest_areas.sum())
+    size = mesh.length
     targets = mesh.evaluate(points, mesh.vertices)
     targets += np.random.default_rng(1).normal(scale=0.03 * size, size=targets.shape)
     found = moved(mesh, points, targets, cage=200)

@@ -126,7 +126,7 @@ def test_cartoon_is_bent_nearly_as_by_iterations(cartoon, shapes, name):
     """Comparable if somewhat less desirable than iterative methods, says the paper of 2011."""
     mesh = cartoon(name)
     points = shapes.random_pins(mesh, 1, 4)
-    size = np.sqrt(mesh.rest_areas.sum())
+    size = mesh.length
     targets = some_targets(mesh, points, 0.05 * size)
     found = moved(mesh, points, targets)
     arap = ArapDeformer(mesh, converge=True, tolerance=1e-6)

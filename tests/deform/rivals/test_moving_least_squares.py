@@ -159,7 +159,7 @@ def test_hardly_separated_pins_and_vertices_stay_finite(shapes, transform, alpha
 def test_pins_of_a_cartoon_nearly_arrive(cartoon, shapes, name, transform):
     mesh = cartoon(name)
     points = shapes.random_pins(mesh, 1, 4)
-    size = np.sqrt(mesh.rest_areas.sum())
+    size = mesh.length
     targets = mesh.evaluate(points, mesh.vertices)
     targets += np.random.default_rng(1).normal(scale=0.05 * size, size=targets.shape)
     found = moved(mesh, points, targets, transform=transform)
