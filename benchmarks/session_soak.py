@@ -28,7 +28,7 @@ import numpy as np
 
 from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import make_drawing
-from akap_editor.editor.document.remesh import remeshed
+from akap_editor.editor.document.remesh import remesh_drawing
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.edits import Remesh
@@ -172,7 +172,7 @@ class Soak:
         assert drawing.meshing is not None
         meshing = replace(drawing.meshing, vertices=int(self.rng.integers(80, 200)))
         self.editor.cancel()
-        remesh = Remesh.to(remeshed(drawing, meshing))
+        remesh = Remesh.to(remesh_drawing(drawing, meshing))
         self.session.begin("Change Density")
         self.session.apply(remesh)
         self.session.commit()

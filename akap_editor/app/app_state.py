@@ -214,7 +214,7 @@ class AppState:
             self.editor.open(document if chosen is None or document.path else document.with_state(preferred))
         except InputError:
             self.editor.open(document)
-        if document.state.animation.keys:
+        if document.state.animation.keyframes:
             self.timeline, self.show_timeline = "keyframes", True
         opaque = document.path is None and not has_transparency(document.drawing.image)
         self.notice = (

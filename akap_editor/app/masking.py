@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..editor.document.document import Document, new_document
-from ..editor.document.drawing import masked, remove_background_and_mesh
+from ..editor.document.drawing import apply_mask, remove_background_and_mesh
 from ..errors import InputError
 from ..io.images import read_mask
 from ..io.open_document import PICTURE_SUFFIXES
@@ -45,7 +45,7 @@ def cut_out(document: Document, mask: Path) -> Document:
     picture = drawing.image if drawing.original is None else drawing.original
     shown = read_mask(mask)
     try:
-        image = masked(picture, shown)
+        image = apply_mask(picture, shown)
         return new_document(
             remove_background_and_mesh(image, replace(drawing.meshing, background=None), drawing.name)
         )

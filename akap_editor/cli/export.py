@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from ..editor.document.framing import crop_box, picture_size
+from ..editor.document.framing import crop_box, output_size
 from ..errors import InputError
 from ..io.export import FORMATS, ExportOptions, export, format_of
 from ..io.open_document import open_document
@@ -49,7 +49,7 @@ def export_file(file: Path, output: Path, options: ExportOptions) -> Exported:
     if not chosen.framed:
         return Exported(chosen.label, files, None)
     pose = document.drawing.mesh.vertices if options.rest else document.state.positions
-    size = picture_size(crop_box(document.drawing, pose, options.crop), options.scale)
+    size = output_size(crop_box(document.drawing, pose, options.crop), options.scale)
     return Exported(chosen.label, files, size)
 
 

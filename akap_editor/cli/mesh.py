@@ -11,7 +11,7 @@ from typing import Any
 import click
 import numpy as np
 
-from ..editor.document.drawing import Meshing, masked
+from ..editor.document.drawing import Meshing, apply_mask
 from ..errors import InputError
 from ..geometry.validation import as_number
 from ..io.images import has_transparency, read_image, read_mask
@@ -115,7 +115,7 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
     shown = read_mask(mask) if mask is not None else None
     try:
         if shown is not None:
-            image = masked(image, shown)
+            image = apply_mask(image, shown)
         alpha = np.ascontiguousarray(image[..., 3])
         made = mesh_picture(alpha, meshing.vertices, meshing.expand, meshing.threshold)
     except InputError as error:

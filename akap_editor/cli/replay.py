@@ -194,7 +194,7 @@ def _keyframes(path: Path) -> tuple[float, Play]:
     """How long the keyframes of a drawing are, and what plays them."""
     document, ways = open_document(path), InterpolationCache()
     animation = document.state.animation
-    if not animation.keys:
+    if not animation.keyframes:
         raise InputError(f"{path}: expected a drawing with keyframes, or a recording, got one without any")
     return animation.duration, lambda times: (keyed_frame(document, ways, time) for time in times)
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 from .document.document import EditState
 from .document.drawing import Drawing, Meshing
-from .document.remesh import carried_over, remeshed
+from .document.remesh import remesh_drawing, transfer_state
 from .editor import Editor
 from .session.edits import Remesh
-from .session.history import Entry
+from .session.history import HistoryEntry
 from .session.session import Session
 
 Made = tuple[Drawing, EditState]
@@ -25,7 +25,7 @@ class _SliderGesture:
     session: Session
     base: Drawing
     start: EditState
-    entry: Entry | None = None
+    entry: HistoryEntry | None = None
 
 
 class BackgroundRemesh:
@@ -100,8 +100,8 @@ class BackgroundRemesh:
 
     def _begin(self, series: _SliderGesture, meshing: Meshing) -> None:
         def make() -> Made:
-            drawing = remeshed(series.base, meshing)
-            return drawing, carried_over(series.start, series.base.mesh, drawing)
+            drawing = remesh_drawing(series.base, meshing)
+            return drawing, transfer_state(series.start, series.base.mesh, drawing)
 
         self._job = series, meshing, self._worker.submit(make)
 

@@ -5,7 +5,7 @@ from typing import Protocol, TypeVar
 
 from ..geometry.validation import Floats
 from .camera import Point
-from .document.named_poses import free_name
+from .document.named_poses import unused_pose_name
 from .document.pin import Pin
 from .document.settings import Settings
 from .session import pin_edits
@@ -21,7 +21,7 @@ from .session.edits import (
     SetSettings,
     SetTargets,
 )
-from .session.history import Entry
+from .session.history import HistoryEntry
 from .session.session import Session
 
 T = TypeVar("T")
@@ -132,7 +132,7 @@ class NudgeSeries:
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
-        self._last: tuple[Entry | None, frozenset[int], float] | None = None  # entry, pins, time
+        self._last: tuple[HistoryEntry | None, frozenset[int], float] | None = None  # entry, pins, time
 
     def nudge(self, editor: EditContext, dx: float, dy: float) -> None:
         """Move the targets of the selected pins by (dx, dy) drawing pixels."""
@@ -174,7 +174,7 @@ def add_pose(editor: EditContext, name: str | None = None) -> None:
     name: "Pose" and a number by default. Raises InputError on a name that is empty or too long.
     """
     if editor.session is not None:
-        pose_name = free_name(editor.session.state.poses) if name is None else name
+        pose_name = unused_pose_name(editor.session.state.poses) if name is None else name
         editor.apply("Keep pose", AddPose(pose_name))
 
 

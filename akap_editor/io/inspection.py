@@ -107,7 +107,7 @@ def _inspect_drawing(data: bytes) -> tuple[Facts, list[str]]:
         "parts": int(drawing.mesh.component.max()) + 1,
         "pins": len(state.pins),
         "poses": len(state.poses),
-        "keyframes": len(state.animation.keys),
+        "keyframes": len(state.animation.keyframes),
         "method": state.settings.method,
         "area distortion": round(measured.area, 6),
         "angle distortion": round(measured.angle, 6),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..editor.document.drawing import Drawing
-from ..editor.document.framing import Box, Color, frame_box, picture_size
+from ..editor.document.framing import Box, Color, frame_box, output_size
 from ..errors import GraphicsError
 from ..geometry.validation import Ints, as_points
 from .renderer import Background, Renderer
@@ -68,15 +68,15 @@ class OffscreenRenderer:
         """The drawing in a pose as (h, w, 4) uint8, straight alpha; where alpha is 0, so is the color.
 
         positions: (n, 2) drawing units; box: the part of the drawing plane to show, by default `frame_box` of
-        the pose; scale: pixels per drawing unit, the size is rounded up (see `picture_size`); background:
+        the pose; scale: pixels per drawing unit, the size is rounded up (see `output_size`); background:
         (r, g, b) from 0 to 1, or None for transparent; order: (m,) the faces as they are drawn, the last one
-        in front, see `Document.order`. A drawing at rest comes out as its picture was, within what its mesh
-        covers. The driver's limit of sizes does not matter.
+        in front, see `Document.face_order`. A drawing at rest comes out as its picture was, within what its
+        mesh covers. The driver's limit of sizes does not matter.
         Raises InputError for a bad argument or too large a picture, GraphicsError without OpenGL 3.3.
         """
         pose = as_points(positions, "positions", len(drawing.mesh.vertices))
         box = frame_box(drawing, [pose]) if box is None else box
-        width, height = picture_size(box, scale)
+        width, height = output_size(box, scale)
         if self._context is None:
             self._context = standalone_context()
         with self._current():

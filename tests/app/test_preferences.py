@@ -12,7 +12,7 @@ from akap_editor.app.app_state import SWITCHES, AppState
 from akap_editor.app.canvas.view_options import RANGES, ViewOptions
 from akap_editor.app.preferences import MOST_RECENT, Preferences, preferences_path
 from akap_editor.app.window import SIZE, SMALLEST, _remembered_place, _remembered_size
-from akap_editor.editor.document.stiffness import SOFTEST, STIFFEST
+from akap_editor.editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
 from akap_editor.editor.tools.stiffness_brush import LARGEST, Brush
 from akap_editor.editor.tools.stiffness_brush import SMALLEST as SMALLEST_BRUSH
 from akap_editor.errors import InputError
@@ -223,7 +223,7 @@ def test_a_remembered_brush_is_one_that_there_is(brush):
     preferences.put("brush", brush)
     found = AppState.remembering(preferences).editor.brush
     assert SMALLEST_BRUSH <= found.radius <= LARGEST
-    assert SOFTEST <= found.factor <= STIFFEST
+    assert MIN_STIFFNESS <= found.factor <= MAX_STIFFNESS
 
 
 # -- in the window ------------------------------------------------------------------------------------------

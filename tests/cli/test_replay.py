@@ -227,7 +227,7 @@ def test_keyframes_are_played_like_a_recording(run, posed, tmp_path, name):
 
 def test_what_plays_for_ever_and_ends_as_it_begins_shows_its_end_once(run, posed, tmp_path):
     document = open_document(tmp_path / "posed.akap")
-    keys = *document.state.animation.keys, Keyframe(1.0, document.drawing.mesh.vertices)
+    keys = *document.state.animation.keyframes, Keyframe(1.0, document.drawing.mesh.vertices)
     save(document.with_state(replace(document.state, animation=Animation(keys))), tmp_path / "round.akap")
     for options, count in (((), 10), (("--plays", 1), 11), (("--to", 0.5), 6), (("--ping-pong",), 20)):
         code, out, _ = run("-o", "out.gif", "--fps", 10, "--size", 60, *options, recording="round.akap")

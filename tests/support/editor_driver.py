@@ -36,7 +36,7 @@ def bits(state: EditState) -> tuple[Any, ...]:
     ]
     stiffness = None if state.stiffness is None else state.stiffness.tobytes()
     poses = [(pose.name, pose.positions.tobytes()) for pose in state.poses]
-    keys = [(key.time, key.positions.tobytes(), key.ease) for key in state.animation.keys]
+    keys = [(key.time, key.positions.tobytes(), key.ease) for key in state.animation.keyframes]
     lists = tuple(poses), state.animation.ease, state.animation.loop, tuple(keys)
     return state.positions.tobytes(), tuple(pins), state.settings, stiffness, lists
 

@@ -37,7 +37,7 @@ class Scene:
             if document is None:
                 self._renderer.hide()
             else:
-                self._renderer.show(document.drawing, document.state.positions, document.order)
+                self._renderer.show(document.drawing, document.state.positions, document.face_order)
             self._renderer.draw(target, size, view, background=background, overlays=overlays)
             split_view.render(state, self._renderer, target, size, window, background)
 
@@ -49,7 +49,7 @@ class Scene:
         shown = [document]
         if state.split and state.comparison.session is not None:
             shown.append(state.comparison.session.document)
-        poses = [thing for each in shown for thing in (each.drawing, each.state.positions, each.order)]
+        poses = [thing for each in shown for thing in (each.drawing, each.state.positions, each.face_order)]
         more = overlays.heat, overlays.reference, *overlays.skins, *overlays.strokes
         self._kept.show(self._ctx.screen, size, draw, values, (*poses, *more))
 

@@ -132,7 +132,7 @@ def render(
     density = pixels[0] / max(window[0], 1)
     x0, x1 = (round(density * x) for x in (pane[0], pane[2]))
     y0, y1 = (round(density * y) for y in (pane[1], pane[3]))
-    renderer.show(session.drawing, session.state.positions, session.document.order)
+    renderer.show(session.drawing, session.state.positions, session.document.face_order)
     renderer.draw(
         target,
         pixels,

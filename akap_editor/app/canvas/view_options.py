@@ -12,7 +12,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from numpy.typing import NDArray
 
 from ...editor.document.drawing import Drawing
-from ...editor.document.stiffness import STIFFEST
+from ...editor.document.stiffness import MAX_STIFFNESS
 from ...editor.editor import FRAME_BUDGET, Editor
 from ...editor.session.session import Session
 from ...editor.tools.pins import DraggingPin
@@ -137,7 +137,7 @@ class ViewOptions:
         if stiffness is None:
             return None
         if self._tint is None or self._tint[0] is not stiffness:
-            levels = np.log(stiffness) / np.log(STIFFEST)
+            levels = np.log(stiffness) / np.log(MAX_STIFFNESS)
             self._tint = stiffness, FaceColors(levels, np.array([STIFF, STIFF]), sheer=True)
         return self._tint[1]
 

@@ -9,7 +9,7 @@ from ..app_state import AppState
 def shown(state: AppState) -> bool:
     """Whether there are keyframes, and the timeline shows them."""
     keyed = state.document is not None and state.show_timeline and state.timeline == "keyframes"
-    return keyed and bool(state.keyframe_playback.animation.keys)
+    return keyed and bool(state.keyframe_playback.animation.keyframes)
 
 
 def has_chosen(state: AppState) -> bool:

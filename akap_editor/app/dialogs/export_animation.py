@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ...editor.animation.motion import Frame, closed, frame_times
 from ...editor.document.easing import EASINGS
-from ...editor.document.framing import Color, frame_box, picture_size, union_of_boxes
+from ...editor.document.framing import Color, frame_box, output_size, union_of_boxes
 from ...io.animation.frames import export_frames, export_kind
 from .. import widgets
 from ..app_state import AppState
@@ -208,7 +208,7 @@ def _steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: 
         yield Progress(0.3 * number / len(times), f"Moving, frame {number + 1} of {len(times)}")
     box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])
     scale = min(1.0, options.size / max(box[2] - box[0], box[3] - box[1]))
-    picture_size(box, scale)
+    output_size(box, scale)
     encoder = Encoder(
         partial(export_frames, path, fps=options.fps, plays=0 if options.loop else 1, sheet=sheet)
     )

@@ -7,7 +7,7 @@ from pathlib import Path
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...editor.document.document import Document
-from ...editor.document.framing import CROPS, Color, crop_box, picture_size
+from ...editor.document.framing import CROPS, Color, crop_box, output_size
 from ...errors import InputError
 from ...io.export import FORMATS, ExportOptions, Format, Painter, export, format_of
 from .. import widgets
@@ -42,10 +42,10 @@ class PoseExportOptions:
         """The choices as `export` takes them."""
         return ExportOptions(self.scale, self.background if self.is_opaque else None, self.crop, self.rest)
 
-    def picture_size(self, document: Document) -> tuple[int, int]:
+    def output_size(self, document: Document) -> tuple[int, int]:
         """Width and height in pixels of an exported picture. Raises InputError if it is too large."""
         pose = document.drawing.mesh.vertices if self.rest else document.state.positions
-        return picture_size(crop_box(document.drawing, pose, self.crop), self.scale)
+        return output_size(crop_box(document.drawing, pose, self.crop), self.scale)
 
     def file_name(self, document: Document) -> str:
         """The suggested file name; differs from the picture's, which may be in the same folder."""
@@ -111,7 +111,7 @@ def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None
         *companions, _ = export(document, path, options.export_options, painter)
         said = f"Exported {', '.join([path.name, *(each.name for each in companions)])}"
         if format_of(path).framed:
-            width, height = options.picture_size(document)
+            width, height = options.output_size(document)
             said += f", {width} × {height} pixels"
         return said
 
@@ -159,7 +159,7 @@ def _draw_picture_size(options: PoseExportOptions, document: Document, scale: fl
     """Draw the size of the picture; return what prevents this export, or ""."""
     widgets.label("Size", LABEL_WIDTH * scale)
     try:
-        width, height = options.picture_size(document)
+        width, height = options.output_size(document)
     except InputError:
         problem = "more than 8192 px a side"
         imgui.text_colored(ImVec4(*ACCENT), problem)

@@ -67,7 +67,7 @@ class Recovery:
             low_x, low_y, high_x, high_y = frame_box(document.drawing, [document.state.positions])
             scale = pixels / max(high_x - low_x, high_y - low_y)
             picture = state.exporter.render(
-                document.drawing, document.state.positions, scale=scale, order=document.order
+                document.drawing, document.state.positions, scale=scale, order=document.face_order
             )
         except AkapError as error:
             state.lost.pop(0).leave()

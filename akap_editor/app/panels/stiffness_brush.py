@@ -5,7 +5,7 @@ from dataclasses import replace
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...deform.deformer import takes_stiffness
-from ...editor.document.stiffness import SOFTEST, STIFFEST
+from ...editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
 from ...editor.tools.stiffness_brush import LARGEST, SMALLEST
 from .. import widgets
 from ..app_state import AppState
@@ -24,7 +24,9 @@ def draw(state: AppState, scale: float) -> None:
     """Strength, size, eraser."""
     assert state.document is not None
     brush = state.editor.brush
-    factor = _slider("Strength", brush.factor, (SOFTEST, STIFFEST), "%.0f ×", "How much less a part bends.")
+    factor = _slider(
+        "Strength", brush.factor, (MIN_STIFFNESS, MAX_STIFFNESS), "%.0f ×", "How much less a part bends."
+    )
     radius = _slider("Size", brush.radius, (SMALLEST, LARGEST), "%.0f px", "Radius on the screen: [ and ].")
     state.editor.brush = replace(brush, factor=factor, radius=radius)
     if widgets.switch("Erase", brush.erasing, "E, or drag with the right button.")[0]:

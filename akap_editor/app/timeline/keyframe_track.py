@@ -8,7 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor.animation.keyframe_playback import MOST_SKINS, STEP, KeyframePlayback, stretched
 from ...editor.animation.time_view import VisibleRange
-from ...editor.document.easing import KEY_EASINGS
+from ...editor.document.easing import KEYFRAME_EASINGS
 from ...editor.tools.pins import ZOOM_STEP
 from .. import widgets
 from ..app_state import AppState
@@ -33,14 +33,14 @@ def buttons(state: AppState, scale: float) -> None:
         state.attempt(lambda: keying.keyframe_here(state))
     widgets.explain("Keyframe here (K): keep the pose that is seen at this time")
     imgui.same_line(0, 4 * scale)
-    imgui.begin_disabled(not playback.animation.keys)
+    imgui.begin_disabled(not playback.animation.keyframes)
     if imgui.button(f"{icons.ICON_FA_BEZIER_CURVE}##easing", side):
         imgui.open_popup("easing menu")
     imgui.end_disabled()
     widgets.explain("Easing: how the motion between keyframes starts and ends")
     if _begin_menu("easing menu", scale):
         widgets.quiet("Between all keyframes, unless one says otherwise")
-        for name in KEY_EASINGS:
+        for name in KEYFRAME_EASINGS:
             if imgui.menu_item(EASING_LABELS[name], "", playback.animation.ease == name)[0]:
                 state.attempt(lambda name=name: playback.ease(name, general=True))  # type: ignore[misc]
         imgui.end_popup()
@@ -228,7 +228,7 @@ def _menu(state: AppState) -> None:
         if imgui.menu_item("Keyframe Here", "K", False)[0]:
             state.attempt(lambda: keying.keyframe_here(state))
         return
-    key = next(key for key in playback.animation.keys if key.time in playback.chosen)
+    key = next(key for key in playback.animation.keyframes if key.time in playback.chosen)
     if len(playback.chosen) == 1:
         imgui.set_next_item_width(9 * imgui.get_font_size())
         flags = imgui.InputTextFlags_.enter_returns_true
@@ -236,7 +236,7 @@ def _menu(state: AppState) -> None:
         if changed:
             state.attempt(lambda: playback.set_time(key.time, time))
     imgui.separator()
-    for name in (None, *KEY_EASINGS):
+    for name in (None, *KEYFRAME_EASINGS):
         label = "As in the whole animation" if name is None else EASING_LABELS[name]
         if imgui.menu_item(label, "", key.ease == name)[0]:
             state.attempt(lambda name=name: playback.ease(name))  # type: ignore[misc]
@@ -257,7 +257,7 @@ def _change(playback: KeyframePlayback, time: float) -> None:
 
 def _explain(playback: KeyframePlayback, track: TimeScale, scale: float) -> None:
     time = _near(playback, track, scale)
-    key = next((each for each in playback.animation.keys if each.time == time), None)
+    key = next((each for each in playback.animation.keyframes if each.time == time), None)
     if key is not None:
         widgets.explain(
             f"{key.time:.2f} s, {EASING_LABELS[key.ease or playback.animation.ease].lower()}. Drag to move, "
@@ -345,7 +345,7 @@ def _draw_keys(
     scale: float,
 ) -> None:
     """A diamond for each keyframe, a bar for each motion between two; a line where it holds."""
-    keys = playback.animation.keys
+    keys = playback.animation.keyframes
     start, end = playback.range
     for key, after in pairwise(keys):
         half = (0.8 if (key.ease or playback.animation.ease) == "hold" else 3) * scale

@@ -10,7 +10,7 @@ from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats
 from ..document.depth import face_order
 from ..document.document import Document
-from ..document.keyframes import LATEST_KEY, NO_ANIMATION, Animation, key_time
+from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
 from ..document.pin_angles import pins_fixed_at_pose
 from ..editor import Editor
 from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
@@ -71,7 +71,7 @@ class KeyframePlayback(Playback):
     def animation(self) -> Animation:
         """As a drag of keyframes would leave it."""
         kept = NO_ANIMATION if self._editor.session is None else self._editor.session.present.animation
-        return kept if self._moved is None else kept.moved(*self._moved)
+        return kept if self._moved is None else kept.with_moved_keyframes(*self._moved)
 
     @property
     def duration(self) -> float:
@@ -112,7 +112,7 @@ class KeyframePlayback(Playback):
     def pose(self, moment: float) -> Floats | None:
         """The pose (n, 2) at a time; None without keyframes."""
         session, animation = self._editor.session, self.animation
-        if session is None or not animation.keys:
+        if session is None or not animation.keyframes:
             return None
         return pose_at(self._ways, session.drawing.mesh, animation, moment)
 
@@ -126,12 +126,12 @@ class KeyframePlayback(Playback):
     def neighbors(self) -> tuple[list[Floats], list[Floats]]:
         """Poses before and after the moment, the nearest ones first, as the onion skin is to show them."""
         animation, onion = self.animation, self.onion
-        if self.playing or not onion.shown or not animation.keys:
+        if self.playing or not onion.shown or not animation.keyframes:
             return [], []
         if onion.of == "keyframes":
-            here = key_time(self.at)
-            before = [key.positions for key in reversed(animation.keys) if key.time < here]
-            after = [key.positions for key in animation.keys if key.time > here]
+            here = as_keyframe_time(self.at)
+            before = [key.positions for key in reversed(animation.keyframes) if key.time < here]
+            after = [key.positions for key in animation.keyframes if key.time > here]
             return before[: onion.count], after[: onion.count]
         steps = [onion.step * (number + 1) for number in range(onion.count)]
         earlier = (self.pose(self.at - step) for step in steps if self.at - step >= -1e-9)
@@ -160,7 +160,7 @@ class KeyframePlayback(Playback):
 
     def scrub(self, moment: float) -> None:
         """Look at a moment, also after the last keyframe; without keyframes the present pose stays."""
-        self.at = min(max(moment, 0.0), LATEST_KEY)
+        self.at = min(max(moment, 0.0), MAX_KEYFRAME_TIME)
         self.view.reveal(self.at)
         self._show()
 
@@ -184,7 +184,7 @@ class KeyframePlayback(Playback):
 
     def step(self, forward: bool) -> None:
         """Look at the next keyframe, or the one before."""
-        here, times = key_time(self.at), self.animation.times
+        here, times = as_keyframe_time(self.at), self.animation.times
         if forward:
             there = next((time for time in times if time > here), None)
         else:
@@ -200,7 +200,7 @@ class KeyframePlayback(Playback):
         session = self._editor.session
         if session is None or self._editor.busy:
             return
-        time = key_time(self.at if moment is None else moment)
+        time = as_keyframe_time(self.at if moment is None else moment)
         if positions is None and self.following:
             positions = session.state.positions
         label = "Change keyframe" if time in self.animation.times else "Add keyframe"
@@ -219,18 +219,20 @@ class KeyframePlayback(Playback):
         meant = self._meant()
         if meant:
             by = self.duration + GAP - meant[0]
-            self._place({time: key_time(min(time + by, LATEST_KEY)) for time in meant}, copy=True)
+            self._place(
+                {time: as_keyframe_time(min(time + by, MAX_KEYFRAME_TIME)) for time in meant}, copy=True
+            )
 
     def nudge(self, by: float) -> None:
         """Bring the chosen keyframes forward or back in time; the first stays at 0 or later."""
         meant = self._meant()
         if meant:
             by = max(by, -meant[0])
-            self._place({time: key_time(min(time + by, LATEST_KEY)) for time in meant})
+            self._place({time: as_keyframe_time(min(time + by, MAX_KEYFRAME_TIME)) for time in meant})
 
     def set_time(self, old: float, new: float) -> None:
         """Another time for one keyframe."""
-        self._place({old: key_time(min(max(new, 0.0), LATEST_KEY))})
+        self._place({old: as_keyframe_time(min(max(new, 0.0), MAX_KEYFRAME_TIME))})
 
     def ease(self, ease: str | None, general: bool = False) -> None:
         """How it goes on from the chosen keyframes; general: wherever nothing else is said."""
@@ -240,13 +242,15 @@ class KeyframePlayback(Playback):
 
     def _meant(self) -> list[float]:
         """Times of the chosen keyframes, or of the one where one looks."""
-        return sorted(self.chosen) or [time for time in self.animation.times if time == key_time(self.at)]
+        return sorted(self.chosen) or [
+            time for time in self.animation.times if time == as_keyframe_time(self.at)
+        ]
 
     # -- keyframes that are dragged ------------------------------------------------------------------------
 
     def drag(self, moves: Mapping[float, float], copy: bool = False) -> None:
         """Show the animation with keyframes at other times; nothing is edited before `drop`."""
-        moves = {old: key_time(min(max(new, 0.0), LATEST_KEY)) for old, new in moves.items()}
+        moves = {old: as_keyframe_time(min(max(new, 0.0), MAX_KEYFRAME_TIME)) for old, new in moves.items()}
         self._moved = moves, copy
         if self.following:
             self._show()
@@ -266,8 +270,8 @@ class KeyframePlayback(Playback):
         self._edit(label, MoveKeyframes(dict(moves), copy))
         if self.chosen or copy:
             self.chosen = frozenset(moves.get(time, time) for time in self.chosen or moves)
-        if not copy and key_time(self.at) in moves:
-            self.at = moves[key_time(self.at)]
+        if not copy and as_keyframe_time(self.at) in moves:
+            self.at = moves[as_keyframe_time(self.at)]
 
     def _edit(self, label: str, edit: KeyframeEdit) -> None:
         session = self._editor.session
@@ -281,14 +285,14 @@ class KeyframePlayback(Playback):
 
 def pose_at(ways: InterpolationCache, mesh: TriMesh, animation: Animation, moment: float) -> Floats:
     """The pose (n, 2) of an animation of a mesh at a time; there must be keyframes."""
-    start, end, share = animation.between(moment)
+    start, end, share = animation.keyframes_around(moment)
     return ways.pose(mesh, start.positions, end.positions, share)
 
 
 def keyed_frame(document: Document, ways: InterpolationCache, moment: float) -> Frame:
     """What is seen of a document's keyframes at a time; there must be some."""
     pose = pose_at(ways, document.drawing.mesh, document.state.animation, moment)
-    return Frame(document.drawing, pose, document.order)
+    return Frame(document.drawing, pose, document.face_order)
 
 
 def stretched(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:

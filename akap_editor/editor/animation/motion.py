@@ -13,8 +13,8 @@ from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.validation import Floats, Ints, as_number
 from ..document.depth import face_order
 from ..document.drawing import Drawing
-from ..document.easing import easing
-from ..session.recording import LATEST, Recording
+from ..document.easing import easing_function
+from ..session.recording import MAX_TIME, Recording
 from ..session.replay import ReplayedEvent
 
 
@@ -35,7 +35,7 @@ LONGEST_MOVE = 0.25  # seconds: what moved after a longer pause moved in the las
 
 def shorten_pauses(recording: Recording, longest: float) -> Recording:
     """The same, but where nothing was done for more than ``longest`` seconds, that long only."""
-    as_number(longest, "longest pause", 0, LATEST)
+    as_number(longest, "longest pause", 0, MAX_TIME)
     events, before, now = [], 0.0, 0.0
     for event in recording.events:
         now += min(event["t"] - before, longest)
@@ -47,14 +47,14 @@ def shorten_pauses(recording: Recording, longest: float) -> Recording:
 def frame_times(start: float, end: float, fps: float, speed: float = 1.0, ease: str = "none") -> list[float]:
     """When to look at a motion from ``start`` to ``end``, in seconds, for each frame of an animation.
 
-    fps: frames per second, 1 to 240; speed: 2 is twice as fast, 0.01 to 100; ease: see `easing`. The last
-    frame is the end. Raises InputError.
+    fps: frames per second, 1 to 240; speed: 2 is twice as fast, 0.01 to 100; ease: see
+    `easing_function`. The last frame is the end. Raises InputError.
     """
     as_number(fps, "fps", 1, 240)
     as_number(speed, "speed", 0.01, 100)
-    as_number(start, "start", 0, LATEST)
-    as_number(end, "end", start, LATEST)
-    eased, span = easing(ease), end - start
+    as_number(start, "start", 0, MAX_TIME)
+    as_number(end, "end", start, MAX_TIME)
+    eased, span = easing_function(ease), end - start
     count = int(span / speed * fps + 1e-6)
     return [*(start + span * eased(k * speed / fps / span) for k in range(count)), end]
 

@@ -11,16 +11,16 @@ from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.validation import Floats, Ints, frozen
 from .pin import Pin
 
-MOST = 999  # as far in front or behind as a pin can be
-STEPS = 4  # levels in a depth of 1: faces of one level keep the order of the mesh, limbs as wholes
-_NEAR = 1e-6  # share of the size of the mesh: nearer than this to a pin its depth is that of the pin
+MAX_DEPTH = 999  # as far in front or behind as a pin can be
+LEVELS_PER_DEPTH = 4  # levels in a depth of 1: faces of one level keep the order of the mesh, limbs as wholes
+_PIN_RADIUS = 1e-6  # share of the size of the mesh: nearer than this to a pin its depth is that of the pin
 
 
 def check_depths(depths: Mapping[int, int]) -> None:
     """Raise InputError on depths, by a pin's id, that are out of range."""
     for pin_id, depth in depths.items():
-        if not -MOST <= depth <= MOST:
-            expected = f"a whole number from -{MOST} to {MOST}"
+        if not -MAX_DEPTH <= depth <= MAX_DEPTH:
+            expected = f"a whole number from -{MAX_DEPTH} to {MAX_DEPTH}"
             raise InputError(f"depth of pin {pin_id}: expected {expected}, got {depth}")
 
 
@@ -47,14 +47,14 @@ _Places = tuple[tuple[int, bytes, int], ...]
 
 @lru_cache(maxsize=8)
 def _order(mesh: TriMesh, pins: _Places) -> Ints:
-    levels = np.rint(STEPS * _blended(mesh, pins)[mesh.faces].mean(axis=1))
+    levels = np.rint(LEVELS_PER_DEPTH * _blended(mesh, pins)[mesh.faces].mean(axis=1))
     return frozen(np.argsort(levels, kind="stable"))
 
 
 def _blended(mesh: TriMesh, pins: _Places) -> Floats:
     """(n,): mean of the pins' depths with weights 1/d², d being the way to a pin through the drawing."""
     ways = np.stack([_ways(mesh, face, weights) for face, weights, _ in pins])
-    shares = 1.0 / np.maximum(ways, _NEAR * mesh.length) ** 2
+    shares = 1.0 / np.maximum(ways, _PIN_RADIUS * mesh.length) ** 2
     depths: Floats = np.array([depth for *_, depth in pins]) @ shares / shares.sum(axis=0)
     return depths
 

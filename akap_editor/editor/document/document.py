@@ -76,7 +76,7 @@ class Document:
     path: Path | None = None
 
     @property
-    def order(self) -> Ints | None:
+    def face_order(self) -> Ints | None:
         """(m,) the faces from the hindmost to the foremost; None is the order of the mesh."""
         return face_order(self.drawing.mesh, self.state.pins)
 

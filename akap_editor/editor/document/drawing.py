@@ -86,7 +86,7 @@ def make_drawing(
     if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8:
         raise InputError(f"image: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
     if mask is not None:
-        image = masked(image, mask)
+        image = apply_mask(image, mask)
     return remove_background_and_mesh(image, Meshing(vertices, expand, threshold, background), name)
 
 
@@ -109,7 +109,7 @@ def mesh_drawing(
     return Drawing(image, mesh, uv, name, meshing, original)
 
 
-def masked(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def apply_mask(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """A picture (h, w, 4) uint8 of which only what a mask (h, w) uint8 shows is visible.
 
     Raises InputError where they do not have the same size.

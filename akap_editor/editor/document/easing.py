@@ -1,4 +1,4 @@
-"""How time passes on the way from one moment to another: evenly, or with a slow start or end."""
+"""Easing: how fast time passes between two moments, such as two keyframes."""
 
 from collections.abc import Callable
 
@@ -10,25 +10,25 @@ EASINGS: dict[str, Callable[[float], float]] = {
     "out": lambda t: t * (2 - t),
     "in-out": lambda t: t * t * (3 - 2 * t),
 }
-KEY_EASINGS: dict[str, Callable[[float], float]] = {**EASINGS, "hold": lambda t: float(t >= 1)}
+KEYFRAME_EASINGS: dict[str, Callable[[float], float]] = {**EASINGS, "hold": lambda t: float(t >= 1)}
 
 
-def easing(name: str) -> Callable[[float], float]:
-    """A way from 0 to 1 that starts slowly ("in"), ends slowly ("out"), both or none. Raises InputError."""
-    return EASINGS[_known(name, EASINGS)]
+def easing_function(name: str) -> Callable[[float], float]:
+    """The function of `EASINGS` with this name; it maps [0, 1] onto [0, 1]. Raises InputError."""
+    return EASINGS[_check_name(name, EASINGS)]
 
 
-def key_easing(name: str) -> Callable[[float], float]:
-    """As `easing`; between keyframes there is also "hold", which waits and then jumps. Raises InputError."""
-    return KEY_EASINGS[as_key_easing(name)]
+def keyframe_easing_function(name: str) -> Callable[[float], float]:
+    """The function of `KEYFRAME_EASINGS` with this name, on [0, 1]. Raises InputError."""
+    return KEYFRAME_EASINGS[_check_name(name, KEYFRAME_EASINGS)]
 
 
-def as_key_easing(name: object) -> str:
-    """A name of `KEY_EASINGS`. Raises InputError on anything else."""
-    return _known(name, KEY_EASINGS)
+def check_keyframe_easing(name: object) -> str:
+    """Return ``name`` if it is one of `KEYFRAME_EASINGS`. Raises InputError otherwise."""
+    return _check_name(name, KEYFRAME_EASINGS)
 
 
-def _known(name: object, names: dict[str, Callable[[float], float]]) -> str:
-    if not isinstance(name, str) or name not in names:
-        raise InputError(f"ease: expected one of {', '.join(names)}, got {name!r}")
+def _check_name(name: object, easings: dict[str, Callable[[float], float]]) -> str:
+    if not isinstance(name, str) or name not in easings:
+        raise InputError(f"ease: expected one of {', '.join(easings)}, got {name!r}")
     return name

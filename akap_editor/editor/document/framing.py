@@ -50,7 +50,7 @@ def crop_box(drawing: Drawing, pose: ArrayLike, crop: str) -> Box:
     return frame_box(drawing, [pose])
 
 
-def picture_size(box: Box, scale: float) -> tuple[int, int]:
+def output_size(box: Box, scale: float) -> tuple[int, int]:
     """Width and height in pixels of ``box`` at ``scale`` pixels per drawing unit, rounded up.
 
     Raises InputError for an empty box, a scale that is not positive, or more than `MAX_SIZE` pixels a side.

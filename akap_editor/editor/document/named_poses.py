@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from ...errors import InputError
 from ...geometry.validation import Floats, as_points, frozen
 
-MAX_NAME = 80
+MAX_POSE_NAME = 80
 
 
 def as_pose(value: ArrayLike, name: str, count: int | None = None) -> Floats:
@@ -31,8 +31,10 @@ class NamedPose:
     positions: Floats
 
     def __post_init__(self) -> None:
-        if not self.name.strip() or len(self.name) > MAX_NAME:
-            raise InputError(f"pose: expected a name of 1 to {MAX_NAME} characters, got {self.name[:99]!r}")
+        if not self.name.strip() or len(self.name) > MAX_POSE_NAME:
+            raise InputError(
+                f"pose: expected a name of 1 to {MAX_POSE_NAME} characters, got {self.name[:99]!r}"
+            )
         object.__setattr__(self, "positions", as_pose(self.positions, "pose"))
 
 
@@ -43,7 +45,7 @@ def with_pose(poses: Sequence[NamedPose], pose: NamedPose) -> tuple[NamedPose, .
     return (*poses, pose)
 
 
-def free_name(poses: Sequence[NamedPose]) -> str:
+def unused_pose_name(poses: Sequence[NamedPose]) -> str:
     """Pose 1, Pose 2, ...: the first that is not taken."""
     taken = {pose.name for pose in poses}
     return next(name for number in range(1, len(taken) + 2) if (name := f"Pose {number}") not in taken)

@@ -13,7 +13,7 @@ from ...geometry.operators import to_complex
 from ...geometry.validation import Floats
 from .pin import Pin
 
-MOST_ANGLE = 20 * math.pi  # radians either way that a pin can hold
+MAX_PIN_ANGLE = 20 * math.pi  # radians either way that a pin can hold
 
 
 def pin_angles(mesh: TriMesh, pins: Sequence[Pin], positions: Floats, also: Container[int] = ()) -> Floats:
@@ -68,7 +68,7 @@ class FullTurnCounter:
         """Begin anew: pins have the shorter way to the angles that they hold."""
         self._last = {}
 
-    def counted(self, pins: Sequence[Pin], angles: Floats) -> Floats:
+    def unwrap(self, pins: Sequence[Pin], angles: Floats) -> Floats:
         """What `pin_angles` has found for ``pins`` (k,), with full turns."""
         near = np.array([self._last.get(pin.id, pin.angle or 0.0) for pin in pins])
         result = angles + 2 * np.pi * np.round((near - angles) / (2 * np.pi))

@@ -20,7 +20,7 @@ _ROUNDS, _DOUBLING = 1000, 200  # most rounds of unfolding, tens are usual; how 
 _LOST = 0.08  # share of √area: a pin farther from the new mesh sat on a part that is gone
 
 
-def remeshed(drawing: Drawing, meshing: Meshing) -> Drawing:
+def remesh_drawing(drawing: Drawing, meshing: Meshing) -> Drawing:
     """The same picture with a mesh made in another way.
 
     Raises InputError where there would be nothing to cut out, or where the mesh does not lie on its picture,
@@ -39,7 +39,7 @@ def remeshed(drawing: Drawing, meshing: Meshing) -> Drawing:
     return remove_background_and_mesh(before, meshing, drawing.name)
 
 
-def carried_over(state: EditState, old: TriMesh, drawing: Drawing) -> EditState:
+def transfer_state(state: EditState, old: TriMesh, drawing: Drawing) -> EditState:
     """The state of a drawing with the mesh ``old`` on another mesh of the same picture.
 
     The pose goes on as a map: a vertex goes where its place was taken, one beside the old mesh goes along
@@ -62,7 +62,7 @@ def carried_over(state: EditState, old: TriMesh, drawing: Drawing) -> EditState:
     poses = tuple(
         replace(pose, positions=_carried(mesh.vertices, old, pose.positions)) for pose in state.poses
     )
-    animation = state.animation.carried(lambda pose: _carried(mesh.vertices, old, pose))
+    animation = state.animation.with_poses(lambda pose: _carried(mesh.vertices, old, pose))
     stiffness = state.stiffness
     if stiffness is not None:
         stiffness = stiffness[_nearest(mesh.vertices[mesh.faces].mean(axis=1), old)[0]]

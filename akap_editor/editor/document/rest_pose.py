@@ -9,7 +9,7 @@ from .drawing import Drawing
 from .pin_angles import pins_fixed_at_pose
 
 
-def baked_state(state: EditState, drawing: Drawing) -> EditState:
+def with_pose_as_rest(state: EditState, drawing: Drawing) -> EditState:
     """``state`` of ``drawing`` with its pose as the rest pose: nothing moves, pins stay where they are.
 
     The picture stays on the mesh as it is. Raises InputError where faces are flipped, for a mesh at rest has
@@ -27,7 +27,7 @@ def baked_state(state: EditState, drawing: Drawing) -> EditState:
 
 
 def bake(document: Document) -> Document:
-    """A document with its pose as the rest pose, see `baked_state`. Raises InputError."""
-    state = baked_state(document.state, document.drawing)
+    """A document with its pose as the rest pose, see `with_pose_as_rest`. Raises InputError."""
+    state = with_pose_as_rest(document.state, document.drawing)
     assert state.drawing is not None
     return replace(document.with_state(state), drawing=state.drawing)

@@ -9,9 +9,9 @@ from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, as_number, as_points
 
-SOFTEST, STIFFEST = 1.0, 1000.0  # 1 bends as the drawing does by itself
-_FULL = 0.5  # share of a brush's radius within which it works fully
-_PLACES = 2  # decimals of a factor: few, so that files and recordings stay small
+MIN_STIFFNESS, MAX_STIFFNESS = 1.0, 1000.0  # 1 bends as the drawing does by itself
+_FULL_STRENGTH = 0.5  # share of a brush's radius within which it works fully
+_DECIMALS = 2  # decimals of a factor: few, so that files and recordings stay small
 
 
 def as_stiffness(values: ArrayLike, faces: int) -> Floats:
@@ -22,9 +22,9 @@ def as_stiffness(values: ArrayLike, faces: int) -> Floats:
         raise InputError(f"stiffness: expected {faces} numbers, got something else") from error
     if factors.shape != (faces,):
         raise InputError(f"stiffness: expected {faces} numbers, got shape {factors.shape}")
-    outside = factors[~((factors >= SOFTEST) & (factors <= STIFFEST))]
+    outside = factors[~((factors >= MIN_STIFFNESS) & (factors <= MAX_STIFFNESS))]
     if len(outside):
-        expected = f"factors from {SOFTEST:g} to {STIFFEST:g}"
+        expected = f"factors from {MIN_STIFFNESS:g} to {MAX_STIFFNESS:g}"
         raise InputError(f"stiffness: expected {expected}, got {outside[0]:g}")
     return factors
 
@@ -42,7 +42,7 @@ def stroke_coverage(mesh: TriMesh, dabs: ArrayLike, radius: float) -> Floats:
         dx, dy = x - dab_x, y - dab_y
         near = np.flatnonzero((np.abs(dx) <= reach) & (np.abs(dy) <= reach))
         away = np.hypot(dx[near], dy[near])
-        share = (1.0 - away / np.maximum(radius, sizes[near])) / (1.0 - _FULL)
+        share = (1.0 - away / np.maximum(radius, sizes[near])) / (1.0 - _FULL_STRENGTH)
         result[near] = np.maximum(result[near], np.clip(share, 0.0, 1.0))
     return result * result * (3.0 - 2.0 * result)
 
@@ -61,9 +61,9 @@ def apply_stroke(stiffness: Floats | None, covered: Floats, factor: float) -> Fl
 
     What is half covered comes half-way, in equal ratios. A factor of 1 erases. Raises InputError.
     """
-    factor = as_number(factor, "factor", SOFTEST, STIFFEST)
+    factor = as_number(factor, "factor", MIN_STIFFNESS, MAX_STIFFNESS)
     before = np.zeros(len(covered)) if stiffness is None else np.log(stiffness)
     after = before + covered * (np.log(factor) - before)
-    factors = np.clip(np.round(np.exp(after), _PLACES), SOFTEST, STIFFEST)
+    factors = np.clip(np.round(np.exp(after), _DECIMALS), MIN_STIFFNESS, MAX_STIFFNESS)
     factors = np.where(covered > 0, factors, 1.0 if stiffness is None else stiffness)
     return None if (factors == 1.0).all() else factors

@@ -5,7 +5,7 @@ import zlib
 from collections.abc import Iterator, Sequence
 from typing import Any, overload
 
-PACKED = 1000  # events that are compressed together
+PACK_SIZE = 1000  # events that are compressed together
 
 Event = dict[str, Any]
 
@@ -24,20 +24,20 @@ class EventLog(Sequence[Event]):
     def append(self, event: Event) -> None:
         """Add an event, of values that JSON can hold."""
         self._lines.append(json.dumps(event, separators=(",", ":")))
-        if len(self._lines) == PACKED:
+        if len(self._lines) == PACK_SIZE:
             self._packs.append(_packed(self._lines))
             self._lines.clear()
 
     def replace(self, index: int, event: Event) -> None:
         """Put an event in the place of another one. Raises IndexError."""
-        number, line = divmod(range(len(self))[index], PACKED)
+        number, line = divmod(range(len(self))[index], PACK_SIZE)
         lines = self._pack(number)
         lines[line] = json.dumps(event, separators=(",", ":"))
         if number < len(self._packs):
             self._packs[number] = _packed(lines)
 
     def __len__(self) -> int:
-        return PACKED * len(self._packs) + len(self._lines)
+        return PACK_SIZE * len(self._packs) + len(self._lines)
 
     def __iter__(self) -> Iterator[Event]:
         for number in range(len(self._packs) + 1):
@@ -50,7 +50,7 @@ class EventLog(Sequence[Event]):
     def __getitem__(self, index: int | slice) -> Event | list[Event]:
         if isinstance(index, slice):
             return [self[each] for each in range(*index.indices(len(self)))]
-        pack, line = divmod(range(len(self))[index], PACKED)
+        pack, line = divmod(range(len(self))[index], PACK_SIZE)
         return json.loads(self._pack(pack)[line])
 
     def __eq__(self, other: object) -> bool:

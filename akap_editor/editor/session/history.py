@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 from ..document.document import EditState
 
-MOST_ENTRIES = 1000
-MOST_BYTES = 2**28  # of poses
+MAX_ENTRIES = 1000
+MAX_BYTES = 2**28  # of poses
 
 
 @dataclass(frozen=True, eq=False)
-class Entry:
+class HistoryEntry:
     """A state to go back to, and what was done after it."""
 
     label: str
@@ -23,19 +23,19 @@ class History:
     """
 
     def __init__(self) -> None:
-        self._undo: list[Entry] = []
-        self._redo: list[Entry] = []
-        self._open: Entry | None = None
+        self._undo: list[HistoryEntry] = []
+        self._redo: list[HistoryEntry] = []
+        self._open: HistoryEntry | None = None
 
     def begin(self, label: str, state: EditState) -> None:
         """Open a gesture at ``state``. Gestures do not nest."""
         assert self._open is None, "a gesture is already open"
-        self._open = Entry(label, state)
+        self._open = HistoryEntry(label, state)
 
     def rename(self, label: str) -> None:
         """Say better what the open gesture turned out to be."""
         assert self._open is not None, "no gesture is open"
-        self._open = Entry(label, self._open.state)
+        self._open = HistoryEntry(label, self._open.state)
 
     def commit(self, join: bool = False) -> None:
         """Close the gesture as one entry; what was undone before can no longer be redone.
@@ -52,7 +52,7 @@ class History:
     def _forget_oldest(self) -> None:
         """Keep so much that nobody misses the rest, and a day's work does not fill the memory."""
         size = sum(entry.state.positions.nbytes for entry in self._undo)
-        while len(self._undo) > MOST_ENTRIES or (size > MOST_BYTES and len(self._undo) > 1):
+        while len(self._undo) > MAX_ENTRIES or (size > MAX_BYTES and len(self._undo) > 1):
             size -= self._undo.pop(0).state.positions.nbytes
 
     def abort(self) -> EditState:
@@ -66,20 +66,20 @@ class History:
         """Whether a gesture is under way."""
         return self._open is not None
 
-    def unchanged(self, now: EditState) -> bool:
+    def is_unchanged(self, now: EditState) -> bool:
         """Whether the open gesture has changed nothing yet."""
         return self._open is not None and self._open.state is now
 
     def undo(self, now: EditState) -> EditState:
         """The state before the last entry; ``now`` can be redone. Raises IndexError on an empty stack."""
         entry = self._undo.pop()
-        self._redo.append(Entry(entry.label, now))
+        self._redo.append(HistoryEntry(entry.label, now))
         return entry.state
 
     def redo(self, now: EditState) -> EditState:
         """The state after the entry last undone. Raises IndexError on an empty stack."""
         entry = self._redo.pop()
-        self._undo.append(Entry(entry.label, now))
+        self._undo.append(HistoryEntry(entry.label, now))
         return entry.state
 
     @property
@@ -93,7 +93,7 @@ class History:
         return self._redo[-1].label if self._redo else None
 
     @property
-    def last(self) -> Entry | None:
+    def last(self) -> HistoryEntry | None:
         """The entry that undo would take back; an object of its own for each commit."""
         return self._undo[-1] if self._undo else None
 

@@ -18,7 +18,7 @@ def add_pin(session: Session, at: Target) -> int | None:
     """Add a pin to what is seen at ``at`` (pixels) in the current pose; its id, None beside the drawing."""
     session.finish_step()
     mesh, pins = session.drawing.mesh, session.state.pins
-    point = mesh.find(at, session.state.positions, session.document.order)
+    point = mesh.find(at, session.state.positions, session.document.face_order)
     if point is None:
         return None
     pin_id = 1 + max((pin.id for pin in pins), default=0)

@@ -29,7 +29,7 @@ from .edits import (
 from .event_log import Event, EventLog
 
 VERSION = 1
-LATEST = 1e9  # seconds
+MAX_TIME = 1e9  # seconds
 
 # Events that are not edits, with the values that each must have besides its time.
 SESSION_EVENTS: dict[str, tuple[str, ...]] = {
@@ -98,7 +98,7 @@ def opening_edits(document: Document) -> list[Edit]:
     if state.pins:
         edits.append(SetPins(state.pins))
     edits += [AddPose(pose.name, pose.positions) for pose in state.poses]
-    edits += [SetKeyframe(key.time, key.positions, key.ease) for key in state.animation.keys]
+    edits += [SetKeyframe(key.time, key.positions, key.ease) for key in state.animation.keyframes]
     if state.animation.ease != Animation.ease:
         edits.append(SetEasing(None, state.animation.ease))
     if not state.animation.loop:
@@ -148,7 +148,7 @@ def _check_event(event: dict[str, Any], number: int, previous: float) -> None:
     if not isinstance(do, str) or do not in _FIELDS:
         came = reprlib.repr(do)
         raise InputError(f"recording line {number}: expected one of {', '.join(_FIELDS)}, got {came}")
-    if isinstance(when, bool) or not isinstance(when, int | float) or not previous <= when <= LATEST:
+    if isinstance(when, bool) or not isinstance(when, int | float) or not previous <= when <= MAX_TIME:
         came = reprlib.repr(when)
         raise InputError(f"recording line {number}: expected a time of {previous:g} s or later, got {came}")
     for name in _FIELDS[do]:

@@ -255,7 +255,7 @@ class Session:
             self.history.commit()
             self._record("commit")
         self.history.begin(label, self.state)
-        self._stepper.forget_turns()
+        self._stepper.reset_full_turns()
         self._record("begin", label=label)
         if preview is not None and preview.takes_pose:
             self.apply(SetPose(preview.shown.positions))
@@ -277,21 +277,21 @@ class Session:
             self.abort()
             return
         self._taken_pose = None
-        if self.history.unchanged(self.state):
+        if self.history.is_unchanged(self.state):
             self.history.abort()
         else:
             self.history.commit(join)
         self._record("commit", **({"join": True} if join else {}))
 
     def _is_unchanged(self) -> bool:
-        return self.state is self._taken_pose or self.history.unchanged(self.state)
+        return self.state is self._taken_pose or self.history.is_unchanged(self.state)
 
     def abort(self) -> None:
         """End the gesture and restore the state from before it, bit for bit."""
         with suppress(SolverError):
             self.finish_step()
         # A gesture that changed nothing does not stop the motion of the one before.
-        steps_left = self._stepper.steps_left if self.history.unchanged(self.state) else 0
+        steps_left = self._stepper.steps_left if self.history.is_unchanged(self.state) else 0
         self._taken_pose = None
         self._restore(self.history.abort())
         self._stepper.steps_left = steps_left

@@ -105,7 +105,7 @@ class Stepper:
             self.set_method(mesh, state)
             return
         self.last_motion = None
-        self.forget_turns()
+        self.reset_full_turns()
         self.set_pins(state)
 
     def aim(self, state: EditState) -> None:
@@ -116,7 +116,7 @@ class Stepper:
         """Leave the pose as it is, even if pins have not arrived."""
         self.steps_left = 0
 
-    def forget_turns(self) -> None:
+    def reset_full_turns(self) -> None:
         """Forget full turns: from now on pins rotate the short way to their angles."""
         self._full_turns.forget()
 
@@ -137,7 +137,7 @@ class Stepper:
         if not holds_angles(self._settings.method) or not np.isfinite(wanted).any():
             return np.full(len(wanted), np.nan)
         angles = pin_angles(self._mesh, state.pins, state.positions)
-        return wanted - self._full_turns.counted(state.pins, angles)
+        return wanted - self._full_turns.unwrap(state.pins, angles)
 
     def pin_error(self, state: EditState) -> float:
         """Largest distance of a pin from its target, pixels."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...geometry.validation import Floats
-from ..document.stiffness import SOFTEST, STIFFEST, apply_stroke, stroke_coverage
+from ..document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS, apply_stroke, stroke_coverage
 from ..events import PointerEvent
 from ..session.edits import PaintStiffness
 from .base import Tool
@@ -31,7 +31,7 @@ class Brush:
     @classmethod
     def of(cls, radius: float, factor: float) -> "Brush":
         """The nearest brush that there is."""
-        return cls(max(SMALLEST, min(LARGEST, radius)), max(SOFTEST, min(STIFFEST, factor)))
+        return cls(max(SMALLEST, min(LARGEST, radius)), max(MIN_STIFFNESS, min(MAX_STIFFNESS, factor)))
 
     @property
     def hint(self) -> str:
@@ -58,7 +58,7 @@ class Painting(Tool):
         assert session is not None
         erases = editor.brush.erasing or event.button == "right"
         self._button, self._last = event.button, event.position
-        self._factor = SOFTEST if erases else editor.brush.factor
+        self._factor = MIN_STIFFNESS if erases else editor.brush.factor
         self._reach = editor.brush.radius * editor.ui_scale
         self._radius = self._reach / editor.camera.zoom
         self._dabs: list[Floats] = []
@@ -70,7 +70,7 @@ class Painting(Tool):
     @property
     def hint(self) -> str:  # type: ignore[override]
         """What the stroke does."""
-        does = "erase" if self._factor == SOFTEST else "paint"
+        does = "erase" if self._factor == MIN_STIFFNESS else "paint"
         return f"Release to {does}, Escape to go back"
 
     def move(self, event: PointerEvent) -> None:
@@ -91,7 +91,7 @@ class Painting(Tool):
         session = self.editor.session
         assert session is not None
         mesh, at = session.drawing.mesh, self.editor.camera.to_drawing(position)
-        found = mesh.find(at, session.state.positions, session.document.order)
+        found = mesh.find(at, session.state.positions, session.document.face_order)
         return None if found is None else np.round(mesh.evaluate(found, mesh.vertices)[0], 3)
 
     def release(self, event: PointerEvent) -> None:

@@ -16,16 +16,16 @@ _MAX_INDEX_BYTES = 2**21
 
 def keyframe_entries(animation: Animation) -> list[Entry]:
     """The entries of a file; none for an animation as it is before anything is chosen."""
-    if not animation.keys and animation.ease == Animation.ease and animation.loop:
+    if not animation.keyframes and animation.ease == Animation.ease and animation.loop:
         return []
     poses: dict[int, tuple[int, Floats]] = {}  # keyframes that share a pose do so in the file
-    for key in animation.keys:
+    for key in animation.keyframes:
         poses.setdefault(id(key.positions), (len(poses), key.positions))
     points = sum(len(pose) for _, pose in poses.values())
-    if len(animation.keys) > MAX_KEYS or points > MAX_POINTS:
+    if len(animation.keyframes) > MAX_KEYS or points > MAX_POINTS:
         raise InputError(
             f"expected at most {MAX_KEYS} keyframes with {MAX_POINTS} vertices in all, got "
-            f"{len(animation.keys)} with {points}"
+            f"{len(animation.keyframes)} with {points}"
         )
     keys: list[Json] = [
         {
@@ -33,7 +33,7 @@ def keyframe_entries(animation: Animation) -> list[Entry]:
             "pose": poses[id(key.positions)][0],
             **({} if key.ease is None else {"ease": key.ease}),
         }
-        for key in animation.keys
+        for key in animation.keyframes
     ]
     loop = {} if animation.loop else {"loop": False}
     index = json.dumps({"ease": animation.ease, **loop, "poses": len(poses), "keyframes": keys}).encode()

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from ...editor.document.depth import MOST
+from ...editor.document.depth import MAX_DEPTH
 from ...editor.document.document import EditState
 from ...editor.document.pin import Pin
-from ...editor.document.pin_angles import MOST_ANGLE
+from ...editor.document.pin_angles import MAX_PIN_ANGLE
 from ...editor.document.settings import Settings
 from ...editor.document.stiffness import as_stiffness
 from ...errors import InputError
@@ -81,10 +81,10 @@ def _check_pin(pin: Pin, faces: int) -> None:
     if not inside or abs(pin.weights.sum() - 1) > WEIGHT_TOLERANCE:
         came = str(pin.weights.tolist())
         raise InputError(f"pin {pin.id}: expected weights from 0 to 1 that sum to 1, got {came}")
-    if abs(pin.depth) > MOST:
-        raise InputError(f"pin {pin.id}: expected a depth from -{MOST} to {MOST}, got {pin.depth}")
-    if pin.angle is not None and not abs(pin.angle) <= MOST_ANGLE:
-        expected = f"an angle from -{MOST_ANGLE:.5g} to {MOST_ANGLE:.5g} radians"
+    if abs(pin.depth) > MAX_DEPTH:
+        raise InputError(f"pin {pin.id}: expected a depth from -{MAX_DEPTH} to {MAX_DEPTH}, got {pin.depth}")
+    if pin.angle is not None and not abs(pin.angle) <= MAX_PIN_ANGLE:
+        expected = f"an angle from -{MAX_PIN_ANGLE:.5g} to {MAX_PIN_ANGLE:.5g} radians"
         raise InputError(f"pin {pin.id}: expected {expected}, got {pin.angle}")
     if not np.isfinite(pin.target).all():
         raise InputError(f"pin {pin.id}: expected a finite target, got {pin.target.tolist()}")

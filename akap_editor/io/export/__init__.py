@@ -68,7 +68,7 @@ def _encode_png(document: Document, stem: str, options: ExportOptions, painter: 
         raise InputError("expected a painter for a picture, e.g. an OffscreenRenderer, got None")
     drawing, pose = document.drawing, document.state.positions
     box = crop_box(drawing, pose, options.crop)
-    picture = painter.render(drawing, pose, box, options.scale, options.background, document.order)
+    picture = painter.render(drawing, pose, box, options.scale, options.background, document.face_order)
     return {f"{stem}.png": encode_png(picture)}
 
 
@@ -80,7 +80,7 @@ def _encode_svg(document: Document, stem: str, options: ExportOptions, _: Painte
 
 def _in_order(document: Document) -> Drawing:
     """The drawing with its faces from the hindmost to the foremost."""
-    drawing, order = document.drawing, document.order
+    drawing, order = document.drawing, document.face_order
     if order is None:
         return drawing
     return replace(drawing, mesh=replace(drawing.mesh, faces=drawing.mesh.faces[order]))

@@ -22,7 +22,7 @@ def encode_json(document: Document) -> bytes:
         "positions": state.positions.tolist(),
         "uv": drawing.uv.tolist(),
         "faces": mesh.faces.tolist(),
-        "order": None if document.order is None else document.order.tolist(),
+        "order": None if document.face_order is None else document.face_order.tolist(),
         "pins": [
             {
                 "id": pin.id,

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from ...editor.document.drawing import Drawing
-from ...editor.document.framing import Box, Color, picture_size
+from ...editor.document.framing import Box, Color, output_size
 from ...geometry.mesh import signed_areas
 from ...geometry.validation import Floats
 
@@ -33,9 +33,9 @@ def encode_svg(
 ) -> str:
     """An SVG picture of ``box``: one path for each part of the pose, its holes by the even-odd rule.
 
-    Paths are in drawing units, three decimals. Raises InputError as `picture_size` does.
+    Paths are in drawing units, three decimals. Raises InputError as `output_size` does.
     """
-    picture_size(box, scale)
+    output_size(box, scale)
     x0, y0, x1, y1 = box
     width, height = x1 - x0, y1 - y0
     size = f'width="{width * scale:.10g}" height="{height * scale:.10g}"'

@@ -166,7 +166,7 @@ def test_keyframes_are_chosen_and_retimed_by_keys(keyed):
 
 def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
     keys(keyed, Key.period, SHIFT | Key.f10, *[Key.down_arrow] * 2, Key.enter)
-    eases = [key.ease for key in keyed.session.present.animation.keys]
+    eases = [key.ease for key in keyed.session.present.animation.keyframes]
     assert eases[0] is None
     assert eases[1] is not None
 

@@ -110,7 +110,7 @@ def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
 
 def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
     playback = keyed.state.keyframe_playback
-    playback.put(0.8, playback.animation.keys[0].positions)
+    playback.put(0.8, playback.animation.keyframes[0].positions)
     for options, count in (
         (AnimationExportOptions("APNG", fps=10), 8),
         (AnimationExportOptions("APNG", fps=10, loop=False), 9),

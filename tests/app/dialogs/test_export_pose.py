@@ -70,7 +70,7 @@ def test_all_that_can_be_chosen_about_a_picture(bent, tmp_path):
     bent.do(crop)
     choice = dialog(bent).options
     assert (choice.scale, choice.is_opaque, choice.crop) == (2.0, True, "pose")
-    size = choice.picture_size(bent.document)
+    size = choice.output_size(bent.document)
     export_as(bent, "large")
     written = read_image(tmp_path / "large.png")
     assert written.shape == (size[1], size[0], 4)

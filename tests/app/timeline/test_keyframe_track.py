@@ -41,7 +41,7 @@ def on_track(ui, time, y=28):
 
 def at_time(ui, time, share):
     """What is seen is the pose at a time, the share of the way from rest to the bent pose."""
-    first, last = (ui.session.present.animation.keys[number].positions for number in (0, -1))
+    first, last = (ui.session.present.animation.keyframes[number].positions for number in (0, -1))
     seen = ui.session.state.positions
     assert ui.state.keyframe_playback.at == pytest.approx(time)
     far = np.abs(last - first).max()
@@ -72,7 +72,7 @@ def test_a_drag_on_the_canvas_takes_what_is_seen_and_k_keeps_it(keyed):
     assert np.abs(keyed.session.state.positions - seen).max() < 60, "it went on from there"
     keyed.key(imgui.Key.k)
     assert times(keyed) == (0.0, 0.5, 1.0)
-    assert keyed.session.present.animation.keys[1].positions is keyed.session.state.positions
+    assert keyed.session.present.animation.keyframes[1].positions is keyed.session.state.positions
     keyed.editor.undo()
     keyed.editor.undo()
     assert keyed.session.present is before
@@ -149,11 +149,11 @@ def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
 
     place = on_track(keyed, 0.0)
     keyed.do(choose)
-    assert keyed.session.present.animation.keys[0].ease == "hold"
+    assert keyed.session.present.animation.keyframes[0].ease == "hold"
     keyed.state.keyframe_playback.scrub(0.9)
     keyed.settle()
     np.testing.assert_array_equal(
-        keyed.session.state.positions, keyed.session.present.animation.keys[0].positions
+        keyed.session.state.positions, keyed.session.present.animation.keyframes[0].positions
     )
 
 
@@ -166,7 +166,7 @@ def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
     keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Up", "//Timeline/##keys"))
     assert times(keyed) == (0.0, 0.5, 1.0)
     kept = keyed.session.present.poses[0].positions
-    np.testing.assert_array_equal(keyed.session.present.animation.keys[-1].positions, kept)
+    np.testing.assert_array_equal(keyed.session.present.animation.keyframes[-1].positions, kept)
     keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Down", "//Panel/pose Up"))
     assert [pose.name for pose in keyed.session.present.poses] == ["Down", "Up"]
 
@@ -242,7 +242,7 @@ def test_keyframes_are_saved_and_opened(keyed, tmp_path):
     keyed.state._write(tmp_path / "a.akap", None)
     assert not keyed.state.error
     again = load(tmp_path / "a.akap")
-    assert [key.time for key in again.state.animation.keys] == [0.0, 1.0]
+    assert [key.time for key in again.state.animation.keyframes] == [0.0, 1.0]
     assert save(again, tmp_path / "b.akap").path is not None
     assert (tmp_path / "a.akap").read_bytes() == (tmp_path / "b.akap").read_bytes()
     np.testing.assert_array_equal(again.state.positions, keyed.session.present.positions)

@@ -144,4 +144,4 @@ def test_frames_are_drawn_in_the_order_that_depths_ask_for(drawing):
     recorded = session.recording
     frames = list(motion(recorded, drawing, None).frames([0.0, recorded.duration + 1.0]))
     assert frames[0].order is None
-    assert frames[1].order.tolist() == session.document.order.tolist()
+    assert frames[1].order.tolist() == session.document.face_order.tolist()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor import gestures
-from akap_editor.editor.document.depth import MOST, depth_at, face_order
+from akap_editor.editor.document.depth import MAX_DEPTH, depth_at, face_order
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.pin import Pin
@@ -117,7 +117,7 @@ def test_forward_and_back_are_one_entry_each_and_move_nothing(pinned):
 def test_a_depth_out_of_range_changes_nothing(pinned):
     before = pinned.everything
     with pytest.raises(InputError, match="depth of pin 2"):
-        gestures.set_depth(pinned.editor, 2, MOST + 1)
+        gestures.set_depth(pinned.editor, 2, MAX_DEPTH + 1)
     assert pinned.everything == before
 
 
@@ -161,7 +161,7 @@ def test_depths_are_saved_recorded_and_replayed(pinned, drawing, tmp_path):
     save(pinned.session.document, tmp_path / "deep.akap")
     again = load(tmp_path / "deep.akap")
     assert [pin.depth for pin in again.state.pins] == [0, 7, -2]
-    np.testing.assert_array_equal(again.order, pinned.session.document.order)
+    np.testing.assert_array_equal(again.face_order, pinned.session.document.face_order)
     *_, last = replay(parse_recording(pinned.session.recording.to_text()), drawing)
     assert bits(last.state) == bits(pinned.state)
 
@@ -175,6 +175,6 @@ def test_a_cartoon_limb_changes_sides(shared_data):
     pins = [gestures.add_pin(editor, tuple(at)) for at in (low, high)]
     for depth in (1, -1):
         gestures.set_depth(editor, pins[1], depth)
-        order = rank(editor.session.document.order)
+        order = rank(editor.session.document.face_order)
         faces = [editor.session.state.pin(pin).face for pin in pins]
         assert (order[faces[1]] > order[faces[0]]) == (depth > 0)

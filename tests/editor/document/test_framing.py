@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.document.drawing import Drawing
-from akap_editor.editor.document.framing import CROPS, MAX_SIZE, crop_box, frame_box, picture_size
+from akap_editor.editor.document.framing import CROPS, MAX_SIZE, crop_box, frame_box, output_size
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import TriMesh
 
@@ -59,4 +59,4 @@ def test_errors(drawing):
     ],
 )
 def test_size_in_pixels(box, scale, size):
-    assert picture_size(box, scale) == size
+    assert output_size(box, scale) == size

@@ -11,8 +11,8 @@ from akap_editor.editor.animation.keyframe_playback import KeyframePlayback, key
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing
 from akap_editor.editor.document.keyframes import Animation, Keyframe
-from akap_editor.editor.document.remesh import remeshed
-from akap_editor.editor.document.rest_pose import baked_state
+from akap_editor.editor.document.remesh import remesh_drawing
+from akap_editor.editor.document.rest_pose import with_pose_as_rest
 from akap_editor.editor.session.edits import Remesh, RenamePose, ReorderPoses
 from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import parse_recording
@@ -48,7 +48,7 @@ def times(pinned):
 
 
 def test_the_pose_between_keyframes_is_the_eased_in_between(player, pinned, drawing):
-    start, end = pinned.session.present.animation.keys
+    start, end = pinned.session.present.animation.keyframes
     ways = InterpolationCache()
     for moment, share in ((0.0, 0.0), (0.25, 0.15625), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)):
         expected = ways.pose(drawing.mesh, start.positions, end.positions, share)
@@ -97,7 +97,7 @@ def test_a_pose_that_is_seen_between_becomes_a_keyframe_and_is_recorded(player, 
     seen = pinned.session.state.positions
     player.put()
     assert times(pinned) == (0.0, 0.5, 1.0)
-    np.testing.assert_array_equal(pinned.session.present.animation.keys[1].positions, seen)
+    np.testing.assert_array_equal(pinned.session.present.animation.keyframes[1].positions, seen)
     assert bits(recorded(pinned.session, drawing)) == bits(pinned.session.present)
 
 
@@ -174,13 +174,13 @@ def test_playing_goes_on_and_starts_over(player, pinned, clock):
 def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, drawing):
     session = pinned.session
     session.begin("Mesh")
-    session.apply(Remesh.to(remeshed(drawing, replace(drawing.meshing or Meshing(), vertices=300))))
+    session.apply(Remesh.to(remesh_drawing(drawing, replace(drawing.meshing or Meshing(), vertices=300))))
     session.commit()
-    keys = session.state.animation.keys
+    keys = session.state.animation.keyframes
     assert [len(key.positions) for key in keys] == [len(session.drawing.mesh.vertices)] * 2
     np.testing.assert_allclose(keys[0].positions, session.drawing.mesh.vertices, atol=1e-6)
     assert bits(recorded(session, drawing)) == bits(session.state)
-    assert baked_state(session.state, session.drawing).animation is session.state.animation
+    assert with_pose_as_rest(session.state, session.drawing).animation is session.state.animation
 
 
 def test_a_document_with_poses_and_keyframes_is_recorded_from_its_start(player, pinned, drawing):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor import gestures
-from akap_editor.editor.document.named_poses import MAX_NAME, NamedPose, free_name
+from akap_editor.editor.document.named_poses import MAX_POSE_NAME, NamedPose, unused_pose_name
 from akap_editor.editor.session.recording import parse_recording
 from akap_editor.editor.session.replay import replay
 from akap_editor.errors import InputError
@@ -68,13 +68,13 @@ def test_a_replay_keeps_the_same_poses_and_undoes_the_same(posed, drawing):
 
 
 def test_names_that_are_free(posed):
-    assert free_name(()) == "Pose 1"
-    assert free_name(posed.state.poses) == "Pose 2"
+    assert unused_pose_name(()) == "Pose 1"
+    assert unused_pose_name(posed.state.poses) == "Pose 2"
 
 
-@pytest.mark.parametrize("name", ["", "  ", "x" * (MAX_NAME + 1)])
+@pytest.mark.parametrize("name", ["", "  ", "x" * (MAX_POSE_NAME + 1)])
 def test_bad_names_are_refused_and_nothing_is_kept(pinned, name):
-    with pytest.raises(InputError, match=f"expected a name of 1 to {MAX_NAME} characters"):
+    with pytest.raises(InputError, match=f"expected a name of 1 to {MAX_POSE_NAME} characters"):
         gestures.add_pose(pinned.editor, name)
     assert names(pinned) == []
     assert pinned.session.history.depth == 3

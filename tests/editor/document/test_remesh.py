@@ -9,7 +9,7 @@ from akap_editor.editor.document import remesh as remesh_module
 from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document.drawing import Drawing, Meshing, make_drawing
 from akap_editor.editor.document.pin import Pin
-from akap_editor.editor.document.remesh import carried_over, remeshed
+from akap_editor.editor.document.remesh import remesh_drawing, transfer_state
 from akap_editor.editor.session.edits import Remesh, SetTargets
 from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import parse_recording
@@ -44,7 +44,7 @@ def bent(figure):
 
 def remesh(session, **changes):
     session.begin("Change mesh")
-    session.apply(Remesh.to(remeshed(session.drawing, replace(session.drawing.meshing, **changes))))
+    session.apply(Remesh.to(remesh_drawing(session.drawing, replace(session.drawing.meshing, **changes))))
     session.commit()
 
 
@@ -58,14 +58,14 @@ def smooth(points):
 def test_a_pose_goes_on_as_a_map(figure, vertices, expand):
     drawing = make_drawing(figure, vertices=3000)
     state = EditState((), smooth(drawing.mesh.vertices))
-    other = remeshed(drawing, Meshing(vertices, expand))
-    found = carried_over(state, drawing.mesh, other).positions
+    other = remesh_drawing(drawing, Meshing(vertices, expand))
+    found = transfer_state(state, drawing.mesh, other).positions
     assert np.abs(found - smooth(other.mesh.vertices)).max() < 1.2
     assert (signed_areas(found, other.mesh.faces) > 0).all()
 
 
 def test_the_same_mesh_changes_nothing(bent):
-    state = carried_over(bent.state, bent.drawing.mesh, bent.drawing)
+    state = transfer_state(bent.state, bent.drawing.mesh, bent.drawing)
     assert np.abs(state.positions - bent.state.positions).max() < 1e-9
     assert [pin.face for pin in state.pins] == [pin.face for pin in bent.state.pins]
 
@@ -74,10 +74,10 @@ def test_a_drawing_at_rest_stays_at_rest(figure):
     """Also where the new mesh goes beyond the old one."""
     drawing = make_drawing(figure, vertices=200)
     state = EditState((), drawing.mesh.vertices)
-    other = remeshed(drawing, Meshing(900, 9.0))
-    assert carried_over(state, drawing.mesh, other).positions.tolist() == other.mesh.vertices.tolist()
+    other = remesh_drawing(drawing, Meshing(900, 9.0))
+    assert transfer_state(state, drawing.mesh, other).positions.tolist() == other.mesh.vertices.tolist()
     nearly = EditState((), drawing.mesh.vertices + 1e-9)
-    assert np.abs(carried_over(nearly, drawing.mesh, other).positions - other.mesh.vertices).max() < 1e-8
+    assert np.abs(transfer_state(nearly, drawing.mesh, other).positions - other.mesh.vertices).max() < 1e-8
 
 
 @pytest.mark.parametrize(
@@ -111,8 +111,8 @@ def test_pins_and_pose_stay_and_undo_takes_it_back(bent, changes):
 def test_escape_restores_the_mesh_bit_for_bit(bent):
     state, drawing = bent.state, bent.drawing
     bent.begin("Change mesh")
-    bent.apply(Remesh.to(remeshed(drawing, Meshing(100))))
-    bent.apply(Remesh.to(remeshed(bent.drawing, Meshing(500))))
+    bent.apply(Remesh.to(remesh_drawing(drawing, Meshing(100))))
+    bent.apply(Remesh.to(remesh_drawing(bent.drawing, Meshing(500))))
     bent.abort()
     assert bent.state is state
     assert bent.drawing is drawing
@@ -196,8 +196,8 @@ def test_faces_that_would_flip_are_unfolded(figure, monkeypatch):
                 break
     state = EditState((), pose)
     for vertices in (150, 380, 900):
-        other = remeshed(drawing, Meshing(vertices))
-        found = carried_over(state, drawing.mesh, other).positions
+        other = remesh_drawing(drawing, Meshing(vertices))
+        found = transfer_state(state, drawing.mesh, other).positions
         assert (signed_areas(found, other.mesh.faces) > 0).all()
     assert sum(unfolded) > 0
 
@@ -206,7 +206,7 @@ def test_a_mesh_beside_its_picture_cannot_be_made_anew(figure):
     made = make_drawing(figure, vertices=100)
     moved = Drawing(figure, TriMesh(made.mesh.vertices + 5, made.mesh.faces), made.uv, "fish")
     with pytest.raises(InputError, match=r"the mesh of fish cannot be made anew: .* 5\.0 pixels away"):
-        remeshed(moved, Meshing())
+        remesh_drawing(moved, Meshing())
 
 
 def test_nothing_to_cut_out_changes_nothing(bent):
@@ -214,7 +214,7 @@ def test_nothing_to_cut_out_changes_nothing(bent):
     image = bent.drawing.image.copy()
     image[..., 3] = 10
     with pytest.raises(InputError, match="transparent"):
-        remeshed(replace(bent.drawing, image=image), Meshing())
+        remesh_drawing(replace(bent.drawing, image=image), Meshing())
     assert bent.state is state
 
 
@@ -222,6 +222,6 @@ def test_a_pin_beside_the_new_mesh_is_taken_to_its_rim(figure):
     drawing = make_drawing(figure, vertices=300, expand=4.0)
     found = drawing.mesh.find((16.5, 60.0))
     pin = Pin(1, int(found.faces[0]), found.weights[0], np.array([16.5, 60.0]))
-    other = remeshed(drawing, Meshing(300, 0.0))
-    state = carried_over(EditState((pin,), drawing.mesh.vertices), drawing.mesh, other)
+    other = remesh_drawing(drawing, Meshing(300, 0.0))
+    state = transfer_state(EditState((pin,), drawing.mesh.vertices), drawing.mesh, other)
     assert other.mesh.evaluate(state.points, other.mesh.vertices)[0] == pytest.approx([20, 60], abs=0.6)

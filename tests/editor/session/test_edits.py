@@ -10,7 +10,7 @@ import pytest
 from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document.drawing import Drawing, Meshing, make_drawing
 from akap_editor.editor.document.pin import Pin
-from akap_editor.editor.document.remesh import remeshed
+from akap_editor.editor.document.remesh import remesh_drawing
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import (
     EDITS,
@@ -176,7 +176,9 @@ def test_a_replay_on_another_mesh_does_the_same(session, edit, image):
     assert [pose.name for pose in state.poses] == [pose.name for pose in expected.poses]
     assert state.animation.times == expected.animation.times
     assert (state.animation.ease, state.animation.loop) == (expected.animation.ease, expected.animation.loop)
-    assert [key.ease for key in state.animation.keys] == [key.ease for key in expected.animation.keys]
+    assert [key.ease for key in state.animation.keyframes] == [
+        key.ease for key in expected.animation.keyframes
+    ]
     assert state.settings == expected.settings
     assert (state.stiffness is None) == (expected.stiffness is None)
     assert (state.drawing is None) == (expected.drawing is None)
@@ -201,7 +203,7 @@ def test_an_edit_that_changes_nothing_is_not_recorded(drawing, name):
 
 
 def test_a_mesh_that_was_made_before_is_taken_over(session):
-    made = remeshed(session.drawing, replace(session.drawing.meshing or Meshing(), vertices=200))
+    made = remesh_drawing(session.drawing, replace(session.drawing.meshing or Meshing(), vertices=200))
     gesture(session, Remesh.to(made))
     assert session.drawing is made
 

@@ -4,14 +4,14 @@ import tracemalloc
 
 import pytest
 
-from akap_editor.editor.session.event_log import PACKED, EventLog
+from akap_editor.editor.session.event_log import PACK_SIZE, EventLog
 
 
 def events(count):
     return [{"t": n / 60, "do": "targets", "targets": {"3": [0.1 * n, 1e-300 + n]}} for n in range(count)]
 
 
-@pytest.mark.parametrize("count", [0, 1, PACKED - 1, PACKED, PACKED + 1, 2 * PACKED + 7])
+@pytest.mark.parametrize("count", [0, 1, PACK_SIZE - 1, PACK_SIZE, PACK_SIZE + 1, 2 * PACK_SIZE + 7])
 def test_it_reads_like_the_list(count):
     expected, log = events(count), EventLog()
     for event in expected:

@@ -61,11 +61,11 @@ def test_a_committed_gesture_clears_redo_and_an_aborted_one_does_not(history, st
 
 
 def test_an_open_gesture_knows_whether_it_changed_anything(history, states):
-    assert not history.unchanged(states[3])
+    assert not history.is_unchanged(states[3])
     history.begin("open", states[3])
     assert history.is_open
-    assert history.unchanged(states[3])
-    assert not history.unchanged(states[2])
+    assert history.is_unchanged(states[3])
+    assert not history.is_unchanged(states[2])
 
 
 def test_rename_keeps_the_state(history, states):
@@ -85,7 +85,7 @@ def test_gestures_do_not_nest_and_end_only_once(history, states):
         history.begin("second", states[3])
 
 
-@pytest.mark.parametrize(("limit", "value", "kept"), [("MOST_ENTRIES", 3, 3), ("MOST_BYTES", 5 * 32, 5)])
+@pytest.mark.parametrize(("limit", "value", "kept"), [("MAX_ENTRIES", 3, 3), ("MAX_BYTES", 5 * 32, 5)])
 def test_the_oldest_gestures_are_forgotten(monkeypatch, limit, value, kept):
     monkeypatch.setattr(history_module, limit, value)
     history = History()
@@ -102,7 +102,7 @@ def test_the_oldest_gestures_are_forgotten(monkeypatch, limit, value, kept):
 
 
 def test_one_gesture_can_always_be_undone(monkeypatch):
-    monkeypatch.setattr(history_module, "MOST_BYTES", 0)
+    monkeypatch.setattr(history_module, "MAX_BYTES", 0)
     history, state = History(), EditState((), np.zeros((2, 2)))
     history.begin("large", state)
     history.commit()

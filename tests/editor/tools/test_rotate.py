@@ -7,8 +7,8 @@ import pytest
 
 from akap_editor.editor import gestures
 from akap_editor.editor.comparison import MethodComparison
-from akap_editor.editor.document.remesh import carried_over
-from akap_editor.editor.document.rest_pose import baked_state
+from akap_editor.editor.document.remesh import transfer_state
+from akap_editor.editor.document.rest_pose import with_pose_as_rest
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.edits import PaintStiffness, SetAngles
@@ -188,7 +188,7 @@ def test_a_pin_turns_a_little_in_each_step_and_the_rest_comes_later(pinned):
 
 def test_a_reset_or_baked_drawing_holds_the_angles_that_it_has_then(pinned):
     turn(pinned, 2, 25)
-    baked = baked_state(pinned.state, pinned.session.drawing)
+    baked = with_pose_as_rest(pinned.state, pinned.session.drawing)
     assert baked.pin(2).angle == pytest.approx(0.0, abs=1e-12)
     assert baked.pin(1).angle is None
     gestures.reset_pose(pinned.editor)
@@ -199,7 +199,7 @@ def test_a_reset_or_baked_drawing_holds_the_angles_that_it_has_then(pinned):
 
 def test_angles_are_carried_over_to_another_mesh(pinned, finer_drawing):
     turn(pinned, 2, 25)
-    state = carried_over(pinned.state, pinned.session.drawing.mesh, finer_drawing)
+    state = transfer_state(pinned.state, pinned.session.drawing.mesh, finer_drawing)
     assert [pin.angle for pin in state.pins] == [None, pinned.state.pin(2).angle, None]
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from akap_editor.editor import gestures
-from akap_editor.editor.document.remesh import carried_over
-from akap_editor.editor.document.rest_pose import baked_state
+from akap_editor.editor.document.remesh import transfer_state
+from akap_editor.editor.document.rest_pose import with_pose_as_rest
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.document.stiffness import apply_stroke, as_stiffness, stroke_coverage
 from akap_editor.editor.events import PointerEvent
@@ -162,13 +162,13 @@ def test_bad_factors(bad):
 
 def test_stiffness_is_carried_over_to_another_mesh_and_baked(pinned, finer_drawing):
     stroke(pinned, NECK)
-    state = carried_over(pinned.state, pinned.session.drawing.mesh, finer_drawing)
+    state = transfer_state(pinned.state, pinned.session.drawing.mesh, finer_drawing)
     centers = finer_drawing.mesh.vertices[finer_drawing.mesh.faces].mean(axis=1)
     away = np.hypot(*(centers - NECK).T)
     assert state.stiffness.shape == (len(finer_drawing.mesh.faces),)
     assert (state.stiffness[away < 3.0] == 100.0).all()
     assert (state.stiffness[away > 20.0] == 1.0).all()
-    assert baked_state(pinned.state, pinned.session.drawing).stiffness is pinned.state.stiffness
+    assert with_pose_as_rest(pinned.state, pinned.session.drawing).stiffness is pinned.state.stiffness
 
 
 def test_other_methods_keep_it_and_bend_without(pinned):

@@ -32,8 +32,8 @@ def test_keyframes_come_back_bit_for_bit_and_share_their_poses(document, tmp_pat
     again, kept = load(tmp_path / "a.akap").state.animation, document.state.animation
     assert again.ease == "out"
     assert not again.loop
-    assert [(key.time, key.ease) for key in again.keys] == [(0, None), (0.25, "hold"), (1.5, None)]
-    for key, old in zip(again.keys, kept.keys, strict=True):
+    assert [(key.time, key.ease) for key in again.keyframes] == [(0, None), (0.25, "hold"), (1.5, None)]
+    for key, old in zip(again.keyframes, kept.keyframes, strict=True):
         np.testing.assert_array_equal(key.positions, old.positions)
     with zipfile.ZipFile(tmp_path / "a.akap") as archive:
         assert [name for name in archive.namelist() if name.startswith("animation/")] == [
@@ -46,7 +46,7 @@ def test_without_keyframes_the_file_has_no_entries_for_them(make_document, pictu
     save(make_document(picture), tmp_path / "a.akap")
     with zipfile.ZipFile(tmp_path / "a.akap") as archive:
         assert not any("animation" in name for name in archive.namelist())
-    assert load(tmp_path / "a.akap").state.animation.keys == ()
+    assert load(tmp_path / "a.akap").state.animation.keyframes == ()
 
 
 def test_a_reader_takes_the_defaults_of_what_is_missing(document, tmp_path):

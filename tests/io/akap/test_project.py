@@ -16,7 +16,7 @@ from PIL import Image
 from akap_editor.editor.document.document import Document, EditState, new_document
 from akap_editor.editor.document.drawing import Drawing, Meshing, make_drawing
 from akap_editor.editor.document.pin import Pin
-from akap_editor.editor.document.remesh import remeshed
+from akap_editor.editor.document.remesh import remesh_drawing
 from akap_editor.editor.document.settings import Settings
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import TriMesh
@@ -578,7 +578,7 @@ def test_a_removed_background_comes_back_with_its_tolerance(tmp_path):
     assert_equal(opened, saved)
     assert opened.drawing.meshing == drawing.meshing
     np.testing.assert_array_equal(opened.drawing.original, picture)
-    again = remeshed(opened.drawing, replace(opened.drawing.meshing, background=None))
+    again = remesh_drawing(opened.drawing, replace(opened.drawing.meshing, background=None))
     np.testing.assert_array_equal(again.image, picture)
 
     entries = unpack((tmp_path / "cut.akap").read_bytes())

@@ -120,7 +120,7 @@ def test_faces_are_in_the_order_in_which_they_pass_one_another(bent, painter, tm
     first, second = bent.state.pins
     pins = replace(first, depth=3), replace(second, depth=-3)
     raised = bent.with_state(replace(bent.state, pins=pins))
-    order = raised.order
+    order = raised.face_order
     assert order is not None
     faces = raised.drawing.mesh.faces
     assert (order != np.arange(len(faces))).any()

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ....errors import InputError
 from ...document.document import EditState
 from ...document.drawing import Drawing
-from ...document.keyframes import Animation, Keyframe, key_time
+from ...document.keyframes import Animation, Keyframe, as_keyframe_time
 from .edit import Edit, Json, ReplayTarget, pose_or_current, positions_from_json, positions_to_json
 
 
@@ -29,7 +29,7 @@ class KeyframeEdit(Edit):
 class SetKeyframe(KeyframeEdit):
     """Put a pose (n, 2), by default the current one, at a time in seconds; replaces a keyframe there.
 
-    ease: a name of `easing.KEY_EASINGS`; None keeps the easing of a replaced keyframe.
+    ease: a name of `easing.KEYFRAME_EASINGS`; None keeps the easing of a replaced keyframe.
     """
 
     name = "key"
@@ -40,7 +40,7 @@ class SetKeyframe(KeyframeEdit):
     ease: str | None = None
 
     def animate(self, animation: Animation, state: EditState) -> Animation:
-        return animation.with_key(Keyframe(self.time, pose_or_current(self.positions, state), self.ease))
+        return animation.with_keyframe(Keyframe(self.time, pose_or_current(self.positions, state), self.ease))
 
     def to_json(self, drawing: Drawing) -> Json:
         ease = {} if self.ease is None else {"ease": self.ease}
@@ -61,7 +61,7 @@ class DeleteKeyframes(KeyframeEdit):
     times: Sequence[float]
 
     def animate(self, animation: Animation, state: EditState) -> Animation:
-        return animation.without(map(key_time, self.times))
+        return animation.without_keyframes(map(as_keyframe_time, self.times))
 
     def to_json(self, drawing: Drawing) -> Json:
         return {"times": list(self.times)}
@@ -81,8 +81,8 @@ class MoveKeyframes(KeyframeEdit):
     copy: bool = False
 
     def animate(self, animation: Animation, state: EditState) -> Animation:
-        moves = {key_time(old): key_time(new) for old, new in self.moves.items()}
-        return animation.moved(moves, self.copy)
+        moves = {as_keyframe_time(old): as_keyframe_time(new) for old, new in self.moves.items()}
+        return animation.with_moved_keyframes(moves, self.copy)
 
     def to_json(self, drawing: Drawing) -> Json:
         return {"from": list(self.moves), "to": list(self.moves.values()), "copy": self.copy}
@@ -96,7 +96,7 @@ class MoveKeyframes(KeyframeEdit):
 class SetEasing(KeyframeEdit):
     """Set the easing after the keyframes at ``times``; None: wherever a keyframe has none of its own.
 
-    ease: a name of `easing.KEY_EASINGS`; None for keyframes that follow the easing of the animation.
+    ease: a name of `easing.KEYFRAME_EASINGS`; None for keyframes that follow the easing of the animation.
     """
 
     name = "ease"
@@ -106,8 +106,8 @@ class SetEasing(KeyframeEdit):
     ease: str | None
 
     def animate(self, animation: Animation, state: EditState) -> Animation:
-        times = None if self.times is None else [key_time(time) for time in self.times]
-        return animation.eased(times, self.ease)
+        times = None if self.times is None else [as_keyframe_time(time) for time in self.times]
+        return animation.with_easing(times, self.ease)
 
     def to_json(self, drawing: Drawing) -> Json:
         return {"times": None if self.times is None else list(self.times), "ease": self.ease}

@@ -12,11 +12,11 @@ from ....geometry.validation import as_number, as_points
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.pin import Pin
-from ...document.pin_angles import MOST_ANGLE
+from ...document.pin_angles import MAX_PIN_ANGLE
 from .edit import Edit, Effect, Json, ReplayTarget
 
 Target = tuple[float, float]
-SAME_PLACE = 1e-6  # pixels: a recorded pin nearer than this to its rest place sits on the same mesh
+SAME_POSITION = 1e-6  # pixels: a recorded pin nearer than this to its rest place sits on the same mesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +76,11 @@ def _fits(pins: list[Any], mesh: TriMesh) -> bool:
     weights = as_points([pin["weights"] for pin in pins], "weights", len(pins), columns=3)
     points = MeshPoints(np.array([int(pin["face"]) for pin in pins], dtype=np.int32), weights)
     rest = as_points([pin["rest"] for pin in pins], "rest", len(pins))
-    return bool(np.abs(mesh.evaluate(points, mesh.vertices) - rest).max(initial=0.0) < SAME_PLACE)
+    return bool(np.abs(mesh.evaluate(points, mesh.vertices) - rest).max(initial=0.0) < SAME_POSITION)
 
 
 def _angle(value: Any) -> float | None:
-    return None if value is None else as_number(value, "angle", -MOST_ANGLE, MOST_ANGLE)
+    return None if value is None else as_number(value, "angle", -MAX_PIN_ANGLE, MAX_PIN_ANGLE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +127,7 @@ class SetAngles(Edit):
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         _check_ids("angles", self.angles, state.pins)
-        limits = -MOST_ANGLE, MOST_ANGLE
+        limits = -MAX_PIN_ANGLE, MAX_PIN_ANGLE
         held = {pin: as_number(angle, f"angle of pin {pin}", *limits) for pin, angle in self.angles.items()}
         pins = (replace(pin, angle=held.get(pin.id, pin.angle)) for pin in state.pins)
         return replace(state, pins=tuple(pins))

@@ -10,8 +10,8 @@ from ...document.document import EditState
 from ...document.drawing import Drawing, Meshing
 from ...document.named_poses import as_pose
 from ...document.pin_angles import pins_fixed_at_pose
-from ...document.remesh import carried_over, remeshed
-from ...document.rest_pose import baked_state
+from ...document.remesh import remesh_drawing, transfer_state
+from ...document.rest_pose import with_pose_as_rest
 from .edit import Edit, Effect, Json, ReplayTarget
 
 
@@ -61,15 +61,15 @@ class SetRestPose(Edit):
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         if np.array_equal(state.positions, drawing.mesh.vertices):
             return state
-        return baked_state(state, drawing)
+        return with_pose_as_rest(state, drawing)
 
 
 @dataclass(frozen=True, eq=False)
 class Remesh(Edit):
     """Give the picture another mesh; pins and pose stay.
 
-    prepared: the drawing that `remeshed` has made and, if the state has not changed since, that state carried
-    over to it; both are computed here if absent.
+    prepared: the drawing made by `remesh_drawing` and, if the state has not changed since, the result of
+    `transfer_state`; each is computed by `apply` if absent.
     """
 
     name = "mesh"
@@ -81,13 +81,13 @@ class Remesh(Edit):
 
     @classmethod
     def to(cls, drawing: Drawing, carried: EditState | None = None) -> Self:
-        """The edit that leads to a drawing made by `remeshed`."""
+        """The edit that leads to a drawing made by `remesh_drawing`."""
         assert drawing.meshing is not None, "expected a drawing whose mesh can be made again"
         return cls(drawing.meshing, (drawing, carried))
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        made, carried = self.prepared or (remeshed(drawing, self.meshing), None)
-        return carried or carried_over(state, drawing.mesh, made)
+        made, carried = self.prepared or (remesh_drawing(drawing, self.meshing), None)
+        return carried or transfer_state(state, drawing.mesh, made)
 
     def to_json(self, drawing: Drawing) -> Json:
         return asdict(self.meshing)
