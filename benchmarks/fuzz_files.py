@@ -45,7 +45,7 @@ from akap_editor.editor.session.replay import replay
 from akap_editor.errors import AkapError, InputError
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io.akap.pose import decode_pose, encode_pose
-from akap_editor.io.akap.project import decode, encode
+from akap_editor.io.akap.project import decode_document, encode_document
 from akap_editor.io.akap.recording import decode_recording
 
 MOST_SECONDS = 20.0  # of work on one case: the largest pictures that are allowed take several
@@ -351,7 +351,7 @@ class Fuzzer:
         self.documents = seed_documents()
         self.files = []
         for document in self.documents:
-            with zipfile.ZipFile(BytesIO(encode(document))) as archive:
+            with zipfile.ZipFile(BytesIO(encode_document(document))) as archive:
                 self.files.append([(name, archive.read(name)) for name in archive.namelist()])
         self.poses = [encode_pose(document) for document in self.documents]
         self.recordings = [seed_recording(document) for document in self.documents]
@@ -374,9 +374,9 @@ class Fuzzer:
         self.slowest = max(self.slowest, (time.process_time() - started, kind, seed))
 
     def _open_akap(self, rng: Rng) -> None:
-        document = decode(damaged_drawing(rng, self.files))
-        data = encode(document)
-        assert encode(decode(data)) == data
+        document = decode_document(damaged_drawing(rng, self.files))
+        data = encode_document(document)
+        assert encode_document(decode_document(data)) == data
 
     def _open_pose(self, rng: Rng) -> None:
         document = pick(rng, self.documents)

@@ -36,7 +36,7 @@ from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError, SolverError
 from akap_editor.io.akap.autosave import Autosave
 from akap_editor.io.akap.pose import load_pose, save_pose
-from akap_editor.io.akap.project import encode, load, save
+from akap_editor.io.akap.project import encode_document, load, save
 from akap_editor.io.akap.recording import write_recording
 from akap_editor.io.export import ExportOptions, export
 from akap_editor.io.images import read_image
@@ -188,7 +188,7 @@ class Soak:
     def finish(self) -> None:
         """Check that the saved file equals the document and that no recovery copy is left."""
         self._save()
-        assert encode(load(self.path)) == encode(self.session.document), (
+        assert encode_document(load(self.path)) == encode_document(self.session.document), (
             "the saved file differs from the document"
         )
         write_recording(self.session.recording, self.folder / "session.akaprec")

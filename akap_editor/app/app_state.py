@@ -22,8 +22,8 @@ from ..editor.tools.stiffness_brush import Brush
 from ..errors import AkapError, InputError
 from ..geometry.distortion import Distortion, distortion
 from ..geometry.validation import Floats
-from ..io.akap import project as project_file
 from ..io.akap.autosave import Autosave, RecoveryCopy
+from ..io.akap.project import save
 from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.images import has_transparency, is_animation
 from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, PROJECT_SUFFIX, open_document
@@ -327,7 +327,7 @@ class AppState:
     def _write(self, path: Path, go_on: Callable[[], None] | None) -> None:
         def write() -> None:
             assert self.editor.session is not None
-            project_file.save(self.editor.session.present_document, path)
+            save(self.editor.session.present_document, path)
             self.editor.mark_saved(path)
             self.used(path)
             self.notice = f"Saved {path.name}"

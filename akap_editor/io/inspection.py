@@ -9,9 +9,9 @@ from ..editor.session.recording import parse_recording
 from ..errors import InputError
 from ..geometry.distortion import distortion
 from ..meshing.picture_mesh import mesh_picture
-from .akap import project as project_file
 from .akap.json_records import pairs, parse_record, require
-from .akap.pose import FORMAT as POSE_FORMAT
+from .akap.pose import POSE_FORMAT
+from .akap.project import decode_document
 from .akap.state_records import read_pins
 from .atomic import read_file
 from .images import decode_image, has_transparency
@@ -95,7 +95,7 @@ def _inspect_picture(data: bytes) -> tuple[Facts, list[str]]:
 
 
 def _inspect_drawing(data: bytes) -> tuple[Facts, list[str]]:
-    document = project_file.decode(data)
+    document = decode_document(data)
     drawing, state = document.drawing, document.state
     measured = distortion(drawing.mesh, state.positions)
     facts = {

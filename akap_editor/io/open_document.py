@@ -6,7 +6,7 @@ from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import make_drawing
 from ..editor.session.replay import Replay
 from ..errors import InputError, error_context
-from .akap import project as project_file
+from .akap.project import load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
 from .images import read_image, read_mask
 from .mesh_files import reader as mesh_files
@@ -29,7 +29,7 @@ def open_document(path: str | Path, mask: str | Path | None = None) -> Document:
     if mask is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
         raise InputError(f"{mask}: expected a picture to put the mask on, got {path.name}")
     if suffix == PROJECT_SUFFIX:
-        return project_file.load(path)
+        return load(path)
     if suffix == RECORDING_SUFFIX:
         return _end_of(path)
     if suffix in MESH_SUFFIXES:

@@ -18,8 +18,7 @@ from pathlib import Path
 
 from akap_editor.errors import InputError
 from akap_editor.io import atomic
-from akap_editor.io.akap import project as project_file
-from akap_editor.io.akap.project import load
+from akap_editor.io.akap.project import encode_document, load, save
 
 NOBODY = 65534
 REFUSED, BROKEN = 1, 2
@@ -76,7 +75,7 @@ def kill_at(chance: int) -> None:
 
 def limit_size(chance: int) -> None:
     """No file can grow beyond n pieces: the system's own refusal, as of a full disk."""
-    size = len(project_file.encode(new))
+    size = len(encode_document(new))
     resource.setrlimit(resource.RLIMIT_FSIZE, (chance * size // PIECES, resource.RLIM_INFINITY))
 
 
@@ -107,7 +106,7 @@ def pins_fixed_at_pose(prepare: Callable[[int], None], chance: int) -> bool:
         code = BROKEN
         try:
             prepare(chance)
-            project_file.save(new, path)
+            save(new, path)
             code = 0
         except InputError:
             code = REFUSED
@@ -128,7 +127,7 @@ def save_until_killed() -> int:
         if child == 0:
             while True:
                 versions.reverse()
-                project_file.save(versions[0], path)
+                save(versions[0], path)
         time.sleep(0.001 * wait)
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
@@ -163,7 +162,7 @@ path = Path(sys.argv[1])
 old = load(path)
 old_bytes = path.read_bytes()
 new = old.with_state(replace(old.state, positions=old.state.positions + 1))
-new_bytes = project_file.encode(new)
+new_bytes = encode_document(new)
 cases = {kill_at: 1000, limit_size: 1000, no_folder: 1, no_file: 1}
 counts = {case.__name__: run(case, most) for case, most in cases.items()}
 print(json.dumps({**counts, "left": save_until_killed()}))

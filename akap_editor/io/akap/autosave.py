@@ -17,9 +17,9 @@ from ...editor.document.document import Document, EditState
 from ...errors import InputError, error_context
 from ..atomic import read_file, write_atomic
 from ..open_document import PROJECT_SUFFIX
-from . import project as project_file
 from .archive import Archive
 from .json_records import parse_record, require
+from .project import decode_document, encode_document
 
 FOLDER_VARIABLE = "AKAP_EDITOR_STATE"  # environment: another folder, e.g. for tests
 SECONDS = 60.0
@@ -62,14 +62,14 @@ class RecoveryCopy:
         """The document; ``path`` is that of the file it belongs to, if any. Raises InputError."""
         data = read_file(self.path, "a copy of a drawing")
         with error_context(self.path):
-            document = project_file.decode(data)
+            document = decode_document(data)
             origin = require(parse_record(Archive(data).read(ORIGIN, MAX_ORIGIN_BYTES)), "path", str)
         return replace(document, path=Path(origin) if origin else None)
 
     def write(self, document: Document) -> None:
         """Replace the copy. Raises InputError."""
         origin = json.dumps({"path": str(document.path.absolute()) if document.path else ""})
-        write_atomic(self.path, project_file.encode(document, [(ORIGIN, origin.encode(), True)]))
+        write_atomic(self.path, encode_document(document, [(ORIGIN, origin.encode(), True)]))
 
     def discard(self) -> None:
         """Remove it."""

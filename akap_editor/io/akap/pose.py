@@ -16,9 +16,9 @@ from .json_records import file_version, pairs, parse_record, program_name, refus
 from .state_records import check_state, read_pins
 
 POSE_SUFFIX = ".pose.json"
-FORMAT = "akap-pose"
-VERSION = 1
-MAX_BYTES = 2**24  # room for 400 000 vertices
+POSE_FORMAT = "akap-pose"
+POSE_VERSION = 1
+MAX_POSE_BYTES = 2**24  # room for 400 000 vertices
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +55,8 @@ def encode_pose(document: Document) -> bytes:
     drawing, state = document.drawing, document.state
     check_state(state, len(drawing.mesh.vertices), len(drawing.mesh.faces))
     record = {
-        "format": FORMAT,
-        "version": VERSION,
+        "format": POSE_FORMAT,
+        "version": POSE_VERSION,
         "program": program_name(),
         "drawing": drawing_header(drawing),
         "pins": [pin.to_json() for pin in state.pins],
@@ -71,7 +71,7 @@ def decode_pose(data: bytes, drawing: Drawing) -> SavedPose:
     """The pose in the bytes of a .pose.json file, of this drawing's mesh. Raises InputError."""
     _check_size(data)
     record = parse_record(data)
-    refuse_newer(file_version(record, FORMAT), VERSION)
+    refuse_newer(file_version(record, POSE_FORMAT), POSE_VERSION)
     header, there = require(record, "drawing", dict), drawing_header(drawing)
     if require(header, "mesh", str) != there["mesh"]:
         name, count = require(header, "name", str), require(header, "vertices", int)
@@ -87,5 +87,5 @@ def decode_pose(data: bytes, drawing: Drawing) -> SavedPose:
 
 
 def _check_size(data: bytes) -> None:
-    if len(data) > MAX_BYTES:
-        raise InputError(f"expected a pose of at most {MAX_BYTES} bytes, got {len(data)}")
+    if len(data) > MAX_POSE_BYTES:
+        raise InputError(f"expected a pose of at most {MAX_POSE_BYTES} bytes, got {len(data)}")

@@ -28,13 +28,12 @@ from .json_records import (
     refuse_newer,
     require,
 )
-from .keyframes import keyframe_entries, read_keyframes
-from .poses import pose_entries, read_poses
+from .pose_entries import keyframe_entries, named_pose_entries, read_keyframes, read_named_poses
 from .state_records import check_state, read_pins, read_settings
 
 MIMETYPE = b"application/x-akap"
-FORMAT = "akap"
-VERSION = 1
+DOCUMENT_FORMAT = "akap"
+DOCUMENT_VERSION = 1
 STIFFNESS = "stiffness"  # entry with a factor for each face
 ORIGINAL = "original.png"  # entry with the picture before its background was removed
 
@@ -53,7 +52,7 @@ def save(document: Document, path: str | Path) -> Document:
     opened again, e.g. for two pins with one id; the old file is then kept.
     """
     with error_context(f"cannot write {path}"):
-        data = encode(document)
+        data = encode_document(document)
     write_atomic(path, data)
     return replace(document, path=Path(path))
 
@@ -65,11 +64,11 @@ def load(path: str | Path) -> Document:
     """
     data = read_file(path, "an .akap file")
     with error_context(path):
-        document = decode(data)
+        document = decode_document(data)
     return replace(document, path=Path(path))
 
 
-def encode(document: Document, more: Sequence[Entry] = ()) -> bytes:
+def encode_document(document: Document, more: Sequence[Entry] = ()) -> bytes:
     """The bytes of an .akap file, with ``more`` entries in the end, which readers ignore.
 
     Raises InputError where the file could not be opened again.
@@ -89,14 +88,14 @@ def encode(document: Document, more: Sequence[Entry] = ()) -> bytes:
             ("pose/positions", document.state.positions.astype("<f8").tobytes(), True),
             *_stiffness_entries(document.state),
             *_picture_entries(drawing),
-            *pose_entries(document.state.poses),
+            *named_pose_entries(document.state.poses),
             *keyframe_entries(document.state.animation),
             *more,
         ]
     )
 
 
-def decode(data: bytes) -> Document:
+def decode_document(data: bytes) -> Document:
     """The document in the bytes of an .akap file. Raises InputError, and nothing else."""
     document = _decode(Archive(data))
     _check(document)
@@ -158,8 +157,8 @@ def _describe(document: Document) -> Json:
     drawing = document.drawing
     width, height = drawing.size
     return {
-        "format": FORMAT,
-        "version": VERSION,
+        "format": DOCUMENT_FORMAT,
+        "version": DOCUMENT_VERSION,
         "program": program_name(),
         "name": drawing.name,
         "picture": {"width": width, "height": height},
@@ -203,8 +202,8 @@ def _decode(archive: Archive) -> Document:
     text = archive.read("document.json", MAX_DOCUMENT_BYTES)
     with error_context("document.json"):
         record = parse_record(text)
-        version = file_version(record, FORMAT)
-    refuse_newer(version, VERSION)
+        version = file_version(record, DOCUMENT_FORMAT)
+    refuse_newer(version, DOCUMENT_VERSION)
     with error_context("document.json"):
         name, picture, mesh = (
             require(record, "name", str),
@@ -221,7 +220,7 @@ def _decode(archive: Archive) -> Document:
         pins = read_pins(require(record, "pins", list))
         settings = read_settings(require(record, "settings", dict))
     stiffness = archive.read_array(STIFFNESS, "<f8", m, 1)[:, 0] if STIFFNESS in archive else None
-    poses, animation = read_poses(archive, n), read_keyframes(archive, n)
+    poses, animation = read_named_poses(archive, n), read_keyframes(archive, n)
     state = EditState(pins, positions, settings, None, poses, stiffness, animation)
     vertices = archive.read_array("mesh/vertices", "<f8", n, 2)
     _check_vertices(vertices)

@@ -10,7 +10,7 @@ from ...errors import InputError, error_context
 from ...resources import bundled_drawings
 from ..atomic import read_file, write_atomic
 from ..images import read_image
-from . import project as project_file
+from .project import decode_document, encode_document
 
 RECORDING_SUFFIX = ".akaprec"
 
@@ -46,7 +46,7 @@ def write_recording(recording: Recording, path: str | Path, drawing: Drawing | N
     drawing: goes into the file as well, so that it can be replayed wherever it is sent.
     """
     if drawing is not None:
-        data = project_file.encode(new_document(drawing))
+        data = encode_document(new_document(drawing))
         header = {**recording.header, "akap": base64.b64encode(data).decode("ascii")}
         recording = Recording(header, recording.events)
     write_atomic(path, recording.to_text().encode("utf-8"))
@@ -60,7 +60,7 @@ def recorded_drawing(recording: Recording) -> Drawing:
     header = recording.header
     if "akap" in header:
         try:
-            return project_file.decode(base64.b64decode(header["akap"], validate=True)).drawing
+            return decode_document(base64.b64decode(header["akap"], validate=True)).drawing
         except (InputError, TypeError, ValueError) as error:
             raise InputError(f"recording line 1: the drawing inside is damaged, {error}") from error
     bundled = {path.stem: path for path in bundled_drawings()}

@@ -17,7 +17,7 @@ import akap_editor
 from akap_editor.errors import InputError
 from akap_editor.io.akap import autosave as module
 from akap_editor.io.akap.autosave import GESTURES, SECONDS, Autosave
-from akap_editor.io.akap.project import encode, load
+from akap_editor.io.akap.project import encode_document, load
 from tests.io.akap.test_project import assert_equal
 
 
@@ -290,7 +290,7 @@ ORIGINS = {
 def test_a_copy_that_is_no_good_is_an_input_error(folder, document, origin):
     folder.mkdir()
     more = [] if ORIGINS[origin] is None else [(module.ORIGIN, ORIGINS[origin], True)]
-    (folder / "bad.akap").write_bytes(encode(document, more))
+    (folder / "bad.akap").write_bytes(encode_document(document, more))
     (copy,) = Autosave(folder).lost()
     with pytest.raises(InputError, match=r"bad\.akap: "):
         copy.read()

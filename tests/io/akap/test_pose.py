@@ -73,7 +73,7 @@ def test_what_could_not_be_read_again_is_not_written(document, make_document, pi
     bad = make_document(picture, positions=np.full((4, 2), np.nan))
     with pytest.raises(InputError, match=r"^cannot write .*a\.pose\.json: positions: expected finite"):
         save_pose(bad, path)
-    monkeypatch.setattr(pose_file, "MAX_BYTES", 100)
+    monkeypatch.setattr(pose_file, "MAX_POSE_BYTES", 100)
     with pytest.raises(InputError, match="expected a pose of at most 100 bytes, got"):
         save_pose(document, path)
     assert path.read_bytes() == b"old"

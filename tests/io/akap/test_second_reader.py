@@ -13,7 +13,7 @@ from akap_editor.editor.document.document import Document, EditState, new_docume
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.settings import Settings
 from akap_editor.io.akap.pose import encode_pose
-from akap_editor.io.akap.project import decode, encode, load
+from akap_editor.io.akap.project import decode_document, encode_document, load
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
 from tests.support.second_reader import Unfit, check_mesh, read_akap, read_pose
@@ -46,7 +46,7 @@ def assert_same_pins(records, pins) -> None:
 
 
 def test_another_reader_gets_the_same(document):
-    assert_same(read_akap(encode(document)), document)
+    assert_same(read_akap(encode_document(document)), document)
 
 
 def test_another_reader_gets_the_same_from_a_cartoon():
@@ -54,7 +54,7 @@ def test_another_reader_gets_the_same_from_a_cartoon():
     document = new_document(make_drawing(image, vertices=400, name="alien"))
     pose = document.drawing.mesh.vertices * 0.9 + np.pi
     document = document.with_state(replace(document.state, positions=pose))
-    assert_same(read_akap(encode(document)), document)
+    assert_same(read_akap(encode_document(document)), document)
     read = read_pose(encode_pose(document), document.drawing.mesh.vertices, document.drawing.mesh.faces)
     assert read["positions"].tobytes() == pose.tobytes()
 
@@ -83,14 +83,14 @@ def test_another_reader_refuses_what_is_not_as_the_page_says(document):
     bad = replace(document.state.settings, method=5)
     state = EditState(document.state.pins, document.state.positions, bad)
     with pytest.raises(Unfit):
-        read_akap(encode(document.with_state(state)))
+        read_akap(encode_document(document.with_state(state)))
     with pytest.raises(Unfit, match="positive signed areas"):
         check_mesh(document.drawing.mesh.vertices, document.drawing.mesh.faces[:, ::-1])
 
 
 def test_optional_keys_have_the_defaults_of_the_page(document):
     buffer = BytesIO()
-    with zipfile.ZipFile(BytesIO(encode(document))) as archive, zipfile.ZipFile(buffer, "w") as copy:
+    with zipfile.ZipFile(BytesIO(encode_document(document))) as archive, zipfile.ZipFile(buffer, "w") as copy:
         for name in archive.namelist():
             content = archive.read(name)
             if name == "document.json":
@@ -100,6 +100,6 @@ def test_optional_keys_have_the_defaults_of_the_page(document):
             if name != "thumbnail.png":
                 copy.writestr(name, content)
         copy.writestr("../unknown/entry", b"is ignored")
-    opened = decode(buffer.getvalue())
+    opened = decode_document(buffer.getvalue())
     assert opened.drawing.mesh.tied
     assert_same(read_akap(buffer.getvalue()), opened)

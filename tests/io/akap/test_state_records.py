@@ -10,15 +10,15 @@ import pytest
 
 from akap_editor.errors import InputError
 from akap_editor.io.akap.pose import decode_pose, encode_pose
-from akap_editor.io.akap.project import decode, encode
+from akap_editor.io.akap.project import decode_document, encode_document
 
 
 def names(document):
-    return ZipFile(BytesIO(encode(document))).namelist()
+    return ZipFile(BytesIO(encode_document(document))).namelist()
 
 
 def described(document):
-    return json.loads(ZipFile(BytesIO(encode(document))).read("document.json"))
+    return json.loads(ZipFile(BytesIO(encode_document(document))).read("document.json"))
 
 
 def test_a_pose_has_the_angles(make_document, picture):
@@ -43,7 +43,8 @@ def test_angles_and_stiffness_come_back_and_are_left_out_where_there_are_none(ma
     assert all("angle" not in record for record in described(plain)["pins"])
     factors = np.linspace(1.0, 1000.0, len(plain.drawing.mesh.faces))
     pins = (replace(plain.state.pins[0], angle=-7.25), *plain.state.pins[1:])
-    again = decode(encode(plain.with_state(replace(plain.state, pins=pins, stiffness=factors))))
+    stiff = plain.with_state(replace(plain.state, pins=pins, stiffness=factors))
+    again = decode_document(encode_document(stiff))
     assert again.state.stiffness.tobytes() == factors.tobytes()
     assert [pin.angle for pin in again.state.pins] == [-7.25, *[None] * (len(pins) - 1)]
 
@@ -53,7 +54,7 @@ def test_stiffness_out_of_range_is_refused(make_document, picture, factor):
     plain = make_document(picture)
     factors = np.full(len(plain.drawing.mesh.faces), factor)
     with pytest.raises(InputError, match="stiffness: expected factors from 1 to 1000"):
-        encode(plain.with_state(replace(plain.state, stiffness=factors)))
+        encode_document(plain.with_state(replace(plain.state, stiffness=factors)))
 
 
 @pytest.mark.parametrize("angle", [1e3, np.inf, np.nan])
@@ -61,4 +62,4 @@ def test_angles_out_of_range_are_refused(make_document, picture, angle):
     plain = make_document(picture)
     pins = (replace(plain.state.pins[0], angle=angle), *plain.state.pins[1:])
     with pytest.raises(InputError, match="expected an angle from"):
-        encode(plain.with_state(replace(plain.state, pins=pins)))
+        encode_document(plain.with_state(replace(plain.state, pins=pins)))

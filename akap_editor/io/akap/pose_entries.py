@@ -1,0 +1,139 @@
+"""Named poses and keyframes as entries of an .akap file: a JSON index and one array per pose each."""
+
+import json
+from collections.abc import Sequence
+
+from ...editor.document.keyframes import NO_ANIMATION, Animation, Keyframe
+from ...editor.document.named_poses import NamedPose
+from ...errors import InputError, error_context
+from ...geometry.validation import Floats
+from .archive import Archive, Entry
+from .json_records import Json, numbers, optional, parse_record, require
+
+POSES_INDEX, KEYFRAMES_INDEX = "poses.json", "animation.json"
+MAX_POSES, MAX_KEYFRAMES = 1000, 10_000
+MAX_POINTS = 2**24  # of all named poses, and of all keyframes: 256 MB
+_MAX_POSES_INDEX_BYTES, _MAX_KEYFRAMES_INDEX_BYTES = 2**20, 2**21
+
+
+# -- named poses ---------------------------------------------------------------------------------------------
+
+
+def named_pose_entries(poses: Sequence[NamedPose]) -> list[Entry]:
+    """The entries for named poses: the index and poses/0, poses/1, ...; none without poses.
+
+    Raises InputError for more than `MAX_POINTS` vertices in all.
+    """
+    if not poses:
+        return []
+    _check_points(sum(len(pose.positions) for pose in poses))
+    index = json.dumps({"poses": [pose.name for pose in poses]}).encode()
+    return [
+        (POSES_INDEX, index, True),
+        *(_pose_entry(f"poses/{number}", pose.positions) for number, pose in enumerate(poses)),
+    ]
+
+
+def read_named_poses(archive: Archive, vertices: int) -> tuple[NamedPose, ...]:
+    """The named poses of an archive, in order; () without an index. Raises InputError.
+
+    vertices: number of vertices of the drawing's mesh.
+    """
+    if POSES_INDEX not in archive:
+        return ()
+    text = archive.read(POSES_INDEX, _MAX_POSES_INDEX_BYTES)
+    with error_context(POSES_INDEX):
+        names = require(parse_record(text), "poses", list)
+        if len(names) > MAX_POSES:
+            raise InputError(f"expected at most {MAX_POSES} poses, got {len(names)}")
+        if not all(type(name) is str for name in names) or len(set(names)) < len(names):
+            raise InputError("expected names of poses, each once, got something else")
+        _check_points(len(names) * vertices)
+    arrays = [_read_pose(archive, f"poses/{number}", vertices) for number in range(len(names))]
+    with error_context("poses"):
+        return tuple(map(NamedPose, names, arrays))
+
+
+def _check_points(count: int) -> None:
+    if count > MAX_POINTS:
+        raise InputError(f"expected at most {MAX_POINTS} vertices in all poses, got {count}")
+
+
+# -- keyframes -----------------------------------------------------------------------------------------------
+
+
+def keyframe_entries(animation: Animation) -> list[Entry]:
+    """The entries for an animation: the index and animation/0, animation/1, ...; none for the default one.
+
+    Keyframes that share a pose share its entry. Raises InputError for more than `MAX_KEYFRAMES` keyframes or
+    `MAX_POINTS` vertices in all.
+    """
+    if not animation.keyframes and animation.ease == Animation.ease and animation.loop:
+        return []
+    poses: dict[int, tuple[int, Floats]] = {}  # number and positions, by the identity of the positions
+    for key in animation.keyframes:
+        poses.setdefault(id(key.positions), (len(poses), key.positions))
+    points = sum(len(pose) for _, pose in poses.values())
+    if len(animation.keyframes) > MAX_KEYFRAMES or points > MAX_POINTS:
+        raise InputError(
+            f"expected at most {MAX_KEYFRAMES} keyframes with {MAX_POINTS} vertices in all, got "
+            f"{len(animation.keyframes)} with {points}"
+        )
+    keys: list[Json] = [
+        {
+            "time": key.time,
+            "pose": poses[id(key.positions)][0],
+            **({} if key.ease is None else {"ease": key.ease}),
+        }
+        for key in animation.keyframes
+    ]
+    loop = {} if animation.loop else {"loop": False}
+    index = json.dumps({"ease": animation.ease, **loop, "poses": len(poses), "keyframes": keys}).encode()
+    return [
+        (KEYFRAMES_INDEX, index, True),
+        *(_pose_entry(f"animation/{number}", pose) for number, pose in poses.values()),
+    ]
+
+
+def read_keyframes(archive: Archive, vertices: int) -> Animation:
+    """The animation of an archive; an empty one without an index. Raises InputError.
+
+    vertices: number of vertices of the drawing's mesh.
+    """
+    if KEYFRAMES_INDEX not in archive:
+        return NO_ANIMATION
+    text = archive.read(KEYFRAMES_INDEX, _MAX_KEYFRAMES_INDEX_BYTES)
+    with error_context(KEYFRAMES_INDEX):
+        record = parse_record(text)
+        keys, count = require(record, "keyframes", list), require(record, "poses", int)
+        if len(keys) > MAX_KEYFRAMES:
+            raise InputError(f"expected at most {MAX_KEYFRAMES} keyframes, got {len(keys)}")
+        if not 0 <= count <= len(keys) or count * vertices > MAX_POINTS:
+            most = min(len(keys), MAX_POINTS // vertices)
+            raise InputError(f"expected poses to be a number from 0 to {most}, got {count}")
+    poses = [_read_pose(archive, f"animation/{number}", vertices) for number in range(count)]
+    with error_context(KEYFRAMES_INDEX):
+        ease = optional(record, "ease", str, Animation.ease)
+        loop = optional(record, "loop", bool, Animation.loop)
+        return Animation(tuple(_read_keyframe(key, poses) for key in keys), ease, loop)
+
+
+def _read_keyframe(record: Json, poses: list[Floats]) -> Keyframe:
+    if type(record) is not dict:
+        raise InputError(f"expected keyframes to be objects, got {record!r:.40}")
+    time, number = numbers([record.get("time")], "time")[0], require(record, "pose", int)
+    if not 0 <= number < len(poses):
+        raise InputError(f"expected a pose below {len(poses)}, got {number}")
+    return Keyframe(float(time), poses[number], require(record, "ease", str) if "ease" in record else None)
+
+
+# -- arrays --------------------------------------------------------------------------------------------------
+
+
+def _pose_entry(name: str, positions: Floats) -> Entry:
+    return name, positions.astype("<f8").tobytes(), True
+
+
+def _read_pose(archive: Archive, name: str, vertices: int) -> Floats:
+    """Positions (vertices, 2). Raises InputError."""
+    return archive.read_array(name, "<f8", vertices, 2)
