@@ -8,11 +8,11 @@ import click
 
 from ..editor.document.framing import crop_box, output_size
 from ..errors import InputError
-from ..io.export import FORMATS, ExportOptions, export, format_of
+from ..io.export import EXPORT_FORMATS, ExportOptions, export, format_of
 from ..io.open_document import open_document
 from .options import FILE, export_options, framing_options, make_folder_of
 
-_KINDS = "\n".join(f"{each.suffix:<12} {each.label}" for each in FORMATS)
+_KINDS = "\n".join(f"{each.suffix:<12} {each.label}" for each in EXPORT_FORMATS)
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def export_file(file: Path, output: Path, options: ExportOptions) -> Exported:
     make_folder_of(output)
     with OffscreenRenderer() as renderer:
         files = export(document, output, options, renderer)
-    if not chosen.framed:
+    if not chosen.uses_framing:
         return Exported(chosen.label, files, None)
     pose = document.drawing.mesh.vertices if options.rest else document.state.positions
     size = output_size(crop_box(document.drawing, pose, options.crop), options.scale)
@@ -78,7 +78,7 @@ def export_command(
     chosen = format_of(output)
     given = {"--scale": scale, "--background": background, "--crop": crop}
     for name, value in given.items():
-        if value is not None and not chosen.framed:
+        if value is not None and not chosen.uses_framing:
             raise InputError(f"{name}: expected a picture or an outline to write, got {chosen.suffix}")
     exported = export_file(file, output, export_options(scale, background, crop, rest))
     click.echo(json.dumps(exported.facts, indent=2) if as_json else exported.text)

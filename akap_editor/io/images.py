@@ -17,8 +17,8 @@ from .atomic import read_file, write_atomic
 
 Picture = NDArray[np.uint8]
 
-FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "GIF", "TIFF")
-ANIMATED = ("PNG", "WEBP", "GIF", "TIFF")  # may have more than one frame or page
+PICTURE_FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "GIF", "TIFF")
+ANIMATED_PICTURE_FORMATS = ("PNG", "WEBP", "GIF", "TIFF")  # may have more than one frame or page
 MAX_PIXELS = 100_000_000
 STRIP = 2**21  # pixels that are converted at once
 
@@ -53,14 +53,14 @@ def is_animation(path: str | Path) -> bool:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with Image.open(path, formats=ANIMATED) as picture:
+            with Image.open(path, formats=ANIMATED_PICTURE_FORMATS) as picture:
                 return bool(getattr(picture, "is_animated", False))
     except Exception:  # Pillow meets damage with exceptions of many kinds
         return False
 
 
 def decode_image(
-    data: bytes, formats: tuple[str, ...] = FORMATS, size: tuple[int, int] | None = None
+    data: bytes, formats: tuple[str, ...] = PICTURE_FORMATS, size: tuple[int, int] | None = None
 ) -> Picture:
     """As `read_image`, from the bytes of a file in one of ``formats``. Raises InputError.
 

@@ -8,13 +8,13 @@ import pytest
 import trimesh
 
 from akap_editor.editor.document.framing import CROPS, crop_box
-from akap_editor.io.export import FORMATS
+from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.open_document import open_document
 from akap_editor.render.offscreen import OffscreenRenderer
 from tests.cli.conftest import assert_one_line
 
-SUFFIXES = [each.suffix for each in FORMATS]
+SUFFIXES = [each.suffix for each in EXPORT_FORMATS]
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)

@@ -9,13 +9,13 @@ from PIL import Image
 
 from akap_editor.io.akap.pose import save_pose
 from akap_editor.io.akap.project import load
-from akap_editor.io.export import FORMATS
+from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import write_png
 from akap_editor.resources import bundled_drawings, resource
 from tests.cli.conftest import assert_one_line
 
 RECORDING = resource("assets", "recordings", "elephant.akaprec")
-MESHES = [each.suffix for each in FORMATS if not each.framed]
+MESHES = [each.suffix for each in EXPORT_FORMATS if not each.uses_framing]
 
 
 @pytest.fixture

@@ -9,7 +9,8 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from ...editor.document.document import Document
 from ...editor.document.framing import CROPS, Color, crop_box, output_size
 from ...errors import InputError
-from ...io.export import FORMATS, ExportOptions, Format, Painter, export, format_of
+from ...io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of
+from ...io.painter import Painter
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT
@@ -30,7 +31,7 @@ _WIDTH, _HEIGHT, _LIST_WIDTH = 580, 226, 208  # design points
 class PoseExportOptions:
     """Choices of the dialog; see `ExportOptions`. is_opaque: whether ``background`` is used."""
 
-    format: Format = FORMATS[0]
+    format: ExportFormat = EXPORT_FORMATS[0]
     scale: float = 1.0
     is_opaque: bool = False
     background: Color = (1.0, 1.0, 1.0)
@@ -71,7 +72,7 @@ class ExportPoseDialog:
             return
         if not widgets.begin_dialog("Export"):
             return
-        options.format = format_list(FORMATS, options.format, _LIST_WIDTH * scale, _HEIGHT * scale)
+        options.format = format_list(EXPORT_FORMATS, options.format, _LIST_WIDTH * scale, _HEIGHT * scale)
         imgui.same_line(0, 18 * scale)
         size = ImVec2((_WIDTH - _LIST_WIDTH - 18) * scale, _HEIGHT * scale)
         imgui.begin_child("##options", size, widgets.WALKED)
@@ -110,7 +111,7 @@ def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None
     def work(painter: Painter) -> str:
         *companions, _ = export(document, path, options.export_options, painter)
         said = f"Exported {', '.join([path.name, *(each.name for each in companions)])}"
-        if format_of(path).framed:
+        if format_of(path).uses_framing:
             width, height = options.output_size(document)
             said += f", {width} × {height} pixels"
         return said
@@ -124,9 +125,8 @@ def _draw_options(options: PoseExportOptions, document: Document, scale: float) 
     below = imgui.get_cursor_pos_y() + 3 * imgui.get_text_line_height()
     widgets.quiet(options.format.about)
     imgui.set_cursor_pos_y(below)  # the same for all formats, so that nothing jumps
-    problem = (
-        _draw_framing(options, document, scale) if options.format.framed else _draw_mesh_size(document, scale)
-    )
+    draw_format_options = _draw_framing if options.format.uses_framing else _draw_mesh_size
+    problem = draw_format_options(options, document, scale)
     widgets.switch_label("Pose", LABEL_WIDTH * scale)
     _, options.rest = widgets.switch("At rest", options.rest, "The drawing as it was before it was bent.")
     return problem
@@ -168,7 +168,7 @@ def _draw_picture_size(options: PoseExportOptions, document: Document, scale: fl
     return ""
 
 
-def _draw_mesh_size(document: Document, scale: float) -> str:
+def _draw_mesh_size(_: PoseExportOptions, document: Document, scale: float) -> str:
     """Draw the size of the mesh and its texture; return "", as nothing prevents this export."""
     mesh = document.drawing.mesh
     for label, value in (

@@ -8,8 +8,8 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from ...errors import InputError
-from ...io.export import Painter
 from ...io.images import Picture
+from ...io.painter import Painter
 
 _WAIT = 0.01  # seconds
 

@@ -1,45 +1,31 @@
-"""Drawings for other programs: pictures, outlines, meshes. docs/exporting.md says what each file holds."""
+"""The table of formats for other programs, and the export of a document by it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Protocol
 
 from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
-from ...editor.document.framing import Box, Color, crop_box
+from ...editor.document.framing import Color, crop_box
 from ...errors import InputError
-from ...geometry.validation import Floats, Ints
 from ..atomic import write_atomic
-from ..images import Picture, encode_png, join_with_or
+from ..images import encode_png, join_with_or
+from ..painter import Painter
 from .gltf import encode_glb
 from .mesh_json import encode_json
 from .obj import encode_obj
 from .spine import encode_spine
 from .svg import encode_svg
 
-Files = dict[str, bytes]
-
-
-class Painter(Protocol):
-    """Draws poses; `render.offscreen.OffscreenRenderer` is one."""
-
-    def render(
-        self,
-        drawing: Drawing,
-        positions: Floats,
-        box: Box,
-        scale: float,
-        background: Color | None,
-        order: Ints | None,
-    ) -> Picture:
-        """The drawing in a pose as (h, w, 4) uint8, straight alpha, its faces drawn in ``order``."""
+Files = dict[str, bytes]  # contents by file name
 
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """scale: pixels per pixel of the picture; background: (r, g, b) from 0 to 1, or None for transparent;
-    crop: see `crop_box`; rest: the rest pose in place of the current one.
+    """Options of an export.
+
+    scale: pixels per pixel of the drawing; background: None for transparent; crop: see `crop_box`; rest:
+    export the rest pose instead of the current pose.
     """
 
     scale: float = 1.0
@@ -49,17 +35,18 @@ class ExportOptions:
 
 
 @dataclass(frozen=True)
-class Format:
-    """One kind of file.
+class ExportFormat:
+    """A row of the table of formats.
 
-    label, suffix: what it is called and how its names end; about: a sentence for people; framed: whether
-    scale, background and crop matter; encode: the bytes of each file, by name, the one asked for last.
+    label: name on the screen; suffix: ending of file names; about: description for the user; uses_framing:
+    whether scale, background and crop matter; encode: returns the contents of all files by name, the named
+    file last.
     """
 
     label: str
     suffix: str
     about: str
-    framed: bool
+    uses_framing: bool
     encode: Callable[[Document, str, ExportOptions, Painter | None], Files] = field(repr=False)
 
 
@@ -78,60 +65,60 @@ def _encode_svg(document: Document, stem: str, options: ExportOptions, _: Painte
     return {f"{stem}.svg": text.encode()}
 
 
-def _in_order(document: Document) -> Drawing:
-    """The drawing with its faces from the hindmost to the foremost."""
+def _back_to_front(document: Document) -> Drawing:
+    """The drawing with its faces sorted from back to front."""
     drawing, order = document.drawing, document.face_order
     if order is None:
         return drawing
     return replace(drawing, mesh=replace(drawing.mesh, faces=drawing.mesh.faces[order]))
 
 
-FORMATS = (
-    Format("PNG picture", ".png", "The pose as a picture with transparency.", True, _encode_png),
-    Format(
+EXPORT_FORMATS = (
+    ExportFormat("PNG picture", ".png", "The pose as a picture with transparency.", True, _encode_png),
+    ExportFormat(
         "SVG outline", ".svg", "The outline of the pose as paths, for cutting and tracing.", True, _encode_svg
     ),
-    Format(
+    ExportFormat(
         "glTF binary",
         ".glb",
         "Mesh and texture in one file, with the pose as a morph target, for Blender and game engines.",
         False,
-        lambda document, stem, *_: {f"{stem}.glb": encode_glb(_in_order(document), document.state.positions)},
+        lambda document, stem, *_: {
+            f"{stem}.glb": encode_glb(_back_to_front(document), document.state.positions)
+        },
     ),
-    Format(
+    ExportFormat(
         "Wavefront OBJ",
         ".obj",
         "The posed mesh with its material and texture, as three files, for almost any 3D program.",
         False,
-        lambda document, stem, *_: encode_obj(_in_order(document), document.state.positions, stem),
+        lambda document, stem, *_: encode_obj(_back_to_front(document), document.state.positions, stem),
     ),
-    Format(
+    ExportFormat(
         "Spine skeleton",
         ".spine.json",
         "Mesh attachments with the pose as a deform key, and their texture, for Spine and its runtimes.",
         False,
-        lambda document, stem, *_: encode_spine(_in_order(document), document.state.positions, stem),
+        lambda document, stem, *_: encode_spine(_back_to_front(document), document.state.positions, stem),
     ),
-    Format(
+    ExportFormat(
         "Mesh and pins",
         ".json",
-        "All numbers as documented JSON, for programs of one's own.",
+        "All numbers as documented JSON, for your own programs.",
         False,
         lambda document, stem, *_: {f"{stem}.json": encode_json(document)},
     ),
 )
 
 
-def format_of(path: str | Path) -> Format:
-    """The format that a file's name asks for. Raises InputError."""
+def format_of(path: str | Path) -> ExportFormat:
+    """The format for a file name's ending. Raises InputError if there is none."""
     name = Path(path).name.lower()
-    for each in FORMATS:  # .spine.json comes before .json
+    for each in EXPORT_FORMATS:  # .spine.json comes before .json
         if name.endswith(each.suffix):
             return each
-    came = Path(path).suffix or "none"
-    raise InputError(
-        f"{path}: expected a name that ends in {join_with_or([f.suffix for f in FORMATS])}, got {came}"
-    )
+    endings = join_with_or([each.suffix for each in EXPORT_FORMATS])
+    raise InputError(f"{path}: expected a name that ends in {endings}, got {Path(path).suffix or 'none'}")
 
 
 def export(
@@ -140,11 +127,11 @@ def export(
     options: ExportOptions | None = None,
     painter: Painter | None = None,
 ) -> list[Path]:
-    """Write a drawing for other programs; the files written, the one named last.
+    """Export a drawing; return the written files, with ``path`` last.
 
-    The name decides on the format. Files beside it, such as textures, are named after it. painter: draws
-    pictures, needed for .png only. Raises InputError for an unknown name or what cannot be exported or
-    written; each file is written whole or not at all.
+    The ending of ``path`` decides on the format. Additional files, e.g. textures, are named after it. Each
+    file is written whole or not at all. painter: draws pictures, needed for .png only. Raises InputError for
+    an unknown ending, or if the drawing cannot be exported or written.
     """
     options = options or ExportOptions()
     path = Path(path)
@@ -157,7 +144,7 @@ def export(
     except InputError as error:
         raise InputError(f"cannot write {path}: {error}") from error
     written = [path.with_name(name) for name in files]
-    written[-1] = path  # as it was spelled, e.g. in capitals
+    written[-1] = path  # as spelled by the caller, e.g. in capitals
     for target, data in zip(written, files.values(), strict=True):
         write_atomic(target, data)
     return written

@@ -4,8 +4,8 @@ import json
 
 from ...editor.document.document import Document
 
-FORMAT = "akap-mesh"
-VERSION = 1
+MESH_JSON_FORMAT = "akap-mesh"
+MESH_JSON_VERSION = 1
 
 
 def encode_json(document: Document) -> bytes:
@@ -14,8 +14,8 @@ def encode_json(document: Document) -> bytes:
     mesh = drawing.mesh
     rest, now = (mesh.evaluate(state.points, points) for points in (mesh.vertices, state.positions))
     record = {
-        "format": FORMAT,
-        "version": VERSION,
+        "format": MESH_JSON_FORMAT,
+        "version": MESH_JSON_VERSION,
         "name": drawing.name,
         "picture": {"width": drawing.size[0], "height": drawing.size[1]},
         "vertices": mesh.vertices.tolist(),

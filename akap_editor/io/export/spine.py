@@ -12,7 +12,7 @@ from ...geometry.validation import Floats, Ints
 from .texture import companion, encode_texture, y_up
 
 SPINE_VERSION = "4.2.00"
-MAX_VERTICES = 32767  # of one mesh: runtimes count vertices in 16 bits, with a sign
+MAX_ATTACHMENT_VERTICES = 32767  # of one mesh: runtimes count vertices in 16 bits, with a sign
 _DECIMALS = 3
 
 
@@ -76,9 +76,9 @@ def _parts(mesh: TriMesh) -> list[_Part]:
 
 
 def _attachment(drawing: Drawing, part: _Part, rest: Floats, texture: str) -> dict[str, Any]:
-    if len(part.order) > MAX_VERTICES:
+    if len(part.order) > MAX_ATTACHMENT_VERTICES:
         raise InputError(
-            f"expected parts of at most {MAX_VERTICES} vertices for Spine, got {len(part.order)}; "
+            f"expected parts of at most {MAX_ATTACHMENT_VERTICES} vertices for Spine, got {len(part.order)}; "
             "choose a coarser mesh"
         )
     width, height = drawing.size

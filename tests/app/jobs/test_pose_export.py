@@ -9,8 +9,9 @@ import pytest
 from akap_editor.app.dialogs.export_pose import PoseExportOptions, export_pose
 from akap_editor.app.jobs.pose_export import PoseExportQueue
 from akap_editor.editor import gestures
+from akap_editor.editor.document.framing import crop_box
 from akap_editor.errors import InputError
-from akap_editor.io import export as exports
+from akap_editor.io.export import formats
 from akap_editor.io.images import read_image
 
 
@@ -80,8 +81,8 @@ def test_a_closed_window_keeps_no_thread_waiting():
 
 def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, monkeypatch):
     """The file shows the pose that was exported."""
-    gate, encode = Event(), exports.encode_png
-    monkeypatch.setattr(exports, "encode_png", lambda picture: gate.wait(60) and encode(picture))
+    gate, encode = Event(), formats.encode_png
+    monkeypatch.setattr(formats, "encode_png", lambda picture: gate.wait(60) and encode(picture))
     path = tmp_path / "pose.png"
     export_pose(pinned.state, PoseExportOptions(), path)
     x, y = pinned.pin_place(3)
@@ -97,7 +98,7 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
     gate.set()
     pinned.settle()
     assert pinned.state.notice.startswith("Exported pose.png, ")
-    box = exports.crop_box(drawing, pose, "none")
+    box = crop_box(drawing, pose, "none")
     expected = pinned.state.exporter.render(drawing, pose, box)
     np.testing.assert_array_equal(read_image(path), expected)
 

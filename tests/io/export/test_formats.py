@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from akap_editor.errors import InputError
-from akap_editor.io.export import FORMATS, ExportOptions, export, format_of
+from akap_editor.io.export import EXPORT_FORMATS, ExportOptions, export, format_of
 from akap_editor.io.images import read_image, write_png
 
 BESIDE = {".obj": ["cat-texture.png", "cat.mtl"], ".spine.json": ["cat-texture.png"]}
 
 
-@pytest.mark.parametrize("each", FORMATS, ids=lambda each: each.suffix)
+@pytest.mark.parametrize("each", EXPORT_FORMATS, ids=lambda each: each.suffix)
 def test_the_name_decides_on_the_files(bent, painter, tmp_path, each):
     written = export(bent, tmp_path / f"cat{each.suffix}", ExportOptions(), painter)
     assert [path.name for path in written] == [*BESIDE.get(each.suffix, []), f"cat{each.suffix}"]
@@ -22,7 +22,7 @@ def test_the_name_decides_on_the_files(bent, painter, tmp_path, each):
     assert bool(painter.asked) == (each.suffix == ".png")
 
 
-@pytest.mark.parametrize("each", FORMATS, ids=lambda each: each.suffix)
+@pytest.mark.parametrize("each", EXPORT_FORMATS, ids=lambda each: each.suffix)
 def test_the_same_drawing_gives_the_same_bytes(bent, painter, tmp_path, each):
     first = [
         path.read_bytes() for path in export(bent, tmp_path / f"a{each.suffix}", ExportOptions(), painter)
@@ -33,7 +33,7 @@ def test_the_same_drawing_gives_the_same_bytes(bent, painter, tmp_path, each):
     assert first == again
 
 
-@pytest.mark.parametrize("each", FORMATS, ids=lambda each: each.suffix)
+@pytest.mark.parametrize("each", EXPORT_FORMATS, ids=lambda each: each.suffix)
 def test_the_rest_pose_on_demand(drawn, bent, painter, tmp_path, each):
     """Nothing of the pose is left; pins, which are in the JSON of both, apart."""
     bent = bent.with_state(drawn.state.__class__((), bent.state.positions, drawn.state.settings))
@@ -100,7 +100,7 @@ def test_what_cannot_be_written_leaves_nothing(bent, painter, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("each", FORMATS, ids=lambda each: each.suffix)
+@pytest.mark.parametrize("each", EXPORT_FORMATS, ids=lambda each: each.suffix)
 def test_a_pose_with_collapsed_and_flipped_faces_is_exported(drawn, painter, tmp_path, each):
     """All vertices on one line, and the drawing turned over: ugly, but no reason to fail."""
     for squeeze in ([[1.0, 0.0], [0.0, 0.0]], [[-1.0, 0.0], [0.0, 1.0]]):

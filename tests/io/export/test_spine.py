@@ -116,7 +116,7 @@ def test_texture_fits(record, path, bent):
 
 
 def test_too_fine_a_mesh_is_refused(exported, bent, monkeypatch, tmp_path):
-    monkeypatch.setattr("akap_editor.io.export.spine.MAX_VERTICES", 20)
+    monkeypatch.setattr("akap_editor.io.export.spine.MAX_ATTACHMENT_VERTICES", 20)
     with pytest.raises(InputError, match="at most 20 vertices for Spine, got "):
         exported(bent, "a.spine.json")
     assert list(tmp_path.iterdir()) == []

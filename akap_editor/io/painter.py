@@ -1,0 +1,45 @@
+"""Pictures of poses and of frames of an animation, drawn by whatever renderer is at hand."""
+
+from collections.abc import Iterator, Sequence
+from typing import Protocol
+
+from ..editor.animation.motion import Frame
+from ..editor.document.drawing import Drawing
+from ..editor.document.framing import Box, Color, frame_box, output_size, union_of_boxes
+from ..geometry.validation import Floats, Ints
+from .images import Picture
+
+
+class Painter(Protocol):
+    """Draws poses; `render.offscreen.OffscreenRenderer` is one."""
+
+    def render(
+        self,
+        drawing: Drawing,
+        positions: Floats,
+        box: Box,
+        scale: float,
+        background: Color | None,
+        order: Ints | None,
+    ) -> Picture:
+        """The pose ``positions`` (n, 2) as a picture (h, w, 4) uint8, straight alpha.
+
+        box: the part of the drawing plane that is shown; scale: pixels per drawing unit; background: None for
+        transparent; order (m,): of the faces, from back to front, or None for that of the mesh.
+        """
+
+
+def paint_frames(
+    frames: Sequence[Frame], painter: Painter, longest_side: float, background: Color | None
+) -> Iterator[Picture]:
+    """The pictures of an animation's frames, all of one size, each drawn when it is asked for.
+
+    They show the drawing's frame and all poses. longest_side: in pixels, at most: a drawing is not enlarged.
+    Raises InputError at once if the pictures would be too large.
+    """
+    box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])
+    scale = min(1.0, longest_side / max(box[2] - box[0], box[3] - box[1]))
+    output_size(box, scale)
+    return (
+        painter.render(frame.drawing, frame.pose, box, scale, background, frame.order) for frame in frames
+    )
