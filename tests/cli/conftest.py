@@ -1,4 +1,4 @@
-"""Runs the program in an empty folder, without display."""
+"""Runs the program in an empty folder, without a display."""
 
 import sys
 from collections.abc import Callable
@@ -6,19 +6,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from akap_editor import cli
 from akap_editor.editor.document.document import EditState
 from akap_editor.io.akap.project import save
 from akap_editor.io.images import write_png
 from akap_editor.io.open_document import open_document
-
-Result = tuple[int, str, str]
+from tests.support.command_line import Result
 
 
 @pytest.fixture
 def run(monkeypatch, capfd, tmp_path) -> Callable[..., Result]:
-    """Calls the program: (exit code, stdout, stderr)."""
+    """Runs the program with arguments."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
@@ -36,31 +36,27 @@ def run(monkeypatch, capfd, tmp_path) -> Callable[..., Result]:
 
 
 @pytest.fixture
-def picture(tmp_path) -> Path:
-    """A file of 90 × 60 pixels: an orange bar with a soft rim."""
+def image() -> NDArray[np.uint8]:
+    """(60, 90, 4): an orange bar with soft edges."""
     y, x = np.mgrid[0:60, 0:90] + 0.5
     alpha = np.clip(np.minimum(20 - abs(y - 30), 36 - abs(x - 45)), 0, 1)
     rgba = np.zeros((60, 90, 4), dtype=np.uint8)
     rgba[..., 3] = np.rint(255 * alpha)
     rgba[alpha > 0, :3] = (250, 130, 20)
-    write_png(tmp_path / "bar.png", rgba)
+    return rgba
+
+
+@pytest.fixture
+def picture(tmp_path, image) -> Path:
+    """The bar as a file."""
+    write_png(tmp_path / "bar.png", image)
     return tmp_path / "bar.png"
 
 
 @pytest.fixture
 def posed(tmp_path, picture) -> Path:
-    """A saved drawing, sheared out of its frame."""
+    """A saved drawing, sheared out of its frame, so that its picture is larger."""
     document = open_document(picture)
     pose = document.state.positions @ [[1.0, 0.4], [0.3, 1.0]] - [20.0, 5.0]
     save(document.with_state(EditState((), pose, document.state.settings)), tmp_path / "posed.akap")
     return tmp_path / "posed.akap"
-
-
-def assert_one_line(result: Result, *parts: str) -> None:
-    """Exit code 2, and one line on stderr that holds all ``parts``."""
-    code, _, errors = result
-    assert code == 2
-    assert errors.startswith("akap-editor: ")
-    assert errors.count("\n") == 1
-    for part in parts:
-        assert part in errors

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from tests.cli.conftest import assert_one_line
+from tests.support.command_line import assert_one_line
 
 
 def test_figures(run):

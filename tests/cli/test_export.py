@@ -12,7 +12,7 @@ from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.open_document import open_document
 from akap_editor.render.offscreen import OffscreenRenderer
-from tests.cli.conftest import assert_one_line
+from tests.support.command_line import assert_one_line
 
 SUFFIXES = [each.suffix for each in EXPORT_FORMATS]
 

@@ -12,7 +12,7 @@ from akap_editor.io.akap.project import load
 from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import write_png
 from akap_editor.resources import bundled_drawings, resource
-from tests.cli.conftest import assert_one_line
+from tests.support.command_line import assert_one_line
 
 RECORDING = resource("assets", "recordings", "elephant.akaprec")
 MESHES = [each.suffix for each in EXPORT_FORMATS if not each.uses_framing]

@@ -1,7 +1,6 @@
-"""`akap-editor replay` with all that it can write; what it shares with other commands is in test_cli.py."""
+"""`akap-editor replay`: everything that it can write, and bad input."""
 
 import json
-import sys
 from dataclasses import replace
 from itertools import pairwise
 
@@ -9,7 +8,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from akap_editor import cli
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.keyframes import Animation, Keyframe
@@ -19,10 +17,14 @@ from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
 from akap_editor.io.akap.project import save
-from akap_editor.io.akap.recording import write_recording
+from akap_editor.io.akap.recording import read_recording, write_recording
 from akap_editor.io.images import read_image
 from akap_editor.io.open_document import open_document
 from akap_editor.render.offscreen import OffscreenRenderer
+from akap_editor.resources import resource
+from tests.support.command_line import assert_one_line
+
+RECORDING = resource("assets", "recordings", "elephant.akaprec")
 
 
 @pytest.fixture(scope="module")
@@ -45,25 +47,92 @@ def session():
 
 
 @pytest.fixture
-def run(monkeypatch, capfd, tmp_path, session):
-    """Replays bar.akaprec with options in an empty folder: (exit code, stdout, stderr)."""
-    monkeypatch.chdir(tmp_path)
+def replay_bar(run, session, tmp_path):
+    """Replays bar.akaprec, or another recording, with options: (exit code, stdout, stderr)."""
     write_recording(session.recording, tmp_path / "bar.akaprec", session.drawing)
 
     def call(*options, recording="bar.akaprec"):
-        monkeypatch.setattr(sys, "argv", ["akap-editor", "replay", recording, *map(str, options)])
-        code = 0
-        try:
-            cli.main()
-        except SystemExit as leaving:
-            code = leaving.code or 0
-        return code, *capfd.readouterr()
+        return run("replay", recording, *options)
 
     return call
 
 
-def test_the_drawing_inside_is_used_and_the_last_pose_is_the_session_s(run, session, tmp_path):
-    code, output, errors = run("-o", "last.png", "--size", 8192)
+# -- the bundled recording -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", [".webp", ".gif"])
+def test_replay_writes_an_animation_and_the_last_pose(run, tmp_path, suffix):
+    animation = tmp_path / "new" / f"wave{suffix}"
+    code, output, errors = run(
+        "replay", RECORDING, "-o", animation, "--pose", "last.png", "--size", "64", "--fps", "5"
+    )
+    assert (code, errors) == (0, "")
+    duration = read_recording(RECORDING).duration
+    with Image.open(animation) as opened:
+        assert max(opened.size) == 64
+        assert 0.5 * duration * 5 < opened.n_frames <= duration * 5 + 1
+        opened.seek(0)
+        first = np.asarray(opened.convert("RGBA")).astype(int)
+        opened.seek(opened.n_frames // 2)
+        middle = np.asarray(opened.convert("RGBA")).astype(int)
+    assert (first[..., 3] > 127).any()
+    assert (abs(first - middle).max(axis=2) > 60).mean() > 0.02, "the drawing moves"
+    assert str(animation) in output
+    last = read_image(tmp_path / "last.png")
+    rest = read_image(resource("assets", "drawings", "elephant.png"))
+    assert min(last.shape[:2]) >= min(rest.shape[:2])
+    assert last.shape != rest.shape or (last != rest).any()
+
+
+@pytest.mark.parametrize(
+    ("options", "parts"),
+    [
+        (["--fps", "0"], ["--fps", "1 to 120"]),
+        (["--fps", "nan"], ["--fps", "1 to 120"]),
+        (["--fps", "fast"], ["--fps", "'fast'"]),
+        (["--size", "5"], ["--size", "16 to 8192"]),
+        (["--size", "-64"], ["--size", "16 to 8192"]),
+        (["--size", "1.5"], ["--size", "'1.5'"]),
+    ],
+)
+def test_replay_refuses_bad_options(run, tmp_path, options, parts):
+    assert_one_line(run("replay", RECORDING, "-o", "wave.webp", *options), *parts)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_replay_of_an_unknown_drawing_says_how_to_name_it(run, tmp_path):
+    text = RECORDING.read_text().replace('"name":"elephant"', '"name":"unicorn"', 1)
+    (tmp_path / "other.akaprec").write_text(text)
+    assert_one_line(run("replay", "other.akaprec", "-o", "wave.webp"), "'unicorn'", "--drawing", "elephant")
+    assert not (tmp_path / "wave.webp").exists()
+
+
+@pytest.mark.parametrize(
+    ("content", "part"),
+    [
+        (None, "no such file"),
+        (b"not a recording\n", "line 1"),
+        (b"\xff\xfe\x00", "recording"),
+        (b"", "line 1"),
+    ],
+)
+def test_replay_of_a_bad_recording(run, tmp_path, content, part):
+    if content is not None:
+        (tmp_path / "bad.akaprec").write_bytes(content)
+    assert_one_line(run("replay", "bad.akaprec", "-o", "wave.webp"), "bad.akaprec", part)
+    assert not (tmp_path / "wave.webp").exists()
+
+
+def test_replay_to_an_unknown_kind_of_animation(run, tmp_path):
+    assert_one_line(run("replay", RECORDING, "-o", "wave.avi"), "wave.avi", ".webp")
+    assert not (tmp_path / "wave.avi").exists()
+
+
+# -- all options ---------------------------------------------------------------------------------------------
+
+
+def test_the_drawing_inside_is_used_and_the_last_pose_is_the_session_s(replay_bar, session, tmp_path):
+    code, output, errors = replay_bar("-o", "last.png", "--size", 8192)
     assert (code, errors) == (0, "")
     assert "last.png" in output
     with OffscreenRenderer() as renderer:
@@ -71,9 +140,9 @@ def test_the_drawing_inside_is_used_and_the_last_pose_is_the_session_s(run, sess
     np.testing.assert_array_equal(read_image(tmp_path / "last.png"), expected)
 
 
-def test_a_rate_above_that_of_the_recording_moves_in_every_frame(run, tmp_path):
+def test_a_rate_above_that_of_the_recording_moves_in_every_frame(replay_bar, tmp_path):
     """12 recorded moves a second, 48 frames."""
-    assert run("-o", "frames", "--fps", 48)[0] == 0
+    assert replay_bar("-o", "frames", "--fps", 48)[0] == 0
     frames = [read_image(path).astype(int) for path in sorted((tmp_path / "frames").iterdir())]
     assert len(frames) == 49
     assert all((a != b).any() for a, b in pairwise(frames[1:]))
@@ -92,19 +161,19 @@ def test_a_rate_above_that_of_the_recording_moves_in_every_frame(run, tmp_path):
         (["--fps", 12, "--pause", 0], 1),
     ],
 )
-def test_how_many_frames_there_are(run, tmp_path, options, frames):
-    assert run("-o", "frames", *options)[0] == 0
+def test_how_many_frames_there_are(replay_bar, tmp_path, options, frames):
+    assert replay_bar("-o", "frames", *options)[0] == 0
     assert len(list((tmp_path / "frames").iterdir())) == frames
 
 
-def test_ping_pong_ends_where_it_began(run, tmp_path):
-    assert run("-o", "frames", "--fps", 6, "--ping-pong")[0] == 0
+def test_ping_pong_ends_where_it_began(replay_bar, tmp_path):
+    assert replay_bar("-o", "frames", "--fps", 6, "--ping-pong")[0] == 0
     frames = [read_image(path) for path in sorted((tmp_path / "frames").iterdir())]
     np.testing.assert_array_equal(frames[1], frames[-1])
 
 
-def test_a_sheet_and_its_index(run, tmp_path):
-    assert run("-o", "bar.png", "--sheet", "--fps", 8, "--size", 64)[0] == 0
+def test_a_sheet_and_its_index(replay_bar, tmp_path):
+    assert replay_bar("-o", "bar.png", "--sheet", "--fps", 8, "--size", 64)[0] == 0
     index = json.loads((tmp_path / "bar.json").read_text())
     with Image.open(tmp_path / "bar.png") as sheet:
         assert sheet.size == (index["meta"]["size"]["w"], index["meta"]["size"]["h"])
@@ -112,15 +181,15 @@ def test_a_sheet_and_its_index(run, tmp_path):
 
 
 @pytest.mark.parametrize("suffix", [".mp4", ".webm"])
-def test_a_video(run, tmp_path, suffix):
+def test_a_video(replay_bar, tmp_path, suffix):
     av = pytest.importorskip("av", reason="the extra [video] is not installed")
-    assert run("-o", f"bar{suffix}", "--fps", 24)[0] == 0
+    assert replay_bar("-o", f"bar{suffix}", "--fps", 24)[0] == 0
     with av.open(str(tmp_path / f"bar{suffix}")) as container:
         assert sum(1 for _ in container.decode(video=0)) == 25
 
 
-def test_background_and_plays(run, tmp_path):
-    assert run("-o", "bar.webp", "--fps", 5, "--background", "#336699", "--plays", 3)[0] == 0
+def test_background_and_plays(replay_bar, tmp_path):
+    assert replay_bar("-o", "bar.webp", "--fps", 5, "--background", "#336699", "--plays", 3)[0] == 0
     with Image.open(tmp_path / "bar.webp") as opened:
         assert opened.info["loop"] == 3
         assert opened.convert("RGBA").getpixel((0, 0)) == (0x33, 0x66, 0x99, 255)
@@ -140,7 +209,7 @@ def test_background_and_plays(run, tmp_path):
         ),
     ],
 )
-def test_methods_and_variants(run, session, tmp_path, monkeypatch, options, method, parameters):
+def test_methods_and_variants(replay_bar, session, tmp_path, monkeypatch, options, method, parameters):
     used = []
 
     def watched(recording, drawing, change):
@@ -149,7 +218,7 @@ def test_methods_and_variants(run, session, tmp_path, monkeypatch, options, meth
             yield moment
 
     monkeypatch.setattr("akap_editor.cli.replay.replay", watched)
-    assert run("-o", "last.png", *options)[0] == 0
+    assert replay_bar("-o", "last.png", *options)[0] == 0
     assert {(settings.method, settings.parameters) for settings in used} == {
         (method, tuple(sorted(parameters.items())))
     }
@@ -171,8 +240,8 @@ def test_methods_and_variants(run, session, tmp_path, monkeypatch, options, meth
         (["--sheet"], [".png", ".gif"]),
     ],
 )
-def test_bad_options_are_one_line_and_nothing_is_written(run, tmp_path, options, parts):
-    code, _, errors = run("-o", "bar.gif", *options)
+def test_bad_options_are_one_line_and_nothing_is_written(replay_bar, tmp_path, options, parts):
+    code, _, errors = replay_bar("-o", "bar.gif", *options)
     assert code == 2
     assert errors.count("\n") == 1
     for part in parts:
@@ -188,21 +257,21 @@ def test_bad_options_are_one_line_and_nothing_is_written(run, tmp_path, options,
         (lambda lines: [lines[0].replace('"akap":"', '"akap":"!'), *lines[1:]], "line 1: the drawing inside"),
     ],
 )
-def test_a_bad_recording_is_told_with_its_line(run, tmp_path, change, part):
+def test_a_bad_recording_is_told_with_its_line(replay_bar, tmp_path, change, part):
     lines = (tmp_path / "bar.akaprec").read_text().splitlines()
     (tmp_path / "bad.akaprec").write_text("\n".join(change(lines)) + "\n")
-    code, _, errors = run("-o", "bar.gif", recording="bad.akaprec")
+    code, _, errors = replay_bar("-o", "bar.gif", recording="bad.akaprec")
     assert code == 2
     assert errors.count("\n") == 1
     assert part in errors
     assert not (tmp_path / "bar.gif").exists()
 
 
-def test_a_pin_outside_another_drawing_is_told_with_its_line(run, session, tmp_path):
+def test_a_pin_outside_another_drawing_is_told_with_its_line(replay_bar, session, tmp_path):
     image = session.drawing.image.copy()
     image[:, 40:] = 0
     Image.fromarray(image).save(tmp_path / "half.png")
-    code, _, errors = run("-o", "bar.gif", "--drawing", "half.png")
+    code, _, errors = replay_bar("-o", "bar.gif", "--drawing", "half.png")
     assert code == 2
     assert "recording line 5: " in errors
     assert "outside the drawing" in errors
@@ -218,30 +287,32 @@ def posed(session, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["out.webp", "out.gif", "out.apng", "frames"])
-def test_keyframes_are_played_like_a_recording(run, posed, tmp_path, name):
-    code, out, err = run("-o", name, "--fps", 20, "--size", 60, recording="posed.akap")
+def test_keyframes_are_played_like_a_recording(replay_bar, posed, tmp_path, name):
+    code, out, err = replay_bar("-o", name, "--fps", 20, "--size", 60, recording="posed.akap")
     assert (code, err) == (0, "")
     assert "11 frames" in out
     assert (tmp_path / name).exists()
 
 
-def test_what_plays_for_ever_and_ends_as_it_begins_shows_its_end_once(run, posed, tmp_path):
+def test_what_plays_for_ever_and_ends_as_it_begins_shows_its_end_once(replay_bar, posed, tmp_path):
     document = open_document(tmp_path / "posed.akap")
     keys = *document.state.animation.keyframes, Keyframe(1.0, document.drawing.mesh.vertices)
     save(document.with_state(replace(document.state, animation=Animation(keys))), tmp_path / "round.akap")
     for options, count in (((), 10), (("--plays", 1), 11), (("--to", 0.5), 6), (("--ping-pong",), 20)):
-        code, out, _ = run("-o", "out.gif", "--fps", 10, "--size", 60, *options, recording="round.akap")
+        code, out, _ = replay_bar(
+            "-o", "out.gif", "--fps", 10, "--size", 60, *options, recording="round.akap"
+        )
         assert code == 0
         assert f"{count} frames" in out
 
 
-def test_the_last_frame_of_keyframes_is_the_last_pose(run, posed, tmp_path):
-    assert run("-o", "out.png", "--pose", "pose.png", "--size", 8000, recording="posed.akap")[0] == 0
+def test_the_last_frame_of_keyframes_is_the_last_pose(replay_bar, posed, tmp_path):
+    assert replay_bar("-o", "out.png", "--pose", "pose.png", "--size", 8000, recording="posed.akap")[0] == 0
     with OffscreenRenderer() as renderer:
         expected = renderer.render(posed.drawing, posed.state.positions)
     np.testing.assert_array_equal(read_image(tmp_path / "pose.png"), expected)
     options = ("--from", 0.2, "--to", 0.4, "--ping-pong", "--speed", 2, "--fps", 20, "--sheet")
-    assert run("-o", "sheet.png", *options, recording="posed.akap")[0] == 0
+    assert replay_bar("-o", "sheet.png", *options, recording="posed.akap")[0] == 0
     assert len(json.loads((tmp_path / "sheet.json").read_text())["frames"]) == 4
 
 
@@ -255,15 +326,15 @@ def test_the_last_frame_of_keyframes_is_the_last_pose(run, posed, tmp_path):
         (("--from", 2), "--from: expected a time from 0 to the end at 0.5 s"),
     ],
 )
-def test_what_is_for_recordings_only_is_refused_for_keyframes(run, posed, options, message):
-    code, _, err = run("-o", "out.webp", *options, recording="posed.akap")
+def test_what_is_for_recordings_only_is_refused_for_keyframes(replay_bar, posed, options, message):
+    code, _, err = replay_bar("-o", "out.webp", *options, recording="posed.akap")
     assert code == 2
     assert message in err
 
 
-def test_a_drawing_without_keyframes_is_refused(run, session, tmp_path):
+def test_a_drawing_without_keyframes_is_refused(replay_bar, session, tmp_path):
     save(new_document(session.drawing), tmp_path / "still.akap")
-    code, _, err = run("-o", "out.webp", recording="still.akap")
+    code, _, err = replay_bar("-o", "out.webp", recording="still.akap")
     assert code == 2
     assert "still.akap: expected a drawing with keyframes, or a recording, got one without any" in err
 

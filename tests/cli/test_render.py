@@ -1,0 +1,73 @@
+"""`akap-editor render`: the PNG it writes, and bad input."""
+
+import numpy as np
+import pytest
+
+from akap_editor.io.images import read_image
+from akap_editor.io.open_document import open_document
+from akap_editor.render.offscreen import OffscreenRenderer
+from tests.support.command_line import assert_one_line
+
+
+def picture_of(path, **options):
+    document = open_document(path)
+    with OffscreenRenderer() as renderer:
+        return renderer.render(document.drawing, document.state.positions, **options)
+
+
+@pytest.mark.parametrize("source", ["picture", "posed"])
+def test_render_writes_the_picture_of_the_offscreen_renderer(run, request, tmp_path, source):
+    path = request.getfixturevalue(source)
+    expected = picture_of(path)
+    code, output, errors = run("render", path, "-o", tmp_path / "new" / "pose.png")
+    assert (code, errors) == (0, "")
+    assert output == f"{tmp_path / 'new' / 'pose.png'}: {expected.shape[1]} × {expected.shape[0]} pixels\n"
+    np.testing.assert_array_equal(read_image(tmp_path / "new" / "pose.png"), expected)
+
+
+def test_render_scale_and_background(run, posed, tmp_path):
+    code, _, errors = run("render", posed, "-o", "pose.png", "--scale", "2", "--background", "#336699")
+    assert (code, errors) == (0, "")
+    written = read_image(tmp_path / "pose.png")
+    expected = picture_of(posed, scale=2.0, background=(0x33 / 255, 0x66 / 255, 0x99 / 255))
+    np.testing.assert_array_equal(written, expected)
+    assert written[0, 0].tolist() == [0x33, 0x66, 0x99, 255]
+    plain = picture_of(posed)
+    assert abs(np.array(written.shape[:2]) - 2 * np.array(plain.shape[:2])).max() == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "parts"),
+    [
+        (["--background", "red"], ["--background", "#RRGGBB", "'red'"]),
+        (["--background", "#12345"], ["--background", "#RRGGBB"]),
+        (["--background", "#11223344"], ["--background", "#RRGGBB"]),
+        (["--scale", "0"], ["scale", "positive"]),
+        (["--scale", "-1"], ["scale", "positive"]),
+        (["--scale", "nan"], ["scale", "positive"]),
+        (["--scale", "inf"], ["scale", "positive"]),
+        (["--scale", "1e6"], ["smaller scale"]),
+        (["--scale", "big"], ["--scale", "'big'"]),
+        (["--colour", "red"], ["--colour"]),
+    ],
+)
+def test_render_refuses_bad_options(run, picture, tmp_path, options, parts):
+    assert_one_line(run("render", picture, "-o", "pose.png", *options), *parts)
+    assert not (tmp_path / "pose.png").exists()
+
+
+def test_render_needs_an_output(run, picture):
+    assert_one_line(run("render", picture), "--output")
+
+
+def test_render_into_a_file_as_if_it_were_a_folder(run, picture):
+    assert_one_line(run("render", picture, "-o", picture / "pose.png"), str(picture / "pose.png"))
+
+
+def test_a_picture_is_written_as_png_only(run, picture, tmp_path):
+    before = sorted(tmp_path.iterdir())
+    code, output, errors = run("render", picture, "-o", tmp_path / "pose.jpg")
+    assert (code, output) == (2, "")
+    assert errors.count("\n") == 1
+    assert "expected a name that ends in .png, got .jpg" in errors
+    assert sorted(tmp_path.iterdir()) == before
