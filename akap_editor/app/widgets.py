@@ -26,13 +26,13 @@ _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_se
 def run(state: AppState, command: Command) -> None:
     """Run a command; what goes wrong becomes a message."""
     state.notice = ""
-    state.attempt(lambda: command.run(state))
+    state.run_reporting_errors(lambda: command.run(state))
 
 
 def change(state: AppState, settings: Settings) -> None:
     """Change how the drawing bends; what goes wrong becomes a message."""
     state.notice = ""
-    state.attempt(lambda: state.change_settings(settings))
+    state.run_reporting_errors(lambda: state.change_settings(settings))
 
 
 def switch(label: str, on: bool, tooltip: str = "") -> tuple[bool, bool]:

@@ -40,7 +40,9 @@ def draw(state: AppState, canvas: Canvas, scale: float) -> Canvas:
         state.comparison.close()
         return canvas
     left, right = halves(canvas)
-    if not state.attempt(lambda: state.comparison.follow(session, state.editor.worker, FRAME_BUDGET)):
+    if not state.run_reporting_errors(
+        lambda: state.comparison.follow(session, state.editor.worker, FRAME_BUDGET)
+    ):
         state.split = False
         return canvas
     settings = session.state.settings

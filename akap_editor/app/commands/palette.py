@@ -6,7 +6,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
-from .. import widgets
+from .. import files, widgets
 from ..app_state import AppState
 from ..theme import ACCENT, QUIET, TEXT, packed
 from .command import Command, Submenu
@@ -53,7 +53,7 @@ def entries(state: AppState) -> list[Entry]:
 
 
 def _opens(path: Path) -> Callable[[AppState], None]:
-    return lambda state: state.open_path(path)
+    return lambda state: files.open_path(state, path)
 
 
 def _entry(command: Command, state: AppState) -> Entry:
@@ -127,7 +127,7 @@ def draw(state: AppState, scale: float) -> None:
     if picked is not None:
         run = picked.run
         state.notice = ""
-        state.attempt(lambda: run(state))
+        state.run_reporting_errors(lambda: run(state))
 
 
 def _begin(is_new: bool, scale: float) -> bool:

@@ -11,7 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import portable_file_dialogs as native
 
 from ... import __version__
-from .. import widgets
+from .. import files, widgets
 from ..app_state import AppState
 from ..commands import shortcuts_page as keys_overlay
 from ..theme import ACCENT, QUIET
@@ -106,7 +106,7 @@ def _unsaved(state: AppState, scale: float) -> None:
         imgui.spacing()
         if widgets.button("Save", primary=True) or widgets.enter():
             widgets.close(state, "question", None)
-            state.save(question.go_on)
+            files.save(state, question.go_on)
         imgui.same_line()
         if widgets.button("Discard"):
             widgets.close(state, "question", None)

@@ -125,15 +125,15 @@ class ExportAnimationDialog:
 
     def open(self, state: AppState) -> None:
         """Show the dialog if there is a range to export; playback stops."""
-        start, end = state.playback.range
+        start, end = state.timeline.playback.range
         if state.document is not None and end > start:
-            if state.playback.playing:
-                state.playback.stop()
+            if state.timeline.playback.playing:
+                state.timeline.playback.stop()
             self.is_open = True
 
     def draw(self, state: AppState, scale: float) -> None:
         """Draw one frame. scale: points per design point."""
-        start, end = state.playback.range
+        start, end = state.timeline.playback.range
         if state.document is None or end <= start:
             self.is_open = False
             return
@@ -165,13 +165,15 @@ class ExportAnimationDialog:
 
 def frame_at(state: AppState, time: float) -> Frame:
     """The timeline's frame at a time in seconds."""
-    keyed = state.timeline == "keyframes"
-    return state.keyframe_playback.frame(time) if keyed else state.session_playback.frame(time)
+    keyed = state.timeline.mode == "keyframes"
+    return (
+        state.timeline.keyframe_playback.frame(time) if keyed else state.timeline.session_playback.frame(time)
+    )
 
 
 def exported_times(state: AppState, options: AnimationExportOptions) -> list[float]:
     """Seconds on the timeline, for each frame. In a seamless loop the last frame is dropped."""
-    start, end = state.playback.range
+    start, end = state.timeline.playback.range
     times = options.times(start, end)
     over = options.kind.repeats and options.loop and not options.ping_pong and len(times) > 2
     return times[:-1] if over and closed(frame_at(state, start), frame_at(state, end)) else times
@@ -196,7 +198,7 @@ def export_animation(state: AppState, options: AnimationExportOptions, path: Pat
         export_kind(path, sheet)
         state.task = Task(f"Exporting {path.name}", _steps(state, options, path, sheet))
 
-    state.later(begin)
+    state.run_after_frame(begin)
 
 
 def _steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: bool) -> Steps:

@@ -91,9 +91,9 @@ def _angle(state: AppState, pin: Pin) -> None:
     held = widgets.switch("Hold this angle", pin.angle is not None, "Off: the drawing turns as it will here.")
     imgui.end_disabled()
     if angle is not None:
-        state.attempt(lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(angle)))
+        state.run_reporting_errors(lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(angle)))
     elif held[0]:
-        state.attempt(
+        state.run_reporting_errors(
             lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(shown) if held[1] else None)
         )
 
@@ -113,7 +113,7 @@ def _values(state: AppState, pin: Pin, scale: float) -> None:
     if widgets.escape():  # ImGui would only leave the field
         widgets.close_popup()
     if depth is not None:
-        state.attempt(lambda: gestures.set_depth(state.editor, pin.id, depth))
+        state.run_reporting_errors(lambda: gestures.set_depth(state.editor, pin.id, depth))
     if new_x is not None or new_y is not None:
         to = x if new_x is None else new_x, y if new_y is None else new_y
-        state.attempt(lambda: gestures.move_pin(state.editor, pin.id, to))
+        state.run_reporting_errors(lambda: gestures.move_pin(state.editor, pin.id, to))

@@ -58,7 +58,7 @@ def draw(state: AppState, scale: float) -> None:
     _all_poses(state, poses, scale)
     if imgui.button(f"{icons.ICON_FA_PLUS}  Keep this pose", ImVec2(widgets.FULL, 0)):
         state.notice = ""
-        state.attempt(lambda: gestures.add_pose(state.editor))
+        state.run_reporting_errors(lambda: gestures.add_pose(state.editor))
     if len(poses) > 1:
         _mixer(state, scale)
 
@@ -86,7 +86,9 @@ def _pose(state: AppState, pose: NamedPose, scale: float) -> None:
     imgui.begin_group()
     if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side), imgui.ButtonFlags_.enable_nav):
         state.notice = ""
-        state.attempt(lambda: gestures.set_pose(state.editor, pose.positions, f"Apply {pose.name}"))
+        state.run_reporting_errors(
+            lambda: gestures.set_pose(state.editor, pose.positions, f"Apply {pose.name}")
+        )
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
     widgets.explain(
         f"{pose.name}: click to apply, drag to the timeline or another place, right-click for more"
@@ -125,11 +127,11 @@ def _menu(state: AppState, pose: NamedPose) -> None:
     if imgui.menu_item("Rename", "F2", False)[0]:
         _begin_renaming(state, pose)
     if imgui.menu_item_simple("Change to the Present Pose"):
-        state.attempt(lambda: gestures.add_pose(state.editor, pose.name))
+        state.run_reporting_errors(lambda: gestures.add_pose(state.editor, pose.name))
     if imgui.menu_item_simple("Keyframe of It"):
-        state.show_in_timeline("keyframes")
-        state.show_timeline = True
-        state.attempt(lambda: state.keyframe_playback.put(positions=pose.positions))
+        state.timeline.set_mode("keyframes")
+        state.timeline.is_shown = True
+        state.run_reporting_errors(lambda: state.timeline.keyframe_playback.put(positions=pose.positions))
     imgui.separator()
     assert state.document is not None
     last = len(state.document.state.poses) - 1
@@ -161,7 +163,7 @@ def _rename(state: AppState, pose: NamedPose, width: float) -> None:
         name, state.renaming = state.new_name.strip(), None
         if name and name != pose.name and not imgui.is_key_pressed(imgui.Key.escape, False):
             label = f"Rename {pose.name}"
-            state.attempt(lambda: state.editor.apply(label, RenamePose(pose.name, name)))
+            state.run_reporting_errors(lambda: state.editor.apply(label, RenamePose(pose.name, name)))
 
 
 def _dragging(state: AppState, pose: NamedPose) -> None:
@@ -183,7 +185,7 @@ def _order(state: AppState, old: int, new: int) -> None:
     assert state.document is not None
     names = [each.name for each in state.document.state.poses]
     names.insert(new, names.pop(old))
-    state.attempt(lambda: state.editor.apply("Order poses", ReorderPoses(names)))
+    state.run_reporting_errors(lambda: state.editor.apply("Order poses", ReorderPoses(names)))
 
 
 def _mixer(state: AppState, scale: float) -> None:
@@ -213,4 +215,4 @@ def _mixer(state: AppState, scale: float) -> None:
         session.end_preview()
         pose = pose_blend.pose(session)
         if pose is not None:
-            state.attempt(lambda: gestures.set_pose(state.editor, pose, "In-between"))
+            state.run_reporting_errors(lambda: gestures.set_pose(state.editor, pose, "In-between"))

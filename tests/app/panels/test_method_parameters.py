@@ -5,6 +5,7 @@ import json
 
 import pytest
 
+from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.panels import method_parameters as settings_panel
 from akap_editor.app.panels.method_parameters import PARAMETERS, default
@@ -122,13 +123,13 @@ def test_there_is_no_going_beyond_the_ends(drawing):
 def test_a_new_drawing_bends_as_was_chosen_last_also_in_another_run(tmp_path, document):
     path = tmp_path / "preferences.json"
     first = AppState(preferences=Preferences(path))
-    first.show(document)
+    files.show_document(first, document)
     assert first.document.state.settings == Settings()
     chosen = Settings("arap", (("iterations", 7),))
     first.change_settings(chosen)
     first.preferences.write()
     second = AppState(preferences=Preferences(path))
-    second.show(document)
+    files.show_document(second, document)
     assert second.document.state.settings == chosen
     assert second.editor.session.history.depth == 0
     assert not second.editor.modified
@@ -136,9 +137,9 @@ def test_a_new_drawing_bends_as_was_chosen_last_also_in_another_run(tmp_path, do
 
 def test_a_drawing_with_settings_of_its_own_keeps_them(document, drawing):
     state = AppState()
-    state.show(document)
+    files.show_document(state, document)
     state.change_settings(Settings("arap", ()))
-    state.show(new_document(drawing, Settings("mls", ())))
+    files.show_document(state, new_document(drawing, Settings("mls", ())))
     assert state.document.state.settings.method == "mls"
 
 
@@ -157,5 +158,5 @@ def test_remembered_settings_that_make_no_sense_are_ignored(tmp_path, document, 
     path = tmp_path / "preferences.json"
     path.write_text(json.dumps({"settings": remembered}))
     state = AppState(preferences=Preferences(path))
-    state.show(document)
+    files.show_document(state, document)
     assert state.document.state.settings == Settings()
