@@ -175,14 +175,14 @@ def _dashed_frame(draw: imgui.ImDrawList, low: ImVec2, high: ImVec2, scale: floa
 def _recent(state: AppState, column: float) -> None:
     recent = state.preferences.recent
     if not recent:
-        widgets.quiet("None yet. What you open or save is listed here.")
+        widgets.secondary_text("None yet. What you open or save is listed here.")
         return
     room = int(imgui.get_content_region_avail().y / imgui.get_text_line_height_with_spacing())
     for index, path in enumerate(recent[: max(room, 3)]):
         name = widgets.shortened(path.name, 0.4 * column)
         if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
             _open(state, path)
-        widgets.explain(str(path))
+        widgets.show_tooltip(str(path))
         folder = widgets.shortened(str(path.parent), 0.55 * column, end=True)
         room_left = imgui.get_content_region_avail().x
         imgui.same_line(imgui.get_cursor_pos_x() + room_left - imgui.calc_text_size(folder).x)

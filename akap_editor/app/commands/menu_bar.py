@@ -73,6 +73,6 @@ def _submenu(state: AppState, item: Submenu) -> bool:
         for index, (name, path) in enumerate(entries):
             if imgui.menu_item_simple(f"{widgets.shortened(name, room)}###{index}"):
                 files.open_path(state, path)
-            widgets.explain(str(path))
+            widgets.show_tooltip(str(path))
         imgui.end_menu()
     return is_open or (bool(entries) and imgui.is_item_focused())

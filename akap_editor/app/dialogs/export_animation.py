@@ -143,7 +143,7 @@ class ExportAnimationDialog:
         options.format = format_list(FORMATS, options.kind, _LIST_WIDTH * scale, _HEIGHT * scale).label
         imgui.same_line(0, 18 * scale)
         size = ImVec2((_WIDTH - _LIST_WIDTH - 18) * scale, _HEIGHT * scale)
-        imgui.begin_child("##options", size, widgets.WALKED)
+        imgui.begin_child("##options", size, widgets.NAV_FLATTENED)
         _draw_options(options, scale)
         _draw_result(state, options, scale)
         imgui.end_child()
@@ -151,9 +151,9 @@ class ExportAnimationDialog:
         options.remember(state.preferences)
         accepted = widgets.button("Export...", primary=True)
         imgui.same_line()
-        if widgets.button("Cancel") or widgets.escape():
+        if widgets.button("Cancel") or widgets.cancel_pressed():
             self._close()
-        elif accepted or (widgets.enter() and not imgui.get_io().want_text_input):
+        elif accepted or (widgets.confirm_pressed() and not imgui.get_io().want_text_input):
             self._close()
             request_file(state, options)
         imgui.end_popup()
@@ -232,14 +232,14 @@ def _steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: 
 def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     """Draw what can be chosen about the format."""
     below = imgui.get_cursor_pos_y() + 2 * imgui.get_text_line_height()
-    widgets.quiet(options.kind.about)
+    widgets.secondary_text(options.kind.about)
     imgui.set_cursor_pos_y(below + imgui.get_style().item_spacing.y)
     options.fps = number_field("Frame rate", options.fps, LIMITS["fps"], "%.4g fps", 0.2, 96, scale)
     preset = preset_buttons([f"{rate}" for rate in RATES], scale)
     if preset is not None:
         options.fps = float(RATES[preset])
     options.size = round(number_field("Size", options.size, LIMITS["size"], "%.0f px", 2.0, 96, scale))
-    widgets.explain("Of the longest side, at most; a drawing is not enlarged.")
+    widgets.show_tooltip("Of the longest side, at most; a drawing is not enlarged.")
     low, high = LIMITS["speed"]
     percent = number_field("Speed", 100 * options.speed, (100 * low, 100 * high), "%.4g %%", 0.5, 96, scale)
     options.speed = percent / 100
@@ -248,12 +248,12 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     names = list(EASINGS)
     _, chosen = imgui.combo("##easing", names.index(options.ease), [EASING_LABELS[name] for name in names])
     options.ease = names[chosen]
-    widgets.explain("Of the whole, on top of what keyframes do.")
+    widgets.show_tooltip("Of the whole, on top of what keyframes do.")
     widgets.switch_label("Repeat", LABEL_WIDTH * scale)
     _, options.ping_pong = widgets.switch("Ping-pong", options.ping_pong, "Forwards, then backwards.")
     if options.kind.repeats:
         imgui.same_line(0, 16 * scale)
-        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.rise())
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
         _, options.loop = widgets.switch("For ever", options.loop, "Off: it is shown once, and stops.")
     options.opaque, options.background = background_field(
         options.opaque,

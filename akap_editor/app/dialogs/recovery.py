@@ -47,7 +47,7 @@ class Recovery:
         _facts(copy, document, len(state.lost), 300 * scale)
         imgui.end_group()
         imgui.spacing()
-        if widgets.button("Recover", primary=True) or widgets.enter():
+        if widgets.button("Recover", primary=True) or widgets.confirm_pressed():
             imgui.close_current_popup()
             state.run_reporting_errors(lambda: recover(state, copy, document))
         imgui.same_line()
@@ -55,7 +55,7 @@ class Recovery:
             _drop(state)
             copy.discard()
         imgui.same_line()
-        if widgets.button("Later") or widgets.escape():
+        if widgets.button("Later") or widgets.cancel_pressed():
             _drop(state)
             copy.leave()
         imgui.end_popup()

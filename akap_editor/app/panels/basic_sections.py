@@ -37,7 +37,7 @@ def pins(state: AppState, scale: float) -> None:
     assert state.document is not None
     edit_state, editor = state.document.state, state.editor
     if not edit_state.pins:
-        widgets.quiet("None yet. Click on the drawing where it should hold still.")
+        widgets.secondary_text("None yet. Click on the drawing where it should hold still.")
         return
     widgets.begin_list("##pins", len(edit_state.pins), _ROWS)
     for index, pin in enumerate(edit_state.pins):
@@ -49,7 +49,7 @@ def pins(state: AppState, scale: float) -> None:
             else:
                 editor.select({pin.id})
         if editor.selection == {pin.id}:
-            widgets.keep_seen(index, _ROWS)
+            widgets.scroll_to_row(index, _ROWS)
         place = f"{pin.target[0]:.0f}, {pin.target[1]:.0f}"
         imgui.same_line(imgui.get_content_region_avail().x - imgui.calc_text_size(place).x - 6 * scale)
         imgui.text_colored(ImVec4(*QUIET), place)
@@ -68,7 +68,7 @@ def bending(state: AppState, scale: float) -> None:
     imgui.set_next_item_width(widgets.FULL)
     labels = [each.label for each in PRESETS]
     changed, index = imgui.combo("##method", PRESETS.index(variant), labels, len(labels))
-    widgets.explain(f"{variant.note} {variant.source}.")
+    widgets.show_tooltip(f"{variant.note} {variant.source}.")
     if changed:
         chosen = Settings.of(PRESETS[index].spec)
         if chosen.method == settings.method == Settings().method:
@@ -103,4 +103,4 @@ def view(state: AppState, scale: float) -> None:
         imgui.set_next_item_width(-1)
         ends = [f"× {limit:g}" for limit in RANGES]
         _, state.view.heat_range = imgui.combo("##range", state.view.heat_range, ends)
-        widgets.explain("The change of area or shape at the ends of the colors. R for the next one.")
+        widgets.show_tooltip("The change of area or shape at the ends of the colors. R for the next one.")

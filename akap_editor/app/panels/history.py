@@ -25,7 +25,7 @@ def draw(state: AppState, scale: float) -> None:
         if index > depth:
             imgui.pop_style_color()
         if index == depth:
-            widgets.keep_seen(index, _ROWS)
+            widgets.scroll_to_row(index, _ROWS)
     imgui.end_child()
 
 

@@ -20,7 +20,7 @@ Draw = Callable[[Any], tuple[bool, Any]]
 
 def _switch() -> Draw:
     def draw(value: Any) -> tuple[bool, Any]:
-        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.rise())
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
         return widgets.switch("##value", bool(value))
 
     return draw
@@ -220,7 +220,7 @@ def _parameter(state: AppState, settings: Settings, parameter: Parameter) -> Non
         imgui.text_colored(ImVec4(*QUIET), parameter.label)
     else:
         imgui.text(parameter.label)
-    widgets.explain(f"{parameter.tooltip} Double-click for the default.")
+    widgets.show_tooltip(f"{parameter.tooltip} Double-click for the default.")
     reset = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0)
     imgui.same_line(_LABELS * imgui.get_font_size())
     imgui.set_next_item_width(widgets.FULL)

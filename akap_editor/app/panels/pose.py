@@ -54,7 +54,7 @@ def draw(state: AppState, scale: float) -> None:
     assert state.document is not None
     poses = state.document.state.poses
     if not poses:
-        widgets.quiet("None yet. Keep a pose here to come back to it with a click.")
+        widgets.secondary_text("None yet. Keep a pose here to come back to it with a click.")
     _all_poses(state, poses, scale)
     if imgui.button(f"{icons.ICON_FA_PLUS}  Keep this pose", ImVec2(widgets.FULL, 0)):
         state.notice = ""
@@ -70,7 +70,7 @@ def _all_poses(state: AppState, poses: Sequence[NamedPose], scale: float) -> Non
         gaps = 2 * imgui.get_style().item_spacing.y
         row = round(_SIDE * scale) + 0.86 * imgui.get_text_line_height() + gaps
         height = (_ROWS + 0.5) * row  # half a row says that there are more
-        imgui.begin_child("##poses", ImVec2(0, height), widgets.WALKED)
+        imgui.begin_child("##poses", ImVec2(0, height), widgets.NAV_FLATTENED)
     for number, pose in enumerate(poses):
         if number % _COLUMNS:
             imgui.same_line(0, 6 * scale)
@@ -90,7 +90,7 @@ def _pose(state: AppState, pose: NamedPose, scale: float) -> None:
             lambda: gestures.set_pose(state.editor, pose.positions, f"Apply {pose.name}")
         )
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
-    widgets.explain(
+    widgets.show_tooltip(
         f"{pose.name}: click to apply, drag to the timeline or another place, right-click for more"
     )
     if hovered and imgui.is_key_pressed(imgui.Key.f2, False):
@@ -118,7 +118,7 @@ def _pose(state: AppState, pose: NamedPose, scale: float) -> None:
         imgui.text_colored(ImVec4(*QUIET), widgets.shortened(pose.name, side))
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
             _begin_renaming(state, pose)
-        widgets.explain(f"{pose.name}: double-click or F2 to rename")
+        widgets.show_tooltip(f"{pose.name}: double-click or F2 to rename")
     imgui.pop_font()
     imgui.end_group()
 

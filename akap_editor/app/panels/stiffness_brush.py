@@ -32,7 +32,9 @@ def draw(state: AppState, scale: float) -> None:
     if widgets.switch("Erase", brush.erasing, "E, or drag with the right button.")[0]:
         widgets.run(state, commands.ERASE)
     if not takes_stiffness(state.document.state.settings.method):
-        widgets.quiet("The method chosen under Bending bends all parts alike; stiffness is kept for others.")
+        widgets.secondary_text(
+            "The method chosen under Bending bends all parts alike; stiffness is kept for others."
+        )
     imgui.begin_disabled(not commands.SOFTEN_ALL.enabled(state))
     if imgui.button(commands.SOFTEN_ALL.label.capitalize(), ImVec2(widgets.FULL, 0)):
         widgets.run(state, commands.SOFTEN_ALL)
@@ -42,6 +44,6 @@ def draw(state: AppState, scale: float) -> None:
 def _slider(label: str, value: float, limits: tuple[float, float], form: str, tooltip: str) -> float:
     imgui.align_text_to_frame_padding()
     imgui.text_colored(ImVec4(*QUIET), label)
-    widgets.explain(tooltip)
+    widgets.show_tooltip(tooltip)
     imgui.same_line(_LABELS * imgui.get_font_size())
     return widgets.slider(f"##{label}", value, limits, form, imgui.SliderFlags_.logarithmic, tooltip)[1]

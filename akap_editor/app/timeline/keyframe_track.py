@@ -31,15 +31,15 @@ def buttons(state: AppState, scale: float) -> None:
     playback = state.timeline.keyframe_playback
     if imgui.button(f"{icons.ICON_FA_PLUS}##add key", side):
         state.run_reporting_errors(lambda: keying.keyframe_here(state))
-    widgets.explain("Keyframe here (K): keep the pose that is seen at this time")
+    widgets.show_tooltip("Keyframe here (K): keep the pose that is seen at this time")
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(not playback.animation.keyframes)
     if imgui.button(f"{icons.ICON_FA_BEZIER_CURVE}##easing", side):
         imgui.open_popup("easing menu")
     imgui.end_disabled()
-    widgets.explain("Easing: how the motion between keyframes starts and ends")
+    widgets.show_tooltip("Easing: how the motion between keyframes starts and ends")
     if _begin_menu("easing menu", scale):
-        widgets.quiet("Between all keyframes, unless one says otherwise")
+        widgets.secondary_text("Between all keyframes, unless one says otherwise")
         for name in KEYFRAME_EASINGS:
             if imgui.menu_item(EASING_LABELS[name], "", playback.animation.ease == name)[0]:
                 state.run_reporting_errors(lambda name=name: playback.ease(name, general=True))  # type: ignore[misc]
@@ -50,7 +50,7 @@ def buttons(state: AppState, scale: float) -> None:
     if imgui.button(f"{icons.ICON_FA_LAYER_GROUP}##onion", side):
         imgui.open_popup("onion menu")
     imgui.pop_style_color()
-    widgets.explain("Onion skin (O): the poses before, blue, and after, orange")
+    widgets.show_tooltip("Onion skin (O): the poses before, blue, and after, orange")
     if _begin_menu("onion menu", scale):
         _onion(playback, scale)
         imgui.end_popup()
@@ -261,7 +261,7 @@ def _explain(playback: KeyframePlayback, track: TimeScale, scale: float) -> None
     time = _near(playback, track, scale)
     key = next((each for each in playback.animation.keyframes if each.time == time), None)
     if key is not None:
-        widgets.explain(
+        widgets.show_tooltip(
             f"{key.time:.2f} s, {EASING_LABELS[key.ease or playback.animation.ease].lower()}. Drag to move, "
             "with Ctrl to copy, with Alt to stretch; right-click for more"
         )

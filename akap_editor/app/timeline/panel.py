@@ -42,11 +42,11 @@ def _which(state: AppState, scale: float) -> None:
     """Two buttons that choose what the timeline holds."""
     if _button(icons.ICON_FA_CLOCK_ROTATE_LEFT, "session", scale, state.timeline.mode == "session"):
         state.timeline.set_mode("session")
-    widgets.explain("Session: all that was done, to look back and go on from there")
+    widgets.show_tooltip("Session: all that was done, to look back and go on from there")
     imgui.same_line(0, 2 * scale)
     if _button(icons.ICON_FA_DIAMOND, "keyframes", scale, state.timeline.mode == "keyframes"):
         state.timeline.set_mode("keyframes")
-    widgets.explain("Keyframes: poses at times, and the motion between them")
+    widgets.show_tooltip("Keyframes: poses at times, and the motion between them")
 
 
 def _button(icon: str, name: str, scale: float, on: bool, color: tuple[float, ...] = ACCENT) -> bool:
@@ -64,7 +64,7 @@ def _buttons(state: AppState, scale: float) -> None:
         icon = icons.ICON_FA_STOP if recording else icons.ICON_FA_CIRCLE
         if _button(icon, "record", scale, True, ACCENT if recording else RED):
             playback.take(not recording)
-        widgets.explain(
+        widgets.show_tooltip(
             "Record: what you do from here to the next click is the part that is played and exported"
         )
     else:
@@ -72,17 +72,17 @@ def _buttons(state: AppState, scale: float) -> None:
     imgui.same_line(0, 4 * scale)
     if _button(icons.ICON_FA_PAUSE if playing.playing else icons.ICON_FA_PLAY, "play", scale, True, TEXT):
         playing.play()
-    widgets.explain("Play (L)")
+    widgets.show_tooltip("Play (L)")
     imgui.same_line(0, 4 * scale)
     if _button(icons.ICON_FA_REPEAT, "loop", scale, playing.loop):
         playing.loop = not playing.loop
-    widgets.explain("Play over and over")
+    widgets.show_tooltip("Play over and over")
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(playing.range[1] <= playing.range[0])
     if _button(icons.ICON_FA_FILM, "export", scale, True, TEXT):
         state.dialog(ExportAnimationDialog).open(state)
     imgui.end_disabled()
-    widgets.explain("Export the part between the marks as an animation, a video or sprites")
+    widgets.show_tooltip("Export the part between the marks as an animation, a video or sprites")
 
 
 def _track(state: AppState, scale: float) -> None:

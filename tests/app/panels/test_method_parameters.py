@@ -43,7 +43,7 @@ def labels_at(ui, hand):
 
 def test_a_switch_changes_at_once_and_a_double_click_on_its_label_resets(pinned, monkeypatch):
     places = {}
-    explain = settings_panel.widgets.explain
+    explain = settings_panel.widgets.show_tooltip
 
     def noting(text):
         from imgui_bundle import imgui
@@ -53,7 +53,7 @@ def test_a_switch_changes_at_once_and_a_double_click_on_its_label_resets(pinned,
             places["label"] = imgui.ImVec2(low.x + 5, low.y + 5)
         explain(text)
 
-    monkeypatch.setattr(settings_panel.widgets, "explain", noting)
+    monkeypatch.setattr(settings_panel.widgets, "show_tooltip", noting)
     seen = []
 
     def act(hand):
