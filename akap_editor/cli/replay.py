@@ -150,7 +150,7 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
             raise InputError(f"--variant: expected words among {_WORDS}, got {word!r}")
     if method is None and not words:
         return None
-    chosen = None if method is None else Settings.of(method)
+    chosen = None if method is None else Settings.parse(method)
 
     def change(settings: Settings) -> Settings:
         settings = chosen or settings

@@ -70,7 +70,7 @@ def bending(state: AppState, scale: float) -> None:
     changed, index = imgui.combo("##method", PRESETS.index(variant), labels, len(labels))
     widgets.show_tooltip(f"{variant.note} {variant.source}.")
     if changed:
-        chosen = Settings.of(PRESETS[index].spec)
+        chosen = Settings.parse(PRESETS[index].spec)
         if chosen.method == settings.method == Settings().method:
             chosen = chosen.with_parameter("memory", settings.get("memory", 0.0))
         widgets.change(state, chosen)

@@ -118,7 +118,7 @@ class Stepper:
 
     def reset_full_turns(self) -> None:
         """Forget full turns: from now on pins rotate the short way to their angles."""
-        self._full_turns.forget()
+        self._full_turns.reset()
 
     # -- distance from the goal ----------------------------------------------------------------------------
 
