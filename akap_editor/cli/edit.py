@@ -83,7 +83,6 @@ def _edit(document: Document | None, problem: str, recording: Path | None, file:
     if x11 and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise DisplayError("there is no display")
     try:
-        from ..app import files
         from ..app.preferences import Preferences, preferences_path
         from ..app.window import Window
     except ImportError as error:
@@ -91,7 +90,7 @@ def _edit(document: Document | None, problem: str, recording: Path | None, file:
     with Window(preferences=Preferences(preferences_path()), autosave=Autosave()) as window:
         window.state.error = problem
         if recording is not None:
-            files.open_path(window.state, recording)
+            window.state.open_path(recording)
         if file is not None:
-            files.remember_file(window.state, file)
+            window.state.used(file)
         window.run(document)

@@ -1,1 +1,1 @@
-"""The open document: immutable values that are replaced, never changed."""
+"""What an open drawing is: frozen values, replaced and never edited."""
