@@ -23,6 +23,7 @@ import time
 import numpy as np
 from timing import FunctionTimer
 
+from akap_editor.app import files
 from akap_editor.app import window as window_module
 from akap_editor.app.window import Window
 from akap_editor.editor.document.document import new_document
@@ -98,7 +99,7 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
     timer = FunctionTimer(PARTS)
     image = read_image(resource("assets", "drawings", f"{name}.png"))
     with Window(null=True) as window:
-        window.state.show(new_document(make_drawing(image, vertices=vertices, name=name)))
+        files.show_document(window.state, new_document(make_drawing(image, vertices=vertices, name=name)))
         editor = window.state.editor
         for pin in PINS:
             gestures.add_pin(editor, pin)

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from akap_editor.app import files
 from akap_editor.app.app_state import AppState, Palette
 from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
@@ -62,7 +63,7 @@ def posed_elephant() -> Document:
 
 def show_rest_pose(window: Window) -> None:
     """Show the elephant at rest, without pins."""
-    window.state.show(new_document(posed_elephant().drawing))
+    files.show_document(window.state, new_document(posed_elephant().drawing))
 
 
 @shot("editor")
@@ -194,21 +195,21 @@ def export(window: Window) -> None:
 def add_keyframes(window: Window) -> None:
     """Add three keyframes and poses of the elephant's trunk; show a time between the first two."""
     state, editor = window.state, window.state.editor
-    state.show_timeline, state.timeline = True, "keyframes"
+    state.timeline.is_shown, state.timeline.mode = True, "keyframes"
     window.frame()
     pin = posed_elephant().state.pins[-1]
     x, y = pin.target.tolist()
     rest = posed_elephant().drawing.mesh.vertices
-    state.keyframe_playback.put(0.0, rest)
-    state.keyframe_playback.put(0.8, posed_elephant().state.positions)
+    state.timeline.keyframe_playback.put(0.0, rest)
+    state.timeline.keyframe_playback.put(0.8, posed_elephant().state.positions)
     gestures.move_pin(editor, pin.id, (x - 120.0, y + 260.0))
     assert editor.session is not None
     editor.session.settle()
-    state.keyframe_playback.put(1.6)
+    state.timeline.keyframe_playback.put(1.6)
     for time, name in ((0.0, "Rest"), (0.8, "Trunk up"), (1.6, "Reach")):
-        state.keyframe_playback.scrub(time)
+        state.timeline.keyframe_playback.scrub(time)
         gestures.add_pose(editor, name)
-    state.keyframe_playback.scrub(0.45)
+    state.timeline.keyframe_playback.scrub(0.45)
     editor.select(())
 
 
@@ -217,18 +218,18 @@ def keyframes(window: Window) -> None:
     """Keyframes on the timeline, with onion skin."""
     add_keyframes(window)
     window.state.show_pins = False
-    window.state.keyframe_playback.onion.shown = True
-    window.state.keyframe_playback.chosen = frozenset({0.8})
+    window.state.timeline.keyframe_playback.onion.shown = True
+    window.state.timeline.keyframe_playback.chosen = frozenset({0.8})
 
 
 @shot("timeline")
 def timeline(window: Window) -> None:
     """An opened recording at a time in its middle."""
-    window.state.open_path(resource("assets", "recordings", "elephant.akaprec"))
+    files.open_path(window.state, resource("assets", "recordings", "elephant.akaprec"))
     while window.state.waiting:
         window.frame()
-    window.state.session_playback.cut_to(1.5, 6.0)
-    window.state.session_playback.scrub(4.0)
+    window.state.timeline.session_playback.cut_to(1.5, 6.0)
+    window.state.timeline.session_playback.scrub(4.0)
     window.state.notice = ""
 
 
@@ -247,7 +248,7 @@ def take(window: Window, name: str, folder: Path) -> None:
     imgui.set_nav_cursor_visible(False)
     state = window.state = AppState(exporter=window.state.exporter, preferences=Preferences())
     state.editor.ui_scale = window.scale
-    state.show(posed_elephant())
+    files.show_document(state, posed_elephant())
     state.editor.mark_saved(Path("elephant.akap"))
     window.frame()
     SHOTS[name](window)

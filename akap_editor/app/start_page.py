@@ -9,7 +9,7 @@ from PIL import Image
 
 from ..io.images import read_image
 from ..resources import bundled_drawings
-from . import widgets
+from . import files, widgets
 from .app_state import AppState
 from .commands import registry as commands
 from .theme import ACCENT, DARK, FRAME, HOVER, PANEL, QUIET, STRONG_LINE, TEXT, packed
@@ -104,7 +104,7 @@ class Welcome:
 
 def _open(state: AppState, path: Path) -> None:
     """Open a file; keys belong to the canvas then."""
-    state.open_path(path)
+    files.open_path(state, path)
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
 
@@ -173,16 +173,16 @@ def _dashed_frame(draw: imgui.ImDrawList, low: ImVec2, high: ImVec2, scale: floa
 
 
 def _recent(state: AppState, column: float) -> None:
-    files = state.preferences.recent
-    if not files:
-        widgets.quiet("None yet. What you open or save is listed here.")
+    recent = state.preferences.recent
+    if not recent:
+        widgets.secondary_text("None yet. What you open or save is listed here.")
         return
     room = int(imgui.get_content_region_avail().y / imgui.get_text_line_height_with_spacing())
-    for index, path in enumerate(files[: max(room, 3)]):
+    for index, path in enumerate(recent[: max(room, 3)]):
         name = widgets.shortened(path.name, 0.4 * column)
         if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
             _open(state, path)
-        widgets.explain(str(path))
+        widgets.show_tooltip(str(path))
         folder = widgets.shortened(str(path.parent), 0.55 * column, end=True)
         room_left = imgui.get_content_region_avail().x
         imgui.same_line(imgui.get_cursor_pos_x() + room_left - imgui.calc_text_size(folder).x)

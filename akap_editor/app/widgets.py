@@ -19,20 +19,22 @@ _BAR = (
 )
 FULL = -imgui.FLT_MIN  # a width: all the room there is
 _NUMBER = 3.2  # times the font's size: least room for the number beside a slider, so that they end alike
-WALKED = imgui.ChildFlags_.nav_flattened  # of a child window: keys walk in and out as if there were none
+NAV_FLATTENED = (
+    imgui.ChildFlags_.nav_flattened
+)  # of a child window: keys walk in and out as if there were none
 _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
 
 
 def run(state: AppState, command: Command) -> None:
     """Run a command; what goes wrong becomes a message."""
     state.notice = ""
-    state.attempt(lambda: command.run(state))
+    state.run_reporting_errors(lambda: command.run(state))
 
 
 def change(state: AppState, settings: Settings) -> None:
     """Change how the drawing bends; what goes wrong becomes a message."""
     state.notice = ""
-    state.attempt(lambda: state.change_settings(settings))
+    state.run_reporting_errors(lambda: state.change_settings(settings))
 
 
 def switch(label: str, on: bool, tooltip: str = "") -> tuple[bool, bool]:
@@ -43,7 +45,7 @@ def switch(label: str, on: bool, tooltip: str = "") -> tuple[bool, bool]:
     clicked, on = imgui.checkbox(label, on)
     imgui.pop_style_color()
     imgui.pop_style_var(2)
-    explain(tooltip)
+    show_tooltip(tooltip)
     return clicked, on
 
 
@@ -63,12 +65,12 @@ def row(label: str, value: str, tooltip: str = "") -> None:
     """A quiet label on the left, its value on the right."""
     right = imgui.get_content_region_avail().x + imgui.get_cursor_pos_x()
     imgui.text_colored(ImVec4(*QUIET), label)
-    explain(tooltip)
+    show_tooltip(tooltip)
     imgui.same_line()
     shown = shortened(value, right - imgui.get_cursor_pos_x())
     imgui.set_cursor_pos_x(right - imgui.calc_text_size(shown).x)
     imgui.text_unformatted(shown)
-    explain(value if shown != value else "")
+    show_tooltip(value if shown != value else "")
 
 
 def slider(
@@ -92,7 +94,7 @@ def slider(
     moved, value = imgui.slider_float(name, value, *limits, form, imgui.SliderFlags_.always_clamp | flags)
     imgui.pop_style_color()
     released = imgui.is_item_deactivated_after_edit()
-    explain(tooltip)
+    show_tooltip(tooltip)
     text, corner = word or form % value, imgui.get_item_rect_max()
     at = ImVec2(corner.x + room - imgui.calc_text_size(text).x, imgui.get_item_rect_min().y)
     at.y += imgui.get_style().frame_padding.y
@@ -120,12 +122,12 @@ def _cut(text: str, count: int, end: bool) -> str:
 def begin_list(name: str, count: int, most: int) -> None:
     """As high as its rows, or as ``most`` of them, to be scrolled; `imgui.end_child` must follow."""
     height = min(count, most) * imgui.get_text_line_height_with_spacing()
-    imgui.begin_child(name, ImVec2(0, height), WALKED)
+    imgui.begin_child(name, ImVec2(0, height), NAV_FLATTENED)
     # what marks a row reaches half the space between rows beyond its text, above the first one, too
     imgui.set_cursor_pos_y(0.5 * imgui.get_style().item_spacing.y)
 
 
-def keep_seen(index: int, most: int) -> None:
+def scroll_to_row(index: int, most: int) -> None:
     """Scroll the list to the row that was drawn last, if it is cut off and nobody is looking at others."""
     top = imgui.get_window_pos().y
     bottom = top + imgui.get_window_size().y
@@ -135,7 +137,7 @@ def keep_seen(index: int, most: int) -> None:
         imgui.set_scroll_y(above * imgui.get_text_line_height_with_spacing())
 
 
-def quiet(text: str) -> None:
+def secondary_text(text: str) -> None:
     """A quiet sentence, wrapped at the panel's edge."""
     imgui.push_text_wrap_pos(0.0)
     imgui.text_colored(ImVec4(*QUIET), text)
@@ -162,7 +164,7 @@ def paragraph(text: str, width: float, color: Rgba = TEXT) -> None:
     imgui.pop_text_wrap_pos()
 
 
-def explain(tooltip: str) -> None:
+def show_tooltip(tooltip: str) -> None:
     """Show a text, if there is any, while the pointer rests on the item before, also on a disabled one."""
     flags = imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled
     if tooltip and imgui.is_item_hovered(flags):
@@ -222,10 +224,10 @@ def label(text: str, width: float) -> None:
 def switch_label(text: str, width: float) -> None:
     """Before a switch, which is lower than other fields."""
     label(text, width)
-    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + rise())
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + switch_offset())
 
 
-def rise() -> float:
+def switch_offset() -> float:
     """By how much a switch is lower than other fields, above and below."""
     return float(imgui.get_style().frame_padding.y - 0.18 * imgui.get_font_size())
 
@@ -251,19 +253,19 @@ def button(label: str, primary: bool = False) -> bool:
     return pressed
 
 
-def escape() -> bool:
+def cancel_pressed() -> bool:
     """Whether Escape was pressed."""
     return bool(imgui.is_key_pressed(imgui.Key.escape, False))
 
 
-def enter() -> bool:
+def confirm_pressed() -> bool:
     """Whether an Enter key was pressed, and not to use the button that the keyboard is at."""
     io = imgui.get_io()
     at_item = io.nav_visible and imgui.is_any_item_focused() and not io.want_text_input
-    return not at_item and enter_pressed()
+    return not at_item and enter_key_pressed()
 
 
-def enter_pressed() -> bool:
+def enter_key_pressed() -> bool:
     """Whether one of the Enter keys was pressed."""
     keys = (imgui.Key.enter, imgui.Key.keypad_enter)
     return any(imgui.is_key_pressed(key, False) for key in keys)

@@ -19,8 +19,8 @@ from ..editor.document.document import Document
 from ..errors import AkapError, DisplayError, GraphicsError
 from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
+from . import files, theme, widgets
 from . import glfw_key_order as key_order
-from . import theme, widgets
 from .app_state import AppState
 from .canvas import split_view
 from .canvas.pointer_input import Canvas
@@ -141,12 +141,12 @@ class Window:
         """Show a document and stay until the window is closed."""
         Thread(target=_warm_up, name="warm-up", daemon=True).start()
         if document is not None:
-            self.state.show(document)
+            files.show_document(self.state, document)
         try:
             while not self.state.closing:
                 self._turn()
         except BaseException:
-            self.state.rescue()
+            files.rescue(self.state)
             raise
         if self.state.autosave is not None:
             self.state.autosave.close()
@@ -154,7 +154,7 @@ class Window:
 
     def _turn(self) -> None:
         """Once around the loop: sleep or draw a frame."""
-        self.state.protect()
+        files.autosave(self.state)
         if self._due:
             glfw.poll_events()
         elif self._busy:
@@ -252,14 +252,14 @@ class Window:
             action()
         glfw.swap_buffers(self._handle)
         self._update_title()
-        if self.state.work():
+        if self.state.run_pending():
             self.wake()
 
     def _interface(self) -> None:
         state = self.state
         self._watch_focus()
         while self._dropped:
-            state.open_dropped(self._dropped.pop(0))
+            files.open_dropped(state, self._dropped.pop(0))
         give_keys_to_panels(state)
         modal = _popup_is_open()  # before as well as after: the key that closes one must not do more
         state.editor.canvas = split_view.draw(state, panels.draw(state, self.scale), self.scale)
@@ -277,7 +277,7 @@ class Window:
             self._canvas.read_input(state)
             self._canvas.choose_cursor(state)
         state.editor.advance()
-        state.session_playback.watch(state.editor.session)
+        state.timeline.session_playback.watch(state.editor.session)
         state.editor.start_next_step()
         self._canvas.draw_overlay(state, self.scale)
         draw_legend(state.view, state.editor, self.scale)
@@ -335,7 +335,7 @@ class Window:
 
     def _on_close(self, _: Any) -> None:
         glfw.set_window_should_close(self._handle, False)
-        self.state.later(self.state.quit)
+        self.state.run_after_frame(lambda: files.quit_program(self.state))
 
     def _refresh(self) -> None:
         """While a window is being resized, some systems call only this."""

@@ -83,6 +83,7 @@ def _edit(document: Document | None, problem: str, recording: Path | None, file:
     if x11 and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise DisplayError("there is no display")
     try:
+        from ..app import files
         from ..app.preferences import Preferences, preferences_path
         from ..app.window import Window
     except ImportError as error:
@@ -90,7 +91,7 @@ def _edit(document: Document | None, problem: str, recording: Path | None, file:
     with Window(preferences=Preferences(preferences_path()), autosave=Autosave()) as window:
         window.state.error = problem
         if recording is not None:
-            window.state.open_path(recording)
+            files.open_path(window.state, recording)
         if file is not None:
-            window.state.used(file)
+            files.remember_file(window.state, file)
         window.run(document)

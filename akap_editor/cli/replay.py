@@ -19,7 +19,7 @@ from ..io.open_document import PROJECT_SUFFIX, open_document
 from .options import FILE, check_png, color, make_folder_of, write_picture
 
 # What a word of --variant sets.
-VARIANT_WORDS: dict[str, tuple[str, object]] = {
+PRESETS: dict[str, tuple[str, object]] = {
     "dirichlet": ("dirichlet", True),
     "no-dirichlet": ("dirichlet", False),
     "spiral": ("trajectory", "spiral"),
@@ -29,7 +29,7 @@ VARIANT_WORDS: dict[str, tuple[str, object]] = {
     "memory": ("memory", 1.0),
     "no-memory": ("memory", 0.0),
 }
-_WORDS = ", ".join(VARIANT_WORDS)
+_WORDS = ", ".join(PRESETS)
 
 
 @click.command(
@@ -146,16 +146,16 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
     """What to make of recorded settings. Raises InputError on unknown words."""
     words = [word.strip() for word in variant.split(",") if word.strip()]
     for word in words:
-        if word not in VARIANT_WORDS:
+        if word not in PRESETS:
             raise InputError(f"--variant: expected words among {_WORDS}, got {word!r}")
     if method is None and not words:
         return None
-    chosen = None if method is None else Settings.of(method)
+    chosen = None if method is None else Settings.parse(method)
 
     def change(settings: Settings) -> Settings:
         settings = chosen or settings
         for word in words:
-            settings = settings.with_parameter(*VARIANT_WORDS[word])
+            settings = settings.with_parameter(*PRESETS[word])
         return settings
 
     return change

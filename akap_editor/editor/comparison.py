@@ -55,7 +55,7 @@ class MethodComparison:
         known = known and own is not None and own.state.stiffness is main.state.stiffness
         if own is None or not known or (at_rest and own.is_posed):
             self.session, self._made = None, self.spec
-            state = replace(main.state, settings=Settings.of(self.spec))
+            state = replace(main.state, settings=Settings.parse(self.spec))
             own = self.session = Session(Document(main.drawing, state))
             if not at_rest:
                 self._aim(own, main.state.pins)

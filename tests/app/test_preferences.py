@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from akap_editor.app import files
 from akap_editor.app import preferences as module
 from akap_editor.app.app_state import SWITCHES, AppState
 from akap_editor.app.canvas.view_options import RANGES, ViewOptions
@@ -186,7 +187,7 @@ def test_overlays_come_back(path, tmp_path):
         assert getattr(again.view, name) == getattr(state.view, name), name
     assert again.view.reference is None, "a start must not wait for it"
     while again.waiting:
-        again.work()
+        again.run_pending()
     assert again.view.reference is not None
     assert again.view.reference.image.shape == read_image(picture).shape
     assert not again.view.show_reference
@@ -199,7 +200,7 @@ def test_a_reference_picture_that_is_gone_is_not_missed(path, tmp_path):
     state.remember()
     again = AppState.remembering(Preferences(path))
     while again.waiting:
-        again.work()
+        again.run_pending()
     assert (again.view.reference, again.view.reference_path, again.error) == (None, None, "")
 
 
@@ -260,16 +261,16 @@ def test_unfolded_parameters_come_back(keeping, path):
 
 def test_files_that_were_opened_and_saved_are_recent_and_bundled_ones_are_not(keeping, tmp_path):
     state = keeping.state
-    state.open_path(resource("assets", "drawings", "bar.png"))
+    files.open_path(state, resource("assets", "drawings", "bar.png"))
     keeping.settle()
     assert state.document.drawing.name == "bar"
     assert state.preferences.recent == []
-    state._write(tmp_path / "bar.akap", None)
+    files.write_document(state, tmp_path / "bar.akap")
     assert state.preferences.recent == [tmp_path / "bar.akap"]
-    state.open_path(tmp_path / "bar.akap")
+    files.open_path(state, tmp_path / "bar.akap")
     keeping.settle()
     (tmp_path / "bar.akap").unlink()
-    state.open_path(tmp_path / "bar.akap")
+    files.open_path(state, tmp_path / "bar.akap")
     keeping.settle()
     assert "no such file" in state.error
     assert state.preferences.recent == [], "what cannot be opened is not offered again"

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from akap_editor.app import widgets
+from akap_editor.app import files, widgets
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.dialogs.file_dialog import UnsavedChangesQuestion
@@ -23,7 +23,7 @@ def module_window(new_window):
 
 
 def ask_save(state):
-    state.save_as()
+    files.save_as(state)
 
 
 def ask_export(state):
@@ -53,7 +53,7 @@ def show_error(state):
     ],
 )
 def test_dialogs_are_wholly_in_the_window(ui, drawing, title, ask):
-    ui.state.show(new_document(replace(drawing, name=LONG)))
+    files.show_document(ui.state, new_document(replace(drawing, name=LONG)))
     ask(ui.state)
     ui.settle()
     dialog = imgui.internal.find_window_by_name(f"{title}###dialog {title}")
@@ -118,7 +118,7 @@ def test_texts_are_broken_between_words_and_folders_alone(ui):
 
 
 def test_all_tools_are_seen_above_the_timeline(ui):
-    ui.state.show_timeline, ui.state.timeline = True, "keyframes"
+    ui.state.timeline.is_shown, ui.state.timeline.mode = True, "keyframes"
     ui.settle()
     tools, timeline = map(imgui.internal.find_window_by_name, ("Tools", "Timeline"))
     assert tools.scroll_max.y == 0

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from akap_editor import cli
+from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.commands import shortcuts_page as keys_overlay
 from akap_editor.app.commands.command import CTRL, Key
@@ -241,10 +242,10 @@ def test_the_steps_never_go_back(newcomer):
 
 
 def test_they_wait_on_the_start_page_for_a_drawing(newcomer, document):
-    newcomer.state.close()
+    files.close_document(newcomer.state)
     newcomer.settle()
     bottom = newcomer.editor.canvas[3]
-    newcomer.state.show(document)
+    files.show_document(newcomer.state, document)
     newcomer.settle()
     assert newcomer.editor.canvas[3] < bottom
     assert hints.step(newcomer.state) == 0

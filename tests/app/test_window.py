@@ -7,7 +7,7 @@ import glfw
 import numpy as np
 import pytest
 
-from akap_editor.app import widgets
+from akap_editor.app import files, widgets
 from akap_editor.app import window as window_module
 from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES, Window
 from akap_editor.editor.session.edits import SetTargets
@@ -61,7 +61,7 @@ def test_an_event_wakes_it_until_all_stands_where_it_belongs(loop):
 
 
 def test_a_caret_blinks(loop):
-    loop.ui.state.ask_open()
+    files.choose_and_open(loop.ui.state)
     waits = loop.run(4)
     assert {seconds for seconds, _ in waits} == {0.4}
     assert np.diff([frames for _, frames in waits]).tolist() == [1, 1, 1]

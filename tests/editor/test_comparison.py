@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from akap_editor.deform.methods import make_deformer
+from akap_editor.deform.deformer import make_deformer
 from akap_editor.editor.comparison import MethodComparison
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
@@ -17,7 +17,7 @@ from akap_editor.geometry.distortion import distortion
 @pytest.fixture
 def main(drawing):
     """A session with pins at three corners of its drawing."""
-    session = Session(new_document(drawing, Settings.of("igarashi")))
+    session = Session(new_document(drawing, Settings.parse("igarashi")))
     mesh = drawing.mesh
     session.begin("Pins")
     for corner in (mesh.vertices.argmin(axis=0)[0], mesh.vertices.argmax(axis=0)[0], len(mesh.faces) // 2):
@@ -84,7 +84,7 @@ def test_another_method_starts_from_the_pose_that_is_there(main):
     followed(comparison, main)
     comparison.spec = "akap"
     comparison.follow(main)
-    assert comparison.session.state.settings == Settings.of("akap")
+    assert comparison.session.state.settings == Settings.parse("akap")
     comparison.close()
     assert comparison.session is None
     assert comparison.measure() is None

@@ -15,6 +15,7 @@ import imgui_bundle._imgui_bundle as native
 import numpy as np
 from numpy.typing import NDArray
 
+from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.commands.command import Command
 from akap_editor.app.jobs.task import Task
@@ -61,7 +62,7 @@ class WindowDriver:
         editor = Editor(clock, ThreadPoolExecutor(1, "engine"))
         self.window.state = AppState(editor, exporter=self.window.state.exporter)
         self.editor.ui_scale = self.window.scale
-        self.state.show(document)
+        files.show_document(self.state, document)
         self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.empty_place)))
         assert not self.state.error
 

@@ -55,13 +55,13 @@ class Canvas:
                     "press", position, button, io.key_shift, io.key_alt, io.mouse_clicked_count[index]
                 )
                 if io.key_ctrl:
-                    state.session_playback.take(True)
+                    state.timeline.session_playback.take(True)
                     self._taking = True
                 editor.handle_event(event)
             if imgui.is_mouse_released(index) and not isinstance(editor.tool, Idle):
                 editor.handle_event(PointerEvent("release", position, button, io.key_shift, io.key_alt))
                 if self._taking:
-                    state.session_playback.take(False)
+                    state.timeline.session_playback.take(False)
                     self._taking = False
         if free and io.mouse_wheel:
             editor.handle_event(ScrollEvent(position, io.mouse_wheel))

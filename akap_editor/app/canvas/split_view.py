@@ -3,7 +3,7 @@
 import moderngl
 from imgui_bundle import ImVec2, imgui
 
-from ...deform.methods import nearest_preset, presets
+from ...deform.methods import PRESETS, preset_of
 from ...editor.camera import Camera
 from ...editor.editor import FRAME_BUDGET
 from ...editor.events import ScrollEvent
@@ -40,11 +40,13 @@ def draw(state: AppState, canvas: Canvas, scale: float) -> Canvas:
         state.comparison.close()
         return canvas
     left, right = halves(canvas)
-    if not state.attempt(lambda: state.comparison.follow(session, state.editor.worker, FRAME_BUDGET)):
+    if not state.run_reporting_errors(
+        lambda: state.comparison.follow(session, state.editor.worker, FRAME_BUDGET)
+    ):
         state.split = False
         return canvas
     settings = session.state.settings
-    name = nearest_preset(settings.method, dict(settings.parameters)).label
+    name = preset_of(settings.method, dict(settings.parameters)).label
     _caption(left, name, state.measure(), session, scale)
     _pane(state, right, scale)
     return left
@@ -59,8 +61,8 @@ def _pane(state: AppState, pane: Canvas, scale: float) -> None:
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
     imgui.begin("Comparison", None, _PANE)
     imgui.set_next_item_width(min(220 * scale, pane[2] - pane[0] - 24 * scale))
-    specs = [preset.spec for preset in presets()]
-    labels = [preset.label for preset in presets()]
+    specs = [variant.spec for variant in PRESETS]
+    labels = [variant.label for variant in PRESETS]
     changed, index = imgui.combo("##beside", specs.index(comparison.spec), labels, len(labels))
     if changed:
         comparison.spec = specs[index]

@@ -41,7 +41,7 @@ def _menu(state: AppState) -> None:
     if state.editor.selection:
         state.editor.request_pin_popup("menu", max(state.editor.selection))
     else:
-        state.key_menu = True
+        state.timeline.keyframe_menu_requested = True
 
 
 def _can_ask(state: AppState) -> bool:

@@ -8,47 +8,47 @@ from ..app_state import AppState
 
 def shown(state: AppState) -> bool:
     """Whether there are keyframes, and the timeline shows them."""
-    keyed = state.document is not None and state.show_timeline and state.timeline == "keyframes"
-    return keyed and bool(state.keyframe_playback.animation.keyframes)
+    keyed = state.document is not None and state.timeline.is_shown and state.timeline.mode == "keyframes"
+    return keyed and bool(state.timeline.keyframe_playback.animation.keyframes)
 
 
 def has_chosen(state: AppState) -> bool:
     """Whether some of them are chosen."""
-    return shown(state) and bool(state.keyframe_playback.chosen)
+    return shown(state) and bool(state.timeline.keyframe_playback.chosen)
 
 
 def keyframe_here(state: AppState) -> None:
     """Keep what is seen as a keyframe; the timeline opens where it is not seen."""
-    session, playback = state.editor.session, state.keyframe_playback
+    session, playback = state.editor.session, state.timeline.keyframe_playback
     seen = session.state.positions if session is not None and session.is_previewing else None
     playback.watch()
-    if not (state.show_timeline and state.timeline == "keyframes"):
-        state.show_in_timeline("keyframes")
-        state.show_timeline = True
+    if not (state.timeline.is_shown and state.timeline.mode == "keyframes"):
+        state.timeline.set_mode("keyframes")
+        state.timeline.is_shown = True
     playback.put(positions=seen)
 
 
 def toggle_onion(state: AppState) -> None:
     """Show the neighbors of the pose, or not."""
-    state.keyframe_playback.onion.shown = not state.keyframe_playback.onion.shown
+    state.timeline.keyframe_playback.onion.shown = not state.timeline.keyframe_playback.onion.shown
 
 
 def nudging(by: float) -> Callable[[AppState], None]:
     """Brings the chosen keyframes forward or back by seconds."""
-    return lambda state: state.keyframe_playback.nudge(by)
+    return lambda state: state.timeline.keyframe_playback.nudge(by)
 
 
 def choose_all(state: AppState) -> None:
     """Select every keyframe, to be moved together."""
-    state.keyframe_playback.chosen = frozenset(state.keyframe_playback.kept_times)
+    state.timeline.keyframe_playback.chosen = frozenset(state.timeline.keyframe_playback.kept_times)
 
 
 def going(by: float) -> Callable[[AppState], None]:
     """Looks so many seconds later, or earlier; at keyframes, where the mouse would stop, too."""
 
     def go(state: AppState) -> None:
-        moment = state.playback.position + by
-        state.playback.look(snapped(moment) if state.timeline == "keyframes" else moment)
+        moment = state.timeline.playback.position + by
+        state.timeline.playback.look(snapped(moment) if state.timeline.mode == "keyframes" else moment)
 
     return go
 
@@ -60,11 +60,11 @@ def snapped(time: float) -> float:
 
 def play(state: AppState) -> None:
     """Play what the timeline shows, or stop."""
-    state.show_timeline = True
-    state.playback.play()
+    state.timeline.is_shown = True
+    state.timeline.playback.play()
 
 
 def can_play(state: AppState) -> bool:
     """Whether there is something that moves."""
-    start, end = state.playback.range
+    start, end = state.timeline.playback.range
     return state.document is not None and end > start

@@ -2,7 +2,7 @@
 
 from imgui_bundle import imgui
 
-from .. import widgets
+from .. import files, widgets
 from ..app_state import AppState
 from .command import Command, Submenu
 from .registry import MENUS
@@ -66,13 +66,13 @@ def _item(state: AppState, item: Command | Submenu | None) -> bool:
 
 
 def _submenu(state: AppState, item: Submenu) -> bool:
-    files = item.files(state)
-    is_open = imgui.begin_menu(item.label, bool(files))
+    entries = item.files(state)
+    is_open = imgui.begin_menu(item.label, bool(entries))
     if is_open:
         room = _LONGEST * imgui.get_font_size()
-        for index, (name, path) in enumerate(files):
+        for index, (name, path) in enumerate(entries):
             if imgui.menu_item_simple(f"{widgets.shortened(name, room)}###{index}"):
-                state.open_path(path)
-            widgets.explain(str(path))
+                files.open_path(state, path)
+            widgets.show_tooltip(str(path))
         imgui.end_menu()
-    return is_open or (bool(files) and imgui.is_item_focused())
+    return is_open or (bool(entries) and imgui.is_item_focused())

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
-from .. import widgets
+from .. import files, widgets
 from ..app_state import AppState
 from ..theme import ACCENT, QUIET, TEXT, packed
 from .command import Command, Submenu
@@ -53,7 +53,7 @@ def entries(state: AppState) -> list[Entry]:
 
 
 def _opens(path: Path) -> Callable[[AppState], None]:
-    return lambda state: state.open_path(path)
+    return lambda state: files.open_path(state, path)
 
 
 def _entry(command: Command, state: AppState) -> Entry:
@@ -116,18 +116,18 @@ def draw(state: AppState, scale: float) -> None:
     chosen = 0 if changed else palette.chosen + sum(steps)
     palette.chosen = max(0, min(chosen, len(found) - 1))
     picked = _list(found, palette.chosen, is_new or changed or bool(steps), scale)
-    if found and widgets.enter_pressed() and not is_new:
+    if found and widgets.enter_key_pressed() and not is_new:
         picked = found[palette.chosen][0]
     if picked is not None and not picked.enabled:
         picked = None
-    if picked is not None or (widgets.escape() and not is_new):
+    if picked is not None or (widgets.cancel_pressed() and not is_new):
         widgets.close_popup()
         state.palette = None
     imgui.end_popup()
     if picked is not None:
         run = picked.run
         state.notice = ""
-        state.attempt(lambda: run(state))
+        state.run_reporting_errors(lambda: run(state))
 
 
 def _begin(is_new: bool, scale: float) -> bool:
@@ -148,7 +148,7 @@ def _list(found: list[Found], chosen: int, scroll: bool, scale: float) -> Entry 
     imgui.begin_child("##found", ImVec2(0, _ROWS * line), 0, imgui.WindowFlags_.no_nav)
     imgui.set_cursor_pos_y(imgui.get_style().item_spacing.y / 2)  # room for the light around the first line
     if not found:
-        widgets.quiet("No command has these letters in this order.")
+        widgets.secondary_text("No command has these letters in this order.")
     for index, (entry, places) in enumerate(found):
         at, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
         flags = 0 if entry.enabled else imgui.SelectableFlags_.disabled

@@ -6,16 +6,15 @@ from typing import Literal
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...deform.methods import get_method
 from ...editor import gestures
 from ...editor.session.edits import SetStiffness
 from ...resources import bundled_drawings
-from .. import masking, poses, recordings, reference
+from .. import file_commands, files
 from ..app_state import AppState
 from ..canvas.view_options import RANGES, Measure
 from ..dialogs.export_pose import ExportPoseDialog
 from ..dialogs.file_dialog import Palette
-from ..panels.method_parameters import with_default_values
+from ..panels.method_parameters import defaults
 from . import keying
 from .command import CTRL, SHIFT, Command, Key, Submenu, always, has_drawing
 from .keyboard_pointer import CROSSHAIR, MENU_HERE, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
@@ -68,7 +67,7 @@ def _remove(state: AppState) -> None:
     if state.editor.selection:
         gestures.remove_selected_pins(state.editor)
     else:
-        state.keyframe_playback.remove()
+        state.timeline.keyframe_playback.remove()
 
 
 def _find(state: AppState) -> None:
@@ -88,7 +87,7 @@ def _remember(state: AppState) -> None:
 
 def _defaults(state: AppState) -> None:
     assert state.document is not None
-    state.change_settings(with_default_values(state.document.state.settings))
+    state.change_settings(defaults(state.document.state.settings))
 
 
 def _can_undo(state: AppState) -> bool:
@@ -97,9 +96,9 @@ def _can_undo(state: AppState) -> bool:
     return editor.busy or (editor.session is not None and editor.session.history.undo_label is not None)
 
 
-def _has_memory(state: AppState) -> bool:
+def _is_akap(state: AppState) -> bool:
     session = state.editor.session
-    return session is not None and get_method(session.state.settings.method).deformer.has_memory
+    return session is not None and session.state.settings.method == "akap"
 
 
 def remembers(state: AppState) -> bool:
@@ -113,6 +112,10 @@ def _view_toggle(name: str) -> tuple[Callable[[AppState], None], Callable[[AppSt
         setattr(state.view, name, not getattr(state.view, name))
 
     return flip, lambda state: bool(getattr(state.view, name))
+
+
+def _toggle_timeline(state: AppState) -> None:
+    state.timeline.is_shown = not state.timeline.is_shown
 
 
 def _next_range(state: AppState) -> None:
@@ -139,14 +142,13 @@ _mesh, _mesh_on = _toggle("show_mesh")
 _pins, _pins_on = _toggle("show_pins")
 _checker, _checker_on = _toggle("checker")
 _split, _split_on = _toggle("split")
-_timeline, _timeline_on = _toggle("show_timeline")
 _about, _ = _toggle("about")
 _keys, _ = _toggle("keys")
 
-OPEN = Command("Open...", AppState.ask_open, (CTRL | Key.o,), icons.ICON_FA_FOLDER_OPEN)
-MASK = Command("Cut Out with Mask...", masking.ask_mask, (), "", masking.can_mask)
-SAVE = Command("Save", AppState.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, has_drawing)
-SAVE_AS = Command("Save As...", AppState.save_as, (CTRL | SHIFT | Key.s,), "", has_drawing)
+OPEN = Command("Open...", files.choose_and_open, (CTRL | Key.o,), icons.ICON_FA_FOLDER_OPEN)
+MASK = Command("Cut Out with Mask...", file_commands.choose_mask, (), "", file_commands.can_mask)
+SAVE = Command("Save", files.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, has_drawing)
+SAVE_AS = Command("Save As...", files.save_as, (CTRL | SHIFT | Key.s,), "", has_drawing)
 EXPORT = Command(
     "Export...",
     lambda state: state.dialog(ExportPoseDialog).open(state),
@@ -154,11 +156,11 @@ EXPORT = Command(
     icons.ICON_FA_FILE_EXPORT,
     has_drawing,
 )
-SAVE_POSE = Command("Save Pose...", poses.ask_save, (), "", has_drawing)
-APPLY_POSE = Command("Apply Pose...", poses.ask_apply, (), "", has_drawing)
-SAVE_RECORDING = Command("Save Recording...", recordings.ask_save, (), "", has_drawing)
-CLOSE = Command("Close", AppState.close, (CTRL | Key.w,), "", has_drawing)
-QUIT = Command("Quit", AppState.quit, (CTRL | Key.q,))
+SAVE_POSE = Command("Save Pose...", file_commands.choose_pose_to_save, (), "", has_drawing)
+APPLY_POSE = Command("Apply Pose...", file_commands.choose_pose_to_apply, (), "", has_drawing)
+SAVE_RECORDING = Command("Save Recording...", file_commands.choose_recording_to_save, (), "", has_drawing)
+CLOSE = Command("Close", files.close_document, (CTRL | Key.w,), "", has_drawing)
+QUIT = Command("Quit", files.quit_program, (CTRL | Key.q,))
 
 UNDO = Command(
     "Undo",
@@ -233,10 +235,10 @@ DEFAULTS = Command(
     "",
     lambda state: (
         state.document is not None
-        and with_default_values(state.document.state.settings) != state.document.state.settings
+        and defaults(state.document.state.settings) != state.document.state.settings
     ),
 )
-REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _has_memory, remembers)
+REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _is_akap, remembers)
 
 HOLD_ANGLE = Command(
     "Hold Angle", lambda state: gestures.toggle_held_angles(state.editor), (), "", _can_hold, _holds
@@ -281,7 +283,9 @@ ZOOM_OUT = Command(
 )
 SHOW_MESH = Command("Show Mesh", _mesh, (Key.m,), icons.ICON_FA_DRAW_POLYGON, always, _mesh_on)
 SHOW_PINS = Command("Show Pins", _pins, (SHIFT | Key.p,), "", always, _pins_on)
-SHOW_TIMELINE = Command("Timeline", _timeline, (SHIFT | Key.t,), "", has_drawing, _timeline_on)
+SHOW_TIMELINE = Command(
+    "Timeline", _toggle_timeline, (SHIFT | Key.t,), "", has_drawing, lambda state: state.timeline.is_shown
+)
 SPLIT = Command("Two Methods Side by Side", _split, (), icons.ICON_FA_TABLE_COLUMNS, has_drawing, _split_on)
 CHECKER = Command("Checkerboard", _checker, (Key.b,), "", always, _checker_on)
 SHOW_FIELD = Command("Vector Field of the Drag", _field, (Key.v,), "", has_drawing, _field_on)
@@ -292,7 +296,7 @@ NEXT_RANGE = Command(
 )
 SHOW_GHOST = Command("Rest Pose", _ghost, (Key.g,), "", has_drawing, _ghost_on)
 SHOW_TRAILS = Command("Pin Trails", _trails, (Key.t,), "", has_drawing, _trails_on)
-CHOOSE_REFERENCE = Command("Reference Picture...", reference.ask, (), "", has_drawing)
+CHOOSE_REFERENCE = Command("Reference Picture...", file_commands.choose_reference, (), "", has_drawing)
 SHOW_REFERENCE = Command(
     "Show Reference Picture",
     _reference,
@@ -387,4 +391,4 @@ def run_pressed(state: AppState) -> None:
     """Run the commands whose keys were pressed in this frame."""
     for command in COMMANDS:
         if command.is_pressed() and command.enabled(state):
-            state.attempt(lambda command=command: command.run(state))  # type: ignore[misc]
+            state.run_reporting_errors(lambda command=command: command.run(state))  # type: ignore[misc]

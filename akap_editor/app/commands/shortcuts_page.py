@@ -76,7 +76,7 @@ def draw(state: AppState, scale: float) -> None:
         imgui.end_table()
     imgui.end_child()
     done = widgets.button("Close", primary=True)
-    if done or widgets.escape() or widgets.enter() or KEYS.is_pressed():
+    if done or widgets.cancel_pressed() or widgets.confirm_pressed() or KEYS.is_pressed():
         widgets.close(state, "keys", False)
     imgui.end_popup()
 

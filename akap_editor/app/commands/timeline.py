@@ -14,41 +14,53 @@ _ZOOM = 1.5
 
 
 def _shown(state: AppState) -> bool:
-    return has_drawing(state) and state.show_timeline
+    return has_drawing(state) and state.timeline.is_shown
 
 
 def _can_cut(state: AppState) -> bool:
-    return _shown(state) and state.playback.duration > 0
+    return _shown(state) and state.timeline.playback.duration > 0
 
 
 def _end(state: AppState) -> None:
-    state.playback.look(state.playback.range[1])
+    state.timeline.playback.look(state.timeline.playback.range[1])
 
 
 def _zoom(factor: float) -> Callable[[AppState], None]:
-    return lambda state: state.playback.view.zoom(factor, state.playback.position)
+    return lambda state: state.timeline.playback.view.zoom(factor, state.timeline.playback.position)
 
 
 def _clear_range(state: AppState) -> None:
-    state.playback.cut = None
+    state.timeline.playback.cut = None
 
 
 KEY_HERE = Command("Keyframe Here", keying.keyframe_here, (Key.k,), icons.ICON_FA_DIAMOND, has_drawing)
 KEY_REMOVE = Command(
-    "Remove Keyframe", lambda state: state.keyframe_playback.remove(), (SHIFT | Key.k,), "", keying.shown
+    "Remove Keyframe",
+    lambda state: state.timeline.keyframe_playback.remove(),
+    (SHIFT | Key.k,),
+    "",
+    keying.shown,
 )
 KEY_COPY = Command(
     "Duplicate Keyframe",
-    lambda state: state.keyframe_playback.duplicate(),
+    lambda state: state.timeline.keyframe_playback.duplicate(),
     (CTRL | SHIFT | Key.k,),
     "",
     keying.shown,
 )
 KEY_NEXT = Command(
-    "Next Keyframe", lambda state: state.keyframe_playback.step(True), (Key.period,), "", keying.shown
+    "Next Keyframe",
+    lambda state: state.timeline.keyframe_playback.step(True),
+    (Key.period,),
+    "",
+    keying.shown,
 )
 KEY_PREVIOUS = Command(
-    "Previous Keyframe", lambda state: state.keyframe_playback.step(False), (Key.comma,), "", keying.shown
+    "Previous Keyframe",
+    lambda state: state.timeline.keyframe_playback.step(False),
+    (Key.comma,),
+    "",
+    keying.shown,
 )
 KEY_LATER = Command("Move Keyframe Later", keying.nudging(STEP), (SHIFT | Key.period,), "", keying.shown)
 KEY_EARLIER = Command("Move Keyframe Earlier", keying.nudging(-STEP), (SHIFT | Key.comma,), "", keying.shown)
@@ -59,7 +71,7 @@ ONION = Command(
     (Key.o,),
     icons.ICON_FA_LAYER_GROUP,
     keying.shown,
-    lambda state: state.keyframe_playback.onion.shown,
+    lambda state: state.timeline.keyframe_playback.onion.shown,
 )
 EXPORT_ANIMATION = Command(
     "Export Animation...",
@@ -76,24 +88,30 @@ SECOND_ON = Command(
 )
 SECOND_BACK = Command("One Second Back", keying.going(-1.0), (SHIFT | Key.page_up,), "", _shown, repeats=True)
 GO_START = Command(
-    "Go to Start", lambda state: state.playback.look(state.playback.range[0]), (Key.home,), "", _shown
+    "Go to Start",
+    lambda state: state.timeline.playback.look(state.timeline.playback.range[0]),
+    (Key.home,),
+    "",
+    _shown,
 )
 GO_END = Command("Go to End", _end, (Key.end,), "", _shown)
 RANGE_START = Command(
     "Start Range Here",
-    lambda state: state.playback.cut_to(start=state.playback.position),
+    lambda state: state.timeline.playback.cut_to(start=state.timeline.playback.position),
     (SHIFT | Key.home,),
     "",
     _can_cut,
 )
 RANGE_END = Command(
     "End Range Here",
-    lambda state: state.playback.cut_to(end=state.playback.position),
+    lambda state: state.timeline.playback.cut_to(end=state.timeline.playback.position),
     (SHIFT | Key.end,),
     "",
     _can_cut,
 )
-RANGE_ALL = Command("Range Is Everything", _clear_range, (), "", lambda state: state.playback.cut is not None)
+RANGE_ALL = Command(
+    "Range Is Everything", _clear_range, (), "", lambda state: state.timeline.playback.cut is not None
+)
 ZOOM_IN = Command("Zoom into Timeline", _zoom(_ZOOM), (), "", _shown)
 ZOOM_OUT = Command("Zoom out of Timeline", _zoom(1 / _ZOOM), (), "", _shown)
 KEY_ALL = Command("Select All Keyframes", keying.choose_all, (), "", keying.shown)

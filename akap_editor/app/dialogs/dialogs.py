@@ -11,7 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import portable_file_dialogs as native
 
 from ... import __version__
-from .. import widgets
+from .. import files, widgets
 from ..app_state import AppState
 from ..commands import shortcuts_page as keys_overlay
 from ..theme import ACCENT, QUIET
@@ -89,7 +89,7 @@ def _message(state: AppState, scale: float) -> None:
     if widgets.begin_dialog("That did not work"):
         widgets.paragraph(state.error, 420 * scale)
         imgui.spacing()
-        if widgets.button("OK", primary=True) or widgets.escape() or widgets.enter():
+        if widgets.button("OK", primary=True) or widgets.cancel_pressed() or widgets.confirm_pressed():
             widgets.close(state, "error", "")
         imgui.end_popup()
 
@@ -104,15 +104,15 @@ def _unsaved(state: AppState, scale: float) -> None:
         text = f"Save the changes to {name} before it is closed?"
         widgets.paragraph(text, min(imgui.calc_text_size(text).x + 1, 420 * scale))
         imgui.spacing()
-        if widgets.button("Save", primary=True) or widgets.enter():
+        if widgets.button("Save", primary=True) or widgets.confirm_pressed():
             widgets.close(state, "question", None)
-            state.save(question.go_on)
+            files.save(state, question.go_on)
         imgui.same_line()
         if widgets.button("Discard"):
             widgets.close(state, "question", None)
             question.go_on()
         imgui.same_line()
-        if widgets.button("Cancel") or widgets.escape():
+        if widgets.button("Cancel") or widgets.cancel_pressed():
             widgets.close(state, "question", None)
         imgui.end_popup()
 
@@ -123,7 +123,7 @@ def _choose_file(state: AppState, request: FileRequest, is_new: bool, scale: flo
         return
     if imgui.button(icons.ICON_FA_ARROW_UP + "##up"):
         request.folder = request.folder.parent
-    widgets.explain("Parent folder")
+    widgets.show_tooltip("Parent folder")
     imgui.same_line()
     imgui.align_text_to_frame_padding()
     folder = widgets.shortened(str(request.folder), 470 * scale, end=True)
@@ -144,9 +144,9 @@ def _choose_file(state: AppState, request: FileRequest, is_new: bool, scale: flo
     accepted = widgets.button(accept, primary=True)
     imgui.end_disabled()
     imgui.same_line()
-    if widgets.button("Cancel") or widgets.escape():
+    if widgets.button("Cancel") or widgets.cancel_pressed():
         widgets.close(state, "request", None)
-    elif (accepted or chosen or widgets.enter()) and request.name.strip():
+    elif (accepted or chosen or widgets.confirm_pressed()) and request.name.strip():
         _accept(state, request)
     imgui.end_popup()
 
@@ -154,15 +154,17 @@ def _choose_file(state: AppState, request: FileRequest, is_new: bool, scale: flo
 def _list_entries(request: FileRequest, scale: float) -> bool:
     """The folder's content; whether a file was taken, by a double click or Enter. A folder is opened then."""
     chosen = False
-    taken = imgui.is_mouse_double_clicked(0) or widgets.enter_pressed()
+    taken = imgui.is_mouse_double_clicked(0) or widgets.enter_key_pressed()
     height = min(260 * scale, imgui.get_main_viewport().size.y - 220 * scale)
-    imgui.begin_child("##entries", ImVec2(520 * scale, height), imgui.ChildFlags_.borders | widgets.WALKED)
+    imgui.begin_child(
+        "##entries", ImVec2(520 * scale, height), imgui.ChildFlags_.borders | widgets.NAV_FLATTENED
+    )
     for name, is_folder in request.entries():
         icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
         flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups
         shown = widgets.shortened(name, imgui.get_content_region_avail().x - 2 * imgui.get_font_size())
         clicked = imgui.selectable(f"{icon}  {shown}###{name}", name == request.name, flags)[0]
-        widgets.explain(name if shown != name else "")
+        widgets.show_tooltip(name if shown != name else "")
         if clicked:
             if not is_folder:
                 request.name, chosen = name, taken
@@ -197,6 +199,6 @@ def _about(state: AppState, scale: float) -> None:
         QUIET,
     )
     imgui.spacing()
-    if widgets.button("Close", primary=True) or widgets.escape() or widgets.enter():
+    if widgets.button("Close", primary=True) or widgets.cancel_pressed() or widgets.confirm_pressed():
         widgets.close(state, "about", False)
     imgui.end_popup()

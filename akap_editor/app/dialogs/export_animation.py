@@ -125,15 +125,15 @@ class ExportAnimationDialog:
 
     def open(self, state: AppState) -> None:
         """Show the dialog if there is a range to export; playback stops."""
-        start, end = state.playback.range
+        start, end = state.timeline.playback.range
         if state.document is not None and end > start:
-            if state.playback.playing:
-                state.playback.stop()
+            if state.timeline.playback.playing:
+                state.timeline.playback.stop()
             self.is_open = True
 
     def draw(self, state: AppState, scale: float) -> None:
         """Draw one frame. scale: points per design point."""
-        start, end = state.playback.range
+        start, end = state.timeline.playback.range
         if state.document is None or end <= start:
             self.is_open = False
             return
@@ -143,7 +143,7 @@ class ExportAnimationDialog:
         options.format = format_list(FORMATS, options.kind, _LIST_WIDTH * scale, _HEIGHT * scale).label
         imgui.same_line(0, 18 * scale)
         size = ImVec2((_WIDTH - _LIST_WIDTH - 18) * scale, _HEIGHT * scale)
-        imgui.begin_child("##options", size, widgets.WALKED)
+        imgui.begin_child("##options", size, widgets.NAV_FLATTENED)
         _draw_options(options, scale)
         _draw_result(state, options, scale)
         imgui.end_child()
@@ -151,9 +151,9 @@ class ExportAnimationDialog:
         options.remember(state.preferences)
         accepted = widgets.button("Export...", primary=True)
         imgui.same_line()
-        if widgets.button("Cancel") or widgets.escape():
+        if widgets.button("Cancel") or widgets.cancel_pressed():
             self._close()
-        elif accepted or (widgets.enter() and not imgui.get_io().want_text_input):
+        elif accepted or (widgets.confirm_pressed() and not imgui.get_io().want_text_input):
             self._close()
             request_file(state, options)
         imgui.end_popup()
@@ -165,13 +165,15 @@ class ExportAnimationDialog:
 
 def frame_at(state: AppState, time: float) -> Frame:
     """The timeline's frame at a time in seconds."""
-    keyed = state.timeline == "keyframes"
-    return state.keyframe_playback.frame(time) if keyed else state.session_playback.frame(time)
+    keyed = state.timeline.mode == "keyframes"
+    return (
+        state.timeline.keyframe_playback.frame(time) if keyed else state.timeline.session_playback.frame(time)
+    )
 
 
 def exported_times(state: AppState, options: AnimationExportOptions) -> list[float]:
     """Seconds on the timeline, for each frame. In a seamless loop the last frame is dropped."""
-    start, end = state.playback.range
+    start, end = state.timeline.playback.range
     times = options.times(start, end)
     over = options.kind.repeats and options.loop and not options.ping_pong and len(times) > 2
     return times[:-1] if over and closed(frame_at(state, start), frame_at(state, end)) else times
@@ -196,7 +198,7 @@ def export_animation(state: AppState, options: AnimationExportOptions, path: Pat
         export_kind(path, sheet)
         state.task = Task(f"Exporting {path.name}", _steps(state, options, path, sheet))
 
-    state.later(begin)
+    state.run_after_frame(begin)
 
 
 def _steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: bool) -> Steps:
@@ -230,14 +232,14 @@ def _steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: 
 def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     """Draw what can be chosen about the format."""
     below = imgui.get_cursor_pos_y() + 2 * imgui.get_text_line_height()
-    widgets.quiet(options.kind.about)
+    widgets.secondary_text(options.kind.about)
     imgui.set_cursor_pos_y(below + imgui.get_style().item_spacing.y)
     options.fps = number_field("Frame rate", options.fps, LIMITS["fps"], "%.4g fps", 0.2, 96, scale)
     preset = preset_buttons([f"{rate}" for rate in RATES], scale)
     if preset is not None:
         options.fps = float(RATES[preset])
     options.size = round(number_field("Size", options.size, LIMITS["size"], "%.0f px", 2.0, 96, scale))
-    widgets.explain("Of the longest side, at most; a drawing is not enlarged.")
+    widgets.show_tooltip("Of the longest side, at most; a drawing is not enlarged.")
     low, high = LIMITS["speed"]
     percent = number_field("Speed", 100 * options.speed, (100 * low, 100 * high), "%.4g %%", 0.5, 96, scale)
     options.speed = percent / 100
@@ -246,12 +248,12 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     names = list(EASINGS)
     _, chosen = imgui.combo("##easing", names.index(options.ease), [EASING_LABELS[name] for name in names])
     options.ease = names[chosen]
-    widgets.explain("Of the whole, on top of what keyframes do.")
+    widgets.show_tooltip("Of the whole, on top of what keyframes do.")
     widgets.switch_label("Repeat", LABEL_WIDTH * scale)
     _, options.ping_pong = widgets.switch("Ping-pong", options.ping_pong, "Forwards, then backwards.")
     if options.kind.repeats:
         imgui.same_line(0, 16 * scale)
-        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.rise())
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
         _, options.loop = widgets.switch("For ever", options.loop, "Off: it is shown once, and stops.")
     options.opaque, options.background = background_field(
         options.opaque,

@@ -75,7 +75,7 @@ class ExportPoseDialog:
         options.format = format_list(EXPORT_FORMATS, options.format, _LIST_WIDTH * scale, _HEIGHT * scale)
         imgui.same_line(0, 18 * scale)
         size = ImVec2((_WIDTH - _LIST_WIDTH - 18) * scale, _HEIGHT * scale)
-        imgui.begin_child("##options", size, widgets.WALKED)
+        imgui.begin_child("##options", size, widgets.NAV_FLATTENED)
         problem = _draw_options(options, document, scale)
         imgui.end_child()
         imgui.spacing()
@@ -83,9 +83,9 @@ class ExportPoseDialog:
         accepted = widgets.button("Export...", primary=True)
         imgui.end_disabled()
         imgui.same_line()
-        if widgets.button("Cancel") or widgets.escape():
+        if widgets.button("Cancel") or widgets.cancel_pressed():
             self._close()
-        elif accepted or (widgets.enter() and not problem and not imgui.get_io().want_text_input):
+        elif accepted or (widgets.confirm_pressed() and not problem and not imgui.get_io().want_text_input):
             self._close()
             request_file(state, options)
         imgui.end_popup()
@@ -123,7 +123,7 @@ def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None
 def _draw_options(options: PoseExportOptions, document: Document, scale: float) -> str:
     """Draw the right half; return what prevents this export, or ""."""
     below = imgui.get_cursor_pos_y() + 3 * imgui.get_text_line_height()
-    widgets.quiet(options.format.about)
+    widgets.secondary_text(options.format.about)
     imgui.set_cursor_pos_y(below)  # the same for all formats, so that nothing jumps
     draw_format_options = _draw_framing if options.format.uses_framing else _draw_mesh_size
     problem = draw_format_options(options, document, scale)
@@ -143,7 +143,7 @@ def _draw_framing(options: PoseExportOptions, document: Document, scale: float) 
     widgets.label("Shows", LABEL_WIDTH * scale)
     imgui.set_next_item_width(widgets.FULL)
     opened = imgui.begin_combo("##crop", _CROPS[options.crop])
-    widgets.explain(_ABOUT_CROPS)
+    widgets.show_tooltip(_ABOUT_CROPS)
     if opened:
         for name, label in _CROPS.items():
             if imgui.selectable(label, name == options.crop)[0]:

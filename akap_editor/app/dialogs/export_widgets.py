@@ -29,7 +29,7 @@ F = TypeVar("F", bound=FileFormat)
 
 def format_list(formats: Sequence[F], chosen: F, width: float, height: float) -> F:
     """Draw a list of formats with their file name endings; return the chosen one. Sizes in points."""
-    imgui.begin_child("##formats", ImVec2(width, height), imgui.ChildFlags_.borders | widgets.WALKED)
+    imgui.begin_child("##formats", ImVec2(width, height), imgui.ChildFlags_.borders | widgets.NAV_FLATTENED)
     flags = imgui.SelectableFlags_.no_auto_close_popups
     for each in formats:
         right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
@@ -60,7 +60,7 @@ def number_field(
     imgui.set_next_item_width(width * scale)
     clamp = imgui.SliderFlags_.always_clamp
     _, value = imgui.drag_float(f"##{label}", value, speed, *limits, text_format, clamp)
-    widgets.explain("Drag, or double-click to type.")
+    widgets.show_tooltip("Drag, or double-click to type.")
     return float(value)
 
 

@@ -26,7 +26,7 @@ def draw(state: AppState, task: Task, scale: float) -> None:
         task.enough()
     if task.enough is not None:
         imgui.same_line()
-    if widgets.button("Cancel") or widgets.escape():
+    if widgets.button("Cancel") or widgets.cancel_pressed():
         task.cancel()
         widgets.close(state, "task", None)
         state.notice = f"{task.title}: cancelled"

@@ -10,7 +10,7 @@ from ...editor.document.document import Document
 from ...editor.document.framing import frame_box
 from ...errors import AkapError
 from ...io.akap.autosave import RecoveryCopy
-from .. import widgets
+from .. import files, widgets
 from ..app_state import AppState
 from ..theme import DARK, QUIET, packed
 
@@ -47,15 +47,15 @@ class Recovery:
         _facts(copy, document, len(state.lost), 300 * scale)
         imgui.end_group()
         imgui.spacing()
-        if widgets.button("Recover", primary=True) or widgets.enter():
+        if widgets.button("Recover", primary=True) or widgets.confirm_pressed():
             imgui.close_current_popup()
-            state.attempt(lambda: recover(state, copy, document))
+            state.run_reporting_errors(lambda: recover(state, copy, document))
         imgui.same_line()
         if widgets.button("Discard"):
             _drop(state)
             copy.discard()
         imgui.same_line()
-        if widgets.button("Later") or widgets.escape():
+        if widgets.button("Later") or widgets.cancel_pressed():
             _drop(state)
             copy.leave()
         imgui.end_popup()
@@ -92,7 +92,7 @@ class Recovery:
 def recover(state: AppState, copy: RecoveryCopy, document: Document) -> None:
     """Go on with what a program that crashed has left; what else is lost is asked for another time."""
     assert state.autosave is not None
-    state.show(document)
+    files.show_document(state, document)
     assert state.editor.session is not None
     state.editor.session.mark_unsaved()
     state.autosave.adopt(copy, document)

@@ -21,11 +21,11 @@ def draw(state: AppState, scale: float) -> None:
             imgui.push_style_color(imgui.Col_.text, ImVec4(*QUIET))
         if imgui.selectable(f"  {name}##step {index}", index == depth)[0]:
             state.notice = ""
-            state.attempt(lambda index=index: state.editor.undo_or_redo_to(index))  # type: ignore[misc]
+            state.run_reporting_errors(lambda index=index: state.editor.undo_or_redo_to(index))  # type: ignore[misc]
         if index > depth:
             imgui.pop_style_color()
         if index == depth:
-            widgets.keep_seen(index, _ROWS)
+            widgets.scroll_to_row(index, _ROWS)
     imgui.end_child()
 
 

@@ -71,11 +71,11 @@ def _background(state: AppState, wanted: Meshing) -> None:
         if imgui.button("Keep the background", ImVec2(widgets.FULL, 0)):
             state.remesher.want(replace(wanted, background=None))
     elif state.document.drawing.is_opaque:
-        widgets.quiet("This picture has no transparency, so all of its rectangle bends.")
+        widgets.secondary_text("This picture has no transparency, so all of its rectangle bends.")
         if imgui.button("Remove background", ImVec2(widgets.FULL, 0)):
             state.notice = ""
             state.remesher.want(replace(wanted, background=DEFAULT_TOLERANCE))
-        widgets.explain("Makes transparent what has the color of the border and is joined to it.")
+        widgets.show_tooltip("Makes transparent what has the color of the border and is joined to it.")
 
 
 def _slider(
@@ -85,7 +85,7 @@ def _slider(
     low, high, text = scope
     imgui.align_text_to_frame_padding()
     imgui.text_colored(ImVec4(*QUIET), label)
-    widgets.explain(tooltip)
+    widgets.show_tooltip(tooltip)
     imgui.same_line(_LABEL * imgui.get_font_size())
     moved, chosen, released = widgets.slider(f"##{label}", value, (low, high), text, flags)
     if released:

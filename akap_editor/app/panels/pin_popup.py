@@ -86,34 +86,34 @@ def _angle(state: AppState, pin: Pin) -> None:
     angle = _field(
         state, pin, "Angle", shown, lambda draft: imgui.input_double("##Angle", draft, 0, 0, "%.1f°")
     )
-    widgets.explain("By how many degrees the drawing around the pin is turned, clockwise.")
+    widgets.show_tooltip("By how many degrees the drawing around the pin is turned, clockwise.")
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + _LABELS * imgui.get_font_size())
     held = widgets.switch("Hold this angle", pin.angle is not None, "Off: the drawing turns as it will here.")
     imgui.end_disabled()
     if angle is not None:
-        state.attempt(lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(angle)))
+        state.run_reporting_errors(lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(angle)))
     elif held[0]:
-        state.attempt(
+        state.run_reporting_errors(
             lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(shown) if held[1] else None)
         )
 
 
 def _values(state: AppState, pin: Pin, scale: float) -> None:
     x, y = pin.target.tolist()
-    widgets.quiet(f"Pin {pin.id}")
+    widgets.secondary_text(f"Pin {pin.id}")
     imgui.push_item_width(126 * scale)
     if imgui.is_window_appearing():
         imgui.set_keyboard_focus_here()
     new_x = _field(state, pin, "X", x, lambda draft: imgui.input_double("##X", draft, 0, 0, "%.2f"))
     new_y = _field(state, pin, "Y", y, lambda draft: imgui.input_double("##Y", draft, 0, 0, "%.2f"))
     depth = _field(state, pin, "Depth", pin.depth, lambda draft: imgui.input_int("##Depth", draft, 0, 0))
-    widgets.explain("Where limbs cross, the higher number passes in front.")
+    widgets.show_tooltip("Where limbs cross, the higher number passes in front.")
     _angle(state, pin)
     imgui.pop_item_width()
-    if widgets.escape():  # ImGui would only leave the field
+    if widgets.cancel_pressed():  # ImGui would only leave the field
         widgets.close_popup()
     if depth is not None:
-        state.attempt(lambda: gestures.set_depth(state.editor, pin.id, depth))
+        state.run_reporting_errors(lambda: gestures.set_depth(state.editor, pin.id, depth))
     if new_x is not None or new_y is not None:
         to = x if new_x is None else new_x, y if new_y is None else new_y
-        state.attempt(lambda: gestures.move_pin(state.editor, pin.id, to))
+        state.run_reporting_errors(lambda: gestures.move_pin(state.editor, pin.id, to))

@@ -54,11 +54,11 @@ def draw(state: AppState, scale: float) -> None:
     assert state.document is not None
     poses = state.document.state.poses
     if not poses:
-        widgets.quiet("None yet. Keep a pose here to come back to it with a click.")
+        widgets.secondary_text("None yet. Keep a pose here to come back to it with a click.")
     _all_poses(state, poses, scale)
     if imgui.button(f"{icons.ICON_FA_PLUS}  Keep this pose", ImVec2(widgets.FULL, 0)):
         state.notice = ""
-        state.attempt(lambda: gestures.add_pose(state.editor))
+        state.run_reporting_errors(lambda: gestures.add_pose(state.editor))
     if len(poses) > 1:
         _mixer(state, scale)
 
@@ -70,7 +70,7 @@ def _all_poses(state: AppState, poses: Sequence[NamedPose], scale: float) -> Non
         gaps = 2 * imgui.get_style().item_spacing.y
         row = round(_SIDE * scale) + 0.86 * imgui.get_text_line_height() + gaps
         height = (_ROWS + 0.5) * row  # half a row says that there are more
-        imgui.begin_child("##poses", ImVec2(0, height), widgets.WALKED)
+        imgui.begin_child("##poses", ImVec2(0, height), widgets.NAV_FLATTENED)
     for number, pose in enumerate(poses):
         if number % _COLUMNS:
             imgui.same_line(0, 6 * scale)
@@ -86,9 +86,11 @@ def _pose(state: AppState, pose: NamedPose, scale: float) -> None:
     imgui.begin_group()
     if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side), imgui.ButtonFlags_.enable_nav):
         state.notice = ""
-        state.attempt(lambda: gestures.set_pose(state.editor, pose.positions, f"Apply {pose.name}"))
+        state.run_reporting_errors(
+            lambda: gestures.set_pose(state.editor, pose.positions, f"Apply {pose.name}")
+        )
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
-    widgets.explain(
+    widgets.show_tooltip(
         f"{pose.name}: click to apply, drag to the timeline or another place, right-click for more"
     )
     if hovered and imgui.is_key_pressed(imgui.Key.f2, False):
@@ -116,7 +118,7 @@ def _pose(state: AppState, pose: NamedPose, scale: float) -> None:
         imgui.text_colored(ImVec4(*QUIET), widgets.shortened(pose.name, side))
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
             _begin_renaming(state, pose)
-        widgets.explain(f"{pose.name}: double-click or F2 to rename")
+        widgets.show_tooltip(f"{pose.name}: double-click or F2 to rename")
     imgui.pop_font()
     imgui.end_group()
 
@@ -125,11 +127,11 @@ def _menu(state: AppState, pose: NamedPose) -> None:
     if imgui.menu_item("Rename", "F2", False)[0]:
         _begin_renaming(state, pose)
     if imgui.menu_item_simple("Change to the Present Pose"):
-        state.attempt(lambda: gestures.add_pose(state.editor, pose.name))
+        state.run_reporting_errors(lambda: gestures.add_pose(state.editor, pose.name))
     if imgui.menu_item_simple("Keyframe of It"):
-        state.show_in_timeline("keyframes")
-        state.show_timeline = True
-        state.attempt(lambda: state.keyframe_playback.put(positions=pose.positions))
+        state.timeline.set_mode("keyframes")
+        state.timeline.is_shown = True
+        state.run_reporting_errors(lambda: state.timeline.keyframe_playback.put(positions=pose.positions))
     imgui.separator()
     assert state.document is not None
     last = len(state.document.state.poses) - 1
@@ -161,7 +163,7 @@ def _rename(state: AppState, pose: NamedPose, width: float) -> None:
         name, state.renaming = state.new_name.strip(), None
         if name and name != pose.name and not imgui.is_key_pressed(imgui.Key.escape, False):
             label = f"Rename {pose.name}"
-            state.attempt(lambda: state.editor.apply(label, RenamePose(pose.name, name)))
+            state.run_reporting_errors(lambda: state.editor.apply(label, RenamePose(pose.name, name)))
 
 
 def _dragging(state: AppState, pose: NamedPose) -> None:
@@ -183,7 +185,7 @@ def _order(state: AppState, old: int, new: int) -> None:
     assert state.document is not None
     names = [each.name for each in state.document.state.poses]
     names.insert(new, names.pop(old))
-    state.attempt(lambda: state.editor.apply("Order poses", ReorderPoses(names)))
+    state.run_reporting_errors(lambda: state.editor.apply("Order poses", ReorderPoses(names)))
 
 
 def _mixer(state: AppState, scale: float) -> None:
@@ -213,4 +215,4 @@ def _mixer(state: AppState, scale: float) -> None:
         session.end_preview()
         pose = pose_blend.pose(session)
         if pose is not None:
-            state.attempt(lambda: gestures.set_pose(state.editor, pose, "In-between"))
+            state.run_reporting_errors(lambda: gestures.set_pose(state.editor, pose, "In-between"))

@@ -158,7 +158,7 @@ def _status_bar(state: AppState, scale: float) -> None:
         text = state.notice or state.editor.hint
         shown = widgets.shortened(text, right - 30 * scale)
         imgui.text_colored(ImVec4(*(ACCENT if state.notice else TEXT)), shown)
-        widgets.explain(text if shown != text else "")
+        widgets.show_tooltip(text if shown != text else "")
         if facts:
             imgui.same_line(right)
             imgui.text_colored(ImVec4(*QUIET), facts)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ...deform.methods import get_method
+from ...deform.deformer import takes_stiffness
 from ...editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
 from ...editor.tools.stiffness_brush import LARGEST, SMALLEST
 from .. import widgets
@@ -31,8 +31,10 @@ def draw(state: AppState, scale: float) -> None:
     state.editor.brush = replace(brush, factor=factor, radius=radius)
     if widgets.switch("Erase", brush.erasing, "E, or drag with the right button.")[0]:
         widgets.run(state, commands.ERASE)
-    if not get_method(state.document.state.settings.method).deformer.takes_stiffness:
-        widgets.quiet("The method chosen under Bending bends all parts alike; stiffness is kept for others.")
+    if not takes_stiffness(state.document.state.settings.method):
+        widgets.secondary_text(
+            "The method chosen under Bending bends all parts alike; stiffness is kept for others."
+        )
     imgui.begin_disabled(not commands.SOFTEN_ALL.enabled(state))
     if imgui.button(commands.SOFTEN_ALL.label.capitalize(), ImVec2(widgets.FULL, 0)):
         widgets.run(state, commands.SOFTEN_ALL)
@@ -42,6 +44,6 @@ def draw(state: AppState, scale: float) -> None:
 def _slider(label: str, value: float, limits: tuple[float, float], form: str, tooltip: str) -> float:
     imgui.align_text_to_frame_padding()
     imgui.text_colored(ImVec4(*QUIET), label)
-    widgets.explain(tooltip)
+    widgets.show_tooltip(tooltip)
     imgui.same_line(_LABELS * imgui.get_font_size())
     return widgets.slider(f"##{label}", value, limits, form, imgui.SliderFlags_.logarithmic, tooltip)[1]

@@ -28,21 +28,21 @@ _TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0)  # secon
 def buttons(state: AppState, scale: float) -> None:
     """Add a keyframe, choose easings, show the onion skin."""
     side = ImVec2(30 * scale, 28 * scale)
-    playback = state.keyframe_playback
+    playback = state.timeline.keyframe_playback
     if imgui.button(f"{icons.ICON_FA_PLUS}##add key", side):
-        state.attempt(lambda: keying.keyframe_here(state))
-    widgets.explain("Keyframe here (K): keep the pose that is seen at this time")
+        state.run_reporting_errors(lambda: keying.keyframe_here(state))
+    widgets.show_tooltip("Keyframe here (K): keep the pose that is seen at this time")
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(not playback.animation.keyframes)
     if imgui.button(f"{icons.ICON_FA_BEZIER_CURVE}##easing", side):
         imgui.open_popup("easing menu")
     imgui.end_disabled()
-    widgets.explain("Easing: how the motion between keyframes starts and ends")
+    widgets.show_tooltip("Easing: how the motion between keyframes starts and ends")
     if _begin_menu("easing menu", scale):
-        widgets.quiet("Between all keyframes, unless one says otherwise")
+        widgets.secondary_text("Between all keyframes, unless one says otherwise")
         for name in KEYFRAME_EASINGS:
             if imgui.menu_item(EASING_LABELS[name], "", playback.animation.ease == name)[0]:
-                state.attempt(lambda name=name: playback.ease(name, general=True))  # type: ignore[misc]
+                state.run_reporting_errors(lambda name=name: playback.ease(name, general=True))  # type: ignore[misc]
         imgui.end_popup()
     imgui.same_line(0, 4 * scale)
     color = ACCENT if playback.onion.shown else QUIET
@@ -50,7 +50,7 @@ def buttons(state: AppState, scale: float) -> None:
     if imgui.button(f"{icons.ICON_FA_LAYER_GROUP}##onion", side):
         imgui.open_popup("onion menu")
     imgui.pop_style_color()
-    widgets.explain("Onion skin (O): the poses before, blue, and after, orange")
+    widgets.show_tooltip("Onion skin (O): the poses before, blue, and after, orange")
     if _begin_menu("onion menu", scale):
         _onion(playback, scale)
         imgui.end_popup()
@@ -106,14 +106,14 @@ class TimeScale:
 
 def draw(state: AppState, scale: float) -> None:
     """The ruler, the keyframes below it, and what the mouse does with both."""
-    playback = state.keyframe_playback
+    playback = state.timeline.keyframe_playback
     label = f"{playback.at:.2f} / {playback.duration:.2f} s"
     room = imgui.calc_text_size("000.00 / 000.00 s").x + 12 * scale
     corner = imgui.get_cursor_screen_pos()
     width = max(imgui.get_content_region_avail().x - room, 40 * scale)
     track = TimeScale(corner.x + _REACH * scale, width - 2 * _REACH * scale, playback.view)
     imgui.invisible_button("##keys", ImVec2(width, _BOTTOM * scale))
-    state.attempt(lambda: _handle(state, track, corner.y, scale))
+    state.run_reporting_errors(lambda: _handle(state, track, corner.y, scale))
     if imgui.is_item_hovered() and not imgui.is_item_active():
         _explain(playback, track, scale)
         zoom(playback.view, track)
@@ -140,7 +140,7 @@ def _near(playback: KeyframePlayback, track: TimeScale, scale: float) -> float |
 
 
 def _handle(state: AppState, track: TimeScale, top: float, scale: float) -> None:
-    playback = state.keyframe_playback
+    playback = state.timeline.keyframe_playback
     if playback.held and imgui.is_key_pressed(imgui.Key.escape, False):
         playback.drop(keep=False)
         state.grip = "none"
@@ -157,8 +157,10 @@ def _handle(state: AppState, track: TimeScale, top: float, scale: float) -> None
             playback.chosen = frozenset() if key is None else frozenset({key})
         state.held_key = playback.at
         imgui.open_popup("key menu")
-    if state.key_menu:  # by keys: above the track, so that the keyframe stays in sight
-        state.key_menu = False
+    if (
+        state.timeline.keyframe_menu_requested
+    ):  # by keys: above the track, so that the keyframe stays in sight
+        state.timeline.keyframe_menu_requested = False
         at = min(playback.chosen, default=playback.at)
         imgui.set_next_window_pos(ImVec2(track.x(at), top - 8 * scale), pivot=ImVec2(0, 1))
         imgui.open_popup("key menu")
@@ -178,7 +180,7 @@ def zoom(view: VisibleRange, track: TimeScale) -> None:
 
 
 def _press(state: AppState, track: TimeScale, top: float, scale: float) -> None:
-    playback, io = state.keyframe_playback, imgui.get_io()
+    playback, io = state.timeline.keyframe_playback, imgui.get_io()
     key, y = _near(playback, track, scale), imgui.get_mouse_pos().y - top
     in_ruler = y < _RULER * scale
     if y > _MARKS * scale and playback.duration > 0:
@@ -203,7 +205,7 @@ def _press(state: AppState, track: TimeScale, top: float, scale: float) -> None:
 
 
 def _drag(state: AppState, track: TimeScale, scale: float) -> None:
-    playback, io, x = state.keyframe_playback, imgui.get_io(), imgui.get_mouse_pos().x
+    playback, io, x = state.timeline.keyframe_playback, imgui.get_io(), imgui.get_mouse_pos().x
     if state.grip in ("start", "end"):
         playback.cut_to(**{state.grip: keying.snapped(track.time(x))})
     elif state.grip == "head" and not imgui.is_mouse_double_clicked(0):
@@ -223,10 +225,10 @@ def _drag(state: AppState, track: TimeScale, scale: float) -> None:
 
 def _menu(state: AppState) -> None:
     """Of a keyframe, or of a moment without one."""
-    playback = state.keyframe_playback
+    playback = state.timeline.keyframe_playback
     if not playback.chosen:
         if imgui.menu_item("Keyframe Here", "K", False)[0]:
-            state.attempt(lambda: keying.keyframe_here(state))
+            state.run_reporting_errors(lambda: keying.keyframe_here(state))
         return
     key = next(key for key in playback.animation.keyframes if key.time in playback.chosen)
     if len(playback.chosen) == 1:
@@ -234,19 +236,19 @@ def _menu(state: AppState) -> None:
         flags = imgui.InputTextFlags_.enter_returns_true
         changed, time = imgui.input_float("##time", key.time, STEP, 10 * STEP, "%.3f s", flags)
         if changed:
-            state.attempt(lambda: playback.set_time(key.time, time))
+            state.run_reporting_errors(lambda: playback.set_time(key.time, time))
     imgui.separator()
     for name in (None, *KEYFRAME_EASINGS):
         label = "As in the whole animation" if name is None else EASING_LABELS[name]
         if imgui.menu_item(label, "", key.ease == name)[0]:
-            state.attempt(lambda name=name: playback.ease(name))  # type: ignore[misc]
+            state.run_reporting_errors(lambda name=name: playback.ease(name))  # type: ignore[misc]
     imgui.separator()
     if imgui.menu_item("Change to the Present Pose", "", False)[0]:
-        state.attempt(lambda: _change(playback, key.time))
+        state.run_reporting_errors(lambda: _change(playback, key.time))
     if imgui.menu_item("Duplicate", "Ctrl+Shift+K", False)[0]:
-        state.attempt(playback.duplicate)
+        state.run_reporting_errors(playback.duplicate)
     if imgui.menu_item("Remove", "Shift+K", False)[0]:
-        state.attempt(playback.remove)
+        state.run_reporting_errors(playback.remove)
 
 
 def _change(playback: KeyframePlayback, time: float) -> None:
@@ -259,7 +261,7 @@ def _explain(playback: KeyframePlayback, track: TimeScale, scale: float) -> None
     time = _near(playback, track, scale)
     key = next((each for each in playback.animation.keyframes if each.time == time), None)
     if key is not None:
-        widgets.explain(
+        widgets.show_tooltip(
             f"{key.time:.2f} s, {EASING_LABELS[key.ease or playback.animation.ease].lower()}. Drag to move, "
             "with Ctrl to copy, with Alt to stretch; right-click for more"
         )
@@ -273,8 +275,8 @@ def _drop_target(state: AppState, track: TimeScale) -> None:
     if payload is not None and state.document is not None:
         pose = state.document.state.poses[payload.data_id]
         time = keying.snapped(track.time(imgui.get_mouse_pos().x))
-        state.attempt(lambda: state.keyframe_playback.put(time, pose.positions))
-        state.keyframe_playback.scrub(time)
+        state.run_reporting_errors(lambda: state.timeline.keyframe_playback.put(time, pose.positions))
+        state.timeline.keyframe_playback.scrub(time)
     imgui.end_drag_drop_target()
 
 

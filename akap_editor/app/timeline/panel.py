@@ -15,13 +15,13 @@ HEIGHT, KEYED_HEIGHT = 44, 64  # design points, as all sizes here
 
 def draw(state: AppState, scale: float) -> None:
     """The bar; nothing without a drawing, or where it is switched off."""
-    if state.document is None or not state.show_timeline:
-        state.show_present()
+    if state.document is None or not state.timeline.is_shown:
+        state.timeline.show_present()
         return
-    keyed = state.timeline == "keyframes"
+    keyed = state.timeline.mode == "keyframes"
     if keyed:
-        state.keyframe_playback.watch()
-    state.playback.advance()
+        state.timeline.keyframe_playback.watch()
+    state.timeline.playback.advance()
     height = (KEYED_HEIGHT if keyed else HEIGHT) * scale
     if widgets.side_bar("Timeline", imgui.Dir.down, height, ImVec2(10 * scale, 8 * scale)):
         if keyed:
@@ -40,13 +40,13 @@ def draw(state: AppState, scale: float) -> None:
 
 def _which(state: AppState, scale: float) -> None:
     """Two buttons that choose what the timeline holds."""
-    if _button(icons.ICON_FA_CLOCK_ROTATE_LEFT, "session", scale, state.timeline == "session"):
-        state.show_in_timeline("session")
-    widgets.explain("Session: all that was done, to look back and go on from there")
+    if _button(icons.ICON_FA_CLOCK_ROTATE_LEFT, "session", scale, state.timeline.mode == "session"):
+        state.timeline.set_mode("session")
+    widgets.show_tooltip("Session: all that was done, to look back and go on from there")
     imgui.same_line(0, 2 * scale)
-    if _button(icons.ICON_FA_DIAMOND, "keyframes", scale, state.timeline == "keyframes"):
-        state.show_in_timeline("keyframes")
-    widgets.explain("Keyframes: poses at times, and the motion between them")
+    if _button(icons.ICON_FA_DIAMOND, "keyframes", scale, state.timeline.mode == "keyframes"):
+        state.timeline.set_mode("keyframes")
+    widgets.show_tooltip("Keyframes: poses at times, and the motion between them")
 
 
 def _button(icon: str, name: str, scale: float, on: bool, color: tuple[float, ...] = ACCENT) -> bool:
@@ -58,13 +58,13 @@ def _button(icon: str, name: str, scale: float, on: bool, color: tuple[float, ..
 
 
 def _buttons(state: AppState, scale: float) -> None:
-    playback, playing = state.session_playback, state.playback
-    if state.timeline == "session":
+    playback, playing = state.timeline.session_playback, state.timeline.playback
+    if state.timeline.mode == "session":
         recording = playback.taking is not None
         icon = icons.ICON_FA_STOP if recording else icons.ICON_FA_CIRCLE
         if _button(icon, "record", scale, True, ACCENT if recording else RED):
             playback.take(not recording)
-        widgets.explain(
+        widgets.show_tooltip(
             "Record: what you do from here to the next click is the part that is played and exported"
         )
     else:
@@ -72,22 +72,22 @@ def _buttons(state: AppState, scale: float) -> None:
     imgui.same_line(0, 4 * scale)
     if _button(icons.ICON_FA_PAUSE if playing.playing else icons.ICON_FA_PLAY, "play", scale, True, TEXT):
         playing.play()
-    widgets.explain("Play (L)")
+    widgets.show_tooltip("Play (L)")
     imgui.same_line(0, 4 * scale)
     if _button(icons.ICON_FA_REPEAT, "loop", scale, playing.loop):
         playing.loop = not playing.loop
-    widgets.explain("Play over and over")
+    widgets.show_tooltip("Play over and over")
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(playing.range[1] <= playing.range[0])
     if _button(icons.ICON_FA_FILM, "export", scale, True, TEXT):
         state.dialog(ExportAnimationDialog).open(state)
     imgui.end_disabled()
-    widgets.explain("Export the part between the marks as an animation, a video or sprites")
+    widgets.show_tooltip("Export the part between the marks as an animation, a video or sprites")
 
 
 def _track(state: AppState, scale: float) -> None:
     """The time from start to end: what is played in amber, two marks that cut it, and where one is."""
-    playback, drawer = state.session_playback, imgui.get_window_draw_list()
+    playback, drawer = state.timeline.session_playback, imgui.get_window_draw_list()
     label = f"{playback.at if playback.at is not None else playback.duration:.1f} / {playback.duration:.1f} s"
     room = imgui.calc_text_size("000.0 / 000.0 s").x + 12 * scale
     corner, rim = imgui.get_cursor_screen_pos(), 8 * scale  # so that both ends can be taken hold of

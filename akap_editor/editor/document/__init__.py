@@ -1,1 +1,1 @@
-"""What an open drawing is: frozen values, replaced and never edited."""
+"""The open document: immutable values that are replaced, never changed."""

@@ -1,4 +1,4 @@
-"""An open document: a drawing and the state that undo restores; frozen values, replaced and never edited."""
+"""The open document: a drawing and the state that undo restores. Values are replaced, never changed."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -11,17 +11,18 @@ from .depth import face_order
 from .drawing import Drawing
 from .keyframes import NO_ANIMATION, Animation
 from .named_poses import NamedPose
-from .pin import Pin
+from .pin import Pin, pin_points
 from .settings import Settings
 
 
 @dataclass(frozen=True, eq=False)
 class EditState:
-    """All that undo restores: pins, pose (n, 2) float64 in pixels, settings.
+    """Everything that undo restores; arrays are read-only.
 
-    drawing: what is bent, where it was given another mesh in this session; None: what was opened.
-    poses: those that were given names, of the same mesh; animation: its keyframes. stiffness: (m,) float64,
-    by what factor each face bends less, see `stiffness`; None is 1 everywhere.
+    pins: in the order in which they were added; positions: the pose, (n, 2) float64 pixels; settings: the
+    deformation method; drawing: the drawing since it was last given another mesh in this session, None if it
+    never was; poses: the named ones; stiffness: factors of the faces, (m,) float64 (see `stiffness`), None
+    is 1 everywhere; animation: the keyframes.
     """
 
     pins: tuple[Pin, ...]
@@ -39,24 +40,21 @@ class EditState:
 
     @property
     def points(self) -> MeshPoints:
-        """The pins as points of the mesh, in order."""
-        return MeshPoints(
-            np.array([pin.face for pin in self.pins], dtype=np.int32),
-            np.array([pin.weights for pin in self.pins]).reshape(-1, 3),
-        )
+        """The places of the pins on the mesh, (k,), in order."""
+        return pin_points(self.pins)
 
     @property
     def targets(self) -> Floats:
-        """(k, 2) where the pins should be."""
+        """The targets of the pins, (k, 2) pixels, in order."""
         return np.array([pin.target for pin in self.pins]).reshape(-1, 2)
 
     @property
     def angles(self) -> Floats:
-        """(k,) radians that pins hold, NaN for those that turn as they will."""
+        """The angles that the pins hold, (k,) radians, in order; NaN for pins that rotate freely."""
         return np.array([np.nan if pin.angle is None else pin.angle for pin in self.pins])
 
     def pin(self, pin_id: int) -> Pin:
-        """The pin with this id. Raises KeyError."""
+        """The pin with this id. Raises KeyError on an unknown id."""
         for pin in self.pins:
             if pin.id == pin_id:
                 return pin
@@ -65,9 +63,9 @@ class EditState:
 
 @dataclass(frozen=True, eq=False)
 class Document:
-    """An open drawing.
+    """An open drawing with its state.
 
-    revision: grows with every change of ``state``; path: the .akap file, if any.
+    revision: grows with every change of ``state``; path: the .akap file, None if there is none.
     """
 
     drawing: Drawing
@@ -77,14 +75,14 @@ class Document:
 
     @property
     def face_order(self) -> Ints | None:
-        """(m,) the faces from the hindmost to the foremost; None is the order of the mesh."""
+        """Indices of the faces from back to front, (m,) int; None stands for the order of the mesh."""
         return face_order(self.drawing.mesh, self.state.pins)
 
     def with_state(self, state: EditState) -> "Document":
-        """This document with another state, one revision on."""
+        """This document with another state and the next revision."""
         return replace(self, state=state, revision=self.revision + 1)
 
 
 def new_document(drawing: Drawing, settings: Settings | None = None) -> Document:
-    """A drawing at rest, without pins."""
+    """A document of a drawing in its rest pose, without pins."""
     return Document(drawing, EditState((), drawing.mesh.vertices, settings or Settings()))

@@ -1,7 +1,8 @@
-"""A picture and the mesh that it is drawn on."""
+"""Drawings: a picture and the mesh that carries it."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,12 @@ from ...meshing.picture_mesh import mesh_picture
 
 @dataclass(frozen=True)
 class Meshing:
-    """How a picture becomes a mesh.
+    """The options by which a mesh is made from a picture.
 
-    vertices: wanted number of mesh vertices; expand: pixels by which the outline is moved outwards, so that
-    the soft rim lies inside the mesh and near parts join; threshold: share of full opacity at which the
-    picture ends; background: tolerance with which a plain background was made transparent (see
-    `remove_background`), None where it was not.
+    vertices ("Detail"): wanted number of mesh vertices; expand ("Margin"): pixels by which the outline is
+    moved outwards, so that soft edges lie inside the mesh and parts that are close together join; threshold
+    ("Alpha threshold"): share of full opacity at which the picture ends; background: tolerance with which a
+    plain background was removed (see `remove_background`), None if none was.
     """
 
     vertices: int = 2000
@@ -31,12 +32,12 @@ class Meshing:
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """A picture and the mesh it is drawn on.
+    """A picture and the mesh that carries it; arrays are read-only.
 
-    image: (h, w, 4) uint8, straight alpha; mesh: the rest pose; uv: (n, 2) float32, texture coordinates,
-    (0, 0) at the picture's top left corner; name: for titles and file names.
-    meshing: how the mesh was made, None where that is not known; original: the picture while it still had
-    the background that was removed, else None.
+    image: (h, w, 4) uint8 RGBA, straight alpha; mesh: the rest pose; uv: (n, 2) float32 texture coordinates,
+    (0, 0) at the picture's top left corner; name: for titles and file names; meshing: how the mesh was made,
+    None if unknown; original: (h, w, 4) uint8, the picture before its background was removed, None if it
+    was not. Raises InputError on wrong shapes or dtypes.
     """
 
     image: NDArray[np.uint8]
@@ -47,9 +48,7 @@ class Drawing:
     original: NDArray[np.uint8] | None = None
 
     def __post_init__(self) -> None:
-        image = np.asarray(self.image)
-        if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8 or not image.size:
-            raise InputError(f"image: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
+        image = _as_image(self.image)
         uv = as_points(self.uv, "uv", len(self.mesh.vertices)).astype(np.float32)
         if image.flags.writeable or not image.flags.owndata:
             image = frozen(image.copy())
@@ -58,7 +57,7 @@ class Drawing:
 
     @cached_property
     def is_opaque(self) -> bool:
-        """Whether nothing of the picture is transparent, so that all of its rectangle bends."""
+        """Whether no pixel of the picture is transparent; the mesh then covers its whole rectangle."""
         return bool((self.image[..., 3] == 255).all())
 
     @property
@@ -78,20 +77,21 @@ def make_drawing(
 ) -> Drawing:
     """Cut a picture out along its alpha and triangulate it.
 
-    image: (h, w, 4) uint8 RGBA, straight alpha; mask: (h, w) uint8, what is shown of it, 255 fully; for the
-    other arguments see `Meshing`. The parts of the mesh are tied: one without a pin rides with the one
-    nearest to it. Raises InputError where there is nothing to cut out.
+    image: (h, w, 4) uint8 RGBA, straight alpha; mask: (h, w) uint8, 255 where the picture is fully visible;
+    for the other arguments see `Meshing`. The parts of the mesh are tied: a part without pins moves with the
+    nearest part that has one. Raises InputError on bad arguments, or if nothing of the picture is visible.
     """
-    image = np.asarray(image)
-    if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8:
-        raise InputError(f"image: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
+    image = _as_image(image)
     if mask is not None:
         image = apply_mask(image, mask)
     return remove_background_and_mesh(image, Meshing(vertices, expand, threshold, background), name)
 
 
 def remove_background_and_mesh(image: NDArray[np.uint8], meshing: Meshing, name: str) -> Drawing:
-    """A picture (h, w, 4) uint8 as a drawing, without its background if so wanted. Raises InputError."""
+    """Make a drawing of a picture (h, w, 4) uint8; removes its background if ``meshing`` says so.
+
+    Raises InputError if nothing of the picture is visible.
+    """
     if meshing.background is None:
         return mesh_drawing(image, meshing, name)
     original = image if not image.flags.writeable else frozen(image.copy())
@@ -101,18 +101,21 @@ def remove_background_and_mesh(image: NDArray[np.uint8], meshing: Meshing, name:
 def mesh_drawing(
     image: NDArray[np.uint8], meshing: Meshing, name: str, original: NDArray[np.uint8] | None = None
 ) -> Drawing:
-    """A picture (h, w, 4) uint8 as it is with a mesh of what is visible of it. Raises InputError."""
-    made = mesh_picture(image[..., 3], meshing.vertices, meshing.expand, meshing.threshold)
-    mesh = replace(made.mesh, tied=True)
+    """Make a drawing of the visible part of a picture (h, w, 4) uint8.
+
+    original: see `Drawing`. Raises InputError if nothing of the picture is visible.
+    """
+    picture_mesh = mesh_picture(image[..., 3], meshing.vertices, meshing.expand, meshing.threshold)
+    mesh = replace(picture_mesh.mesh, tied=True)
     height, width = image.shape[:2]
     uv = (mesh.vertices / [width, height]).astype(np.float32)
     return Drawing(image, mesh, uv, name, meshing, original)
 
 
 def apply_mask(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """A picture (h, w, 4) uint8 of which only what a mask (h, w) uint8 shows is visible.
+    """Multiply the alpha of a picture (h, w, 4) uint8 by a mask (h, w) uint8; returns a new picture.
 
-    Raises InputError where they do not have the same size.
+    Raises InputError if their sizes differ.
     """
     mask = np.asarray(mask)
     if mask.ndim != 2 or mask.dtype != np.uint8:
@@ -123,3 +126,10 @@ def apply_mask(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> NDArray[np.
     result = image.copy()
     result[..., 3] = (image[..., 3].astype(np.uint16) * mask + 127) // 255
     return result
+
+
+def _as_image(value: Any) -> NDArray[np.uint8]:
+    image = np.asarray(value)
+    if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8 or not image.size:
+        raise InputError(f"image: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
+    return image

@@ -1,4 +1,4 @@
-"""Which part of the drawing plane a picture shows, and how many pixels that makes."""
+"""Framing: which rectangle of the drawing plane an exported image shows, and its size in pixels."""
 
 from collections.abc import Sequence
 from math import ceil, floor, isfinite
@@ -7,53 +7,53 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import InputError
-from ...geometry.validation import as_points
+from ...geometry.validation import Floats, as_points
 from .drawing import Drawing
 
-Box = tuple[int, int, int, int]
-Color = tuple[float, float, float]  # red, green, blue from 0 to 1, e.g. behind the drawing
+Box = tuple[int, int, int, int]  # x0, y0, x1, y1 in whole drawing units
+Color = tuple[float, float, float]  # red, green, blue from 0 to 1
 
-MAX_SIZE = 8192
+MAX_SIZE = 8192  # pixels a side
 CROPS = ("none", "frame", "pose")
-_SLACK = 1e-6  # pixels: rounding noise must not add a row
+_ROUNDING = 1e-6  # pixels: rounding noise must not add a row
 
 
 def frame_box(drawing: Drawing, poses: Sequence[ArrayLike]) -> Box:
-    """The rectangle (x0, y0, x1, y1) in whole drawing units that holds the picture's frame and all ``poses``.
+    """The smallest box around the picture's rectangle and all ``poses``, (n, 2) each.
 
-    poses: (n, 2) each. Nothing is cut off, and an animation gets one box for all its frames.
-    Raises InputError for a bad pose.
+    Raises InputError on a bad pose.
     """
-    corners = [np.array([(0, 0), drawing.size], dtype=np.float64)]
-    return _around([*corners, *(as_points(pose, "poses", len(drawing.mesh.vertices)) for pose in poses)])
+    rectangle = np.array([(0, 0), drawing.size], dtype=np.float64)
+    count = len(drawing.mesh.vertices)
+    return _bounding_box([rectangle, *(as_points(pose, "poses", count) for pose in poses)])
 
 
 def union_of_boxes(boxes: Sequence[Box]) -> Box:
-    """The rectangle that holds all of some, of which there is one at least."""
+    """The smallest box around all ``boxes``, at least one."""
     x0, y0 = np.min(boxes, axis=0)[:2].tolist()
     x1, y1 = np.max(boxes, axis=0)[2:].tolist()
     return x0, y0, x1, y1
 
 
 def crop_box(drawing: Drawing, pose: ArrayLike, crop: str) -> Box:
-    """The rectangle (x0, y0, x1, y1) in whole drawing units that an export of ``pose`` (n, 2) shows.
+    """The box that an export of ``pose`` (n, 2) shows.
 
-    crop: "none" for the picture's frame and all of the pose, "frame" for the frame alone, which may cut the
-    pose off, "pose" for what the posed mesh covers. Raises InputError for another one or a bad pose.
+    crop: "none" for the picture's rectangle and the whole pose, "frame" for the picture's rectangle alone,
+    which may cut the pose off, "pose" for the mesh in the pose. Raises InputError on any other or a bad pose.
     """
     if crop not in CROPS:
         raise InputError(f"crop: expected one of {', '.join(CROPS)}, got {crop!r}")
     if crop == "frame":
         return (0, 0, *drawing.size)
     if crop == "pose":
-        return _around([as_points(pose, "pose", len(drawing.mesh.vertices))])
+        return _bounding_box([as_points(pose, "pose", len(drawing.mesh.vertices))])
     return frame_box(drawing, [pose])
 
 
 def output_size(box: Box, scale: float) -> tuple[int, int]:
-    """Width and height in pixels of ``box`` at ``scale`` pixels per drawing unit, rounded up.
+    """Width and height in pixels of an image of ``box`` at ``scale`` pixels per drawing unit, rounded up.
 
-    Raises InputError for an empty box, a scale that is not positive, or more than `MAX_SIZE` pixels a side.
+    Raises InputError on an empty box, a scale that is not positive, or more than `MAX_SIZE` pixels a side.
     """
     x0, y0, x1, y1 = box
     if not (isfinite(scale) and scale > 0):
@@ -61,20 +61,20 @@ def output_size(box: Box, scale: float) -> tuple[int, int]:
     if not (x0 < x1 and y0 < y1):
         raise InputError(f"box: expected x0 < x1 and y0 < y1, got {box}")
     width, height = (x1 - x0) * scale, (y1 - y0) * scale
-    if max(width, height) > MAX_SIZE + _SLACK:
+    if max(width, height) > MAX_SIZE + _ROUNDING:
         raise InputError(
             f"picture size: expected at most {MAX_SIZE}×{MAX_SIZE} pixels, got {width:.0f}×{height:.0f}; "
             "choose a smaller scale"
         )
-    return max(1, ceil(width - _SLACK)), max(1, ceil(height - _SLACK))
+    return max(1, ceil(width - _ROUNDING)), max(1, ceil(height - _ROUNDING))
 
 
-def _around(points: Sequence[np.ndarray]) -> Box:
+def _bounding_box(points: Sequence[Floats]) -> Box:
     low = np.min([each.min(axis=0) for each in points], axis=0)
     high = np.max([each.max(axis=0) for each in points], axis=0)
     return (
-        floor(low[0] + _SLACK),
-        floor(low[1] + _SLACK),
-        ceil(high[0] - _SLACK),
-        ceil(high[1] - _SLACK),
+        floor(low[0] + _ROUNDING),
+        floor(low[1] + _ROUNDING),
+        ceil(high[0] - _ROUNDING),
+        ceil(high[1] - _ROUNDING),
     )

@@ -1,4 +1,4 @@
-"""Keyframes: poses at times, what is changed about them, and where a moment lies between two."""
+"""Keyframes: poses at times, with the easing between them."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -10,15 +10,15 @@ from .easing import check_keyframe_easing, keyframe_easing_function
 from .named_poses import as_pose
 
 MAX_KEYFRAME_TIME = 3600.0  # seconds
-TIME_DECIMALS = 3  # times are whole milliseconds, so that a keyframe is found by its time
+TIME_DECIMALS = 3  # whole milliseconds, so that a keyframe can be found by its time
 
 
 @dataclass(frozen=True, eq=False)
 class Keyframe:
     """A pose (n, 2) float64, in pixels, at a time in seconds.
 
-    ease: how it goes from here to the next one, a name of `easing.KEYFRAME_EASINGS`; None: as in the whole
-    animation.
+    ease: the easing from here to the next keyframe, a name of `easing.KEYFRAME_EASINGS`; None for that of
+    the animation. Raises InputError on a time or easing out of range.
     """
 
     time: float
@@ -34,8 +34,10 @@ class Keyframe:
 
 @dataclass(frozen=True, eq=False)
 class Animation:
-    """keys: in the order of their times, of which no two are alike; ease: between them, see `Keyframe`;
-    loop: whether it plays over and over.
+    """The keyframes of a document and how they play.
+
+    keyframes: with ascending times; ease: the easing after keyframes without one of their own; loop: whether
+    they play over and over. Raises InputError on times that do not ascend, or an unknown easing.
     """
 
     keyframes: tuple[Keyframe, ...] = ()
@@ -44,7 +46,7 @@ class Animation:
 
     def __post_init__(self) -> None:
         check_keyframe_easing(self.ease)
-        times = [key.time for key in self.keyframes]
+        times = [keyframe.time for keyframe in self.keyframes]
         if times != sorted(set(times)):
             raise InputError(f"keyframes: expected times that grow, got {times}")
 
@@ -55,73 +57,70 @@ class Animation:
 
     @property
     def times(self) -> tuple[float, ...]:
-        """Of all keyframes."""
-        return tuple(key.time for key in self.keyframes)
+        """The times of all keyframes, seconds."""
+        return tuple(keyframe.time for keyframe in self.keyframes)
 
     def keyframes_around(self, time: float) -> tuple[Keyframe, Keyframe, float]:
-        """The keyframes around a time, and the share of the way from one to the other that is done then.
+        """The keyframes before and after a time, and the eased share of the motion between them, 0 to 1.
 
-        Twice the same one before the first and after the last. There must be one.
+        Before the first keyframe and after the last one, that keyframe twice and 0. There must be one.
         """
-        later = next(
-            (number for number, key in enumerate(self.keyframes) if key.time > time), len(self.keyframes)
-        )
-        if later == 0 or later == len(self.keyframes):
-            alone = self.keyframes[max(later - 1, 0)]
-            return alone, alone, 0.0
+        count = len(self.keyframes)
+        later = next((index for index, keyframe in enumerate(self.keyframes) if keyframe.time > time), count)
+        if later == 0 or later == count:
+            nearest = self.keyframes[max(later - 1, 0)]
+            return nearest, nearest, 0.0
         start, end = self.keyframes[later - 1 : later + 1]
         ease = keyframe_easing_function(start.ease or self.ease)
         return start, end, ease((time - start.time) / (end.time - start.time))
 
-    def with_keyframe(self, key: Keyframe) -> "Animation":
-        """One more keyframe; one of the same time makes way, and leaves its easing where none is said."""
-        old = {each.time: each for each in self.keyframes}
-        if key.ease is None and key.time in old:
-            key = replace(key, ease=old[key.time].ease)
-        return self._of({**old, key.time: key})
+    def with_keyframe(self, keyframe: Keyframe) -> "Animation":
+        """Add a keyframe; replaces one at the same time, and keeps its easing unless it has its own."""
+        by_time = {each.time: each for each in self.keyframes}
+        if keyframe.ease is None and keyframe.time in by_time:
+            keyframe = replace(keyframe, ease=by_time[keyframe.time].ease)
+        return self._from({**by_time, keyframe.time: keyframe})
 
     def without_keyframes(self, times: Iterable[float]) -> "Animation":
-        """The keyframes but those at some times."""
-        gone = set(times)
-        return replace(self, keyframes=tuple(key for key in self.keyframes if key.time not in gone))
+        """Delete the keyframes at the given times, seconds."""
+        deleted = set(times)
+        return replace(self, keyframes=tuple(each for each in self.keyframes if each.time not in deleted))
 
-    def with_moved_keyframes(self, times: Mapping[float, float], copy: bool = False) -> "Animation":
-        """Keyframes, by their times, at other times; those that stand there make way; copy: they stay."""
-        keys = {key.time: key for key in self.keyframes}
-        stay = {time: key for time, key in keys.items() if copy or time not in times}
-        return self._of({**stay, **_shifted(keys, times)})
+    def with_moved_keyframes(self, moves: Mapping[float, float], copy: bool = False) -> "Animation":
+        """Move keyframes from old times to new ones, seconds; replaces keyframes that are there already.
+
+        copy: leave the originals where they are.
+        """
+        by_time = {keyframe.time: keyframe for keyframe in self.keyframes}
+        staying = {time: keyframe for time, keyframe in by_time.items() if copy or time not in moves}
+        moved = [replace(by_time[old], time=new) for old, new in moves.items() if old in by_time]
+        return self._from({**staying, **{keyframe.time: keyframe for keyframe in moved}})
 
     def with_easing(self, times: Iterable[float] | None, ease: str | None) -> "Animation":
-        """Another easing from some keyframes on, by their times; without times, where none is said.
+        """Set the easing after the keyframes at ``times``; None sets that of the animation.
 
-        Raises InputError.
+        Raises InputError on an unknown easing.
         """
         if times is None:
             return replace(self, ease=check_keyframe_easing(ease))
-        chosen = set(times)
-        keys = (replace(key, ease=ease) if key.time in chosen else key for key in self.keyframes)
-        return replace(self, keyframes=tuple(keys))
+        changed = set(times)
+        keyframes = (replace(each, ease=ease) if each.time in changed else each for each in self.keyframes)
+        return replace(self, keyframes=tuple(keyframes))
 
-    def with_poses(self, carry: Callable[[Floats], Floats]) -> "Animation":
-        """The same on another mesh; carry: makes its poses of those that are here."""
-        poses = {id(key.positions): key.positions for key in self.keyframes}
-        made = {number: carry(pose) for number, pose in poses.items()}
-        return replace(
-            self, keyframes=tuple(replace(key, positions=made[id(key.positions)]) for key in self.keyframes)
-        )
+    def map_poses(self, change: Callable[[Floats], Floats]) -> "Animation":
+        """Replace each pose by ``change(pose)``; keyframes that share a pose share the new one."""
+        old_poses = {id(keyframe.positions): keyframe.positions for keyframe in self.keyframes}
+        new_poses = {identity: change(pose) for identity, pose in old_poses.items()}
+        keyframes = (replace(each, positions=new_poses[id(each.positions)]) for each in self.keyframes)
+        return replace(self, keyframes=tuple(keyframes))
 
-    def _of(self, keys: Mapping[float, Keyframe]) -> "Animation":
-        return replace(self, keyframes=tuple(keys[time] for time in sorted(keys)))
+    def _from(self, by_time: Mapping[float, Keyframe]) -> "Animation":
+        return replace(self, keyframes=tuple(by_time[time] for time in sorted(by_time)))
 
 
 NO_ANIMATION = Animation()
 
 
-def _shifted(keys: Mapping[float, Keyframe], times: Mapping[float, float]) -> dict[float, Keyframe]:
-    shifted = (replace(keys[old], time=new) for old, new in times.items() if old in keys)
-    return {key.time: key for key in shifted}
-
-
 def as_keyframe_time(value: Any) -> float:
-    """A time as keyframes have it. Raises InputError out of range."""
+    """``value`` in seconds, rounded to whole milliseconds. Raises InputError out of range."""
     return round(as_number(value, "time of a keyframe", 0, MAX_KEYFRAME_TIME), TIME_DECIMALS)

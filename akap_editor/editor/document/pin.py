@@ -1,20 +1,23 @@
-"""A point of the drawing that the artist controls."""
+"""Pins: the points of a drawing that the artist controls."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ...geometry.mesh import MeshPoints
 from ...geometry.validation import Floats, frozen
 
 
 @dataclass(frozen=True, eq=False)
 class Pin:
-    """A point of the drawing that the artist controls.
+    """A point of the drawing that the artist controls; arrays are copied and read-only.
 
-    id: unique in its document; face, weights (3,): where on the mesh; target (2,): where it should be,
-    in pixels; depth: what is higher passes in front, see `depth.face_order`; angle: by how many radians the
-    drawing around it is to be turned from rest (clockwise on the screen), None where it turns as it will.
+    id: unique in its document; face, weights: its place on the mesh, weights (3,) float64 barycentric;
+    target: (2,) float64, where it is to go, pixels; depth: higher is nearer to the viewer, see
+    `depth.face_order`; angle: to which the drawing around the pin is to rotate, radians from the rest pose,
+    clockwise on the screen; None lets it rotate freely.
     """
 
     id: int
@@ -38,3 +41,11 @@ class Pin:
             **({"depth": int(self.depth)} if self.depth else {}),
             **({"angle": float(self.angle)} if self.angle is not None else {}),
         }
+
+
+def pin_points(pins: Sequence[Pin]) -> MeshPoints:
+    """The places of pins on the mesh, (k,), in order. Raises InputError on weights that do not sum to 1."""
+    return MeshPoints(
+        np.array([pin.face for pin in pins], dtype=np.int32),
+        np.array([pin.weights for pin in pins]).reshape(-1, 3),
+    )

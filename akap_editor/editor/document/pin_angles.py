@@ -1,4 +1,4 @@
-"""How far the drawing is turned around its pins."""
+"""How far the drawing is rotated around its pins."""
 
 import math
 from collections.abc import Container, Sequence
@@ -11,46 +11,49 @@ from ...deform.akap.pin_rotation import PinRotationConstraints
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.operators import to_complex
 from ...geometry.validation import Floats
-from .pin import Pin
+from .pin import Pin, pin_points
 
-MAX_PIN_ANGLE = 20 * math.pi  # radians either way that a pin can hold
+MAX_PIN_ANGLE = 20 * math.pi  # radians, in either direction
+
+_MeasuredPins = tuple[tuple[int, bytes, bool], ...]  # face, weights, and whether its angle is measured
 
 
-def pin_angles(mesh: TriMesh, pins: Sequence[Pin], positions: Floats, also: Container[int] = ()) -> Floats:
-    """(k,) radians from rest in the pose (n, 2), in (−π, π], of pins that hold an angle; NaN for the others.
+def pin_angles(
+    mesh: TriMesh, pins: Sequence[Pin], positions: Floats, extra_ids: Container[int] = ()
+) -> Floats:
+    """Rotation around each pin in the pose (n, 2), (k,) radians from rest in (−π, π].
 
-    also: ids of more pins, measured as if they held one.
+    NaN for pins that hold no angle, except those of ``extra_ids``.
     """
-    places = tuple((pin.face, pin.weights.tobytes(), pin.angle is not None or pin.id in also) for pin in pins)
-    if not any(holds for *_, holds in places):
+    measured = tuple(
+        (pin.face, pin.weights.tobytes(), pin.angle is not None or pin.id in extra_ids) for pin in pins
+    )
+    if not any(is_measured for *_, is_measured in measured):
         return np.full(len(pins), np.nan)
-    return _turning(mesh, places).angles(to_complex(positions))
+    return _rotation_constraints(mesh, measured).angles(to_complex(positions))
 
 
 @lru_cache(maxsize=8)
-def _turning(mesh: TriMesh, places: tuple[tuple[int, bytes, bool], ...]) -> PinRotationConstraints:
-    faces, weights, holds = zip(*places, strict=True)
-    points = MeshPoints(np.array(faces, dtype=np.int32), np.array([np.frombuffer(each) for each in weights]))
-    return PinRotationConstraints(mesh, points, np.array(holds))
+def _rotation_constraints(mesh: TriMesh, pins: _MeasuredPins) -> PinRotationConstraints:
+    faces, weights, is_measured = zip(*pins, strict=True)
+    points = MeshPoints(np.array(faces, dtype=np.int32), np.array([np.frombuffer(row) for row in weights]))
+    return PinRotationConstraints(mesh, points, np.array(is_measured))
 
 
 def pins_fixed_at_pose(mesh: TriMesh, pins: Sequence[Pin], positions: Floats) -> tuple[Pin, ...]:
-    """Pins that are to stay as they are in a pose (n, 2), also turned so where they hold an angle."""
-    points = MeshPoints(
-        np.array([pin.face for pin in pins], dtype=np.int32),
-        np.array([pin.weights for pin in pins]).reshape(-1, 3),
-    )
-    places, angles = mesh.evaluate(points, positions), pin_angles(mesh, pins, positions)
+    """Pins with targets, and held angles, equal to those in a pose (n, 2), so that they stay there."""
+    targets = mesh.evaluate(pin_points(pins), positions)
+    angles = pin_angles(mesh, pins, positions)
     return tuple(
-        replace(pin, target=place, angle=None if pin.angle is None else float(angle))
-        for pin, place, angle in zip(pins, places, angles, strict=True)
+        replace(pin, target=target, angle=None if pin.angle is None else float(angle))
+        for pin, target, angle in zip(pins, targets, angles, strict=True)
     )
 
 
 def with_held_angles(
     mesh: TriMesh, pins: Sequence[Pin], positions: Floats, ids: Container[int], hold: bool
 ) -> tuple[Pin, ...]:
-    """Pins of which those with these ids hold the angles that they have in a pose (n, 2), or none."""
+    """All pins; those with the given ids hold their angles in a pose (n, 2), or if not ``hold`` no angle."""
     angles = pin_angles(mesh, pins, positions, ids if hold else ())
     return tuple(
         replace(pin, angle=float(angle) if hold else None) if pin.id in ids else pin
@@ -59,18 +62,18 @@ def with_held_angles(
 
 
 class FullTurnCounter:
-    """Counts full turns, of which a pose says nothing, from one step to the next."""
+    """Adds full turns to the angles of pins from one step to the next; a single pose does not show them."""
 
     def __init__(self) -> None:
-        self._last: dict[int, float] = {}
+        self._last_angles: dict[int, float] = {}  # radians, by the pin's id
 
-    def forget(self) -> None:
-        """Begin anew: pins have the shorter way to the angles that they hold."""
-        self._last = {}
+    def reset(self) -> None:
+        """Start anew: the next angles are those within π of the angles that the pins hold."""
+        self._last_angles = {}
 
     def unwrap(self, pins: Sequence[Pin], angles: Floats) -> Floats:
-        """What `pin_angles` has found for ``pins`` (k,), with full turns."""
-        near = np.array([self._last.get(pin.id, pin.angle or 0.0) for pin in pins])
-        result = angles + 2 * np.pi * np.round((near - angles) / (2 * np.pi))
-        self._last = {pin.id: float(angle) for pin, angle in zip(pins, result, strict=True)}
-        return np.asarray(result)
+        """Add full turns to ``angles`` (k,) of `pin_angles` that bring each nearest to its last value."""
+        last_angles = np.array([self._last_angles.get(pin.id, pin.angle or 0.0) for pin in pins])
+        unwrapped = angles + 2 * np.pi * np.round((last_angles - angles) / (2 * np.pi))
+        self._last_angles = {pin.id: float(angle) for pin, angle in zip(pins, unwrapped, strict=True)}
+        return np.asarray(unwrapped)

@@ -1,4 +1,4 @@
-"""Another mesh for a drawing that is already bent: pins and pose are carried over."""
+"""Remeshing: another mesh for a posed drawing; pins, poses and stiffness are transferred to it."""
 
 from dataclasses import replace
 
@@ -8,127 +8,149 @@ import shapely
 from ...errors import InputError
 from ...geometry.area_bounds import grow_faces
 from ...geometry.mesh import TriMesh, barycentric, signed_areas
+from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints
 from .document import EditState
 from .drawing import Drawing, Meshing, mesh_drawing, remove_background_and_mesh
 from .pin import Pin
 
-_ON_PICTURE = 0.5  # pixels by which vertices may be beside where their texture coordinates say
-_COMPLEX = np.array([1, 1j])  # makes x + iy of (x, y)
-_THIN = 0.02  # share of its rest area that a face gets when it is unfolded
-_ROUNDS, _DOUBLING = 1000, 200  # most rounds of unfolding, tens are usual; how many until that share doubles
-_LOST = 0.08  # share of √area: a pin farther from the new mesh sat on a part that is gone
+_MAX_UV_OFFSET = 0.5  # pixels of a vertex from its texture coordinates on the picture
+_MAX_PIN_DISTANCE = 0.08  # share of √area: a pin farther from the new mesh was on a part that is gone
+_MIN_AREA = 0.02  # share of the rest area to which flipped faces grow
+_MAX_ROUNDS = 1000  # of growing faces; tens are usual
+_ROUNDS_PER_DOUBLING = 200  # of `_MIN_AREA`, because small faces may keep flipping back
 
 
 def remesh_drawing(drawing: Drawing, meshing: Meshing) -> Drawing:
-    """The same picture with a mesh made in another way.
+    """Make another mesh of the same picture.
 
-    Raises InputError where there would be nothing to cut out, or where the mesh does not lie on its picture,
-    as one that came from a file need not.
+    Raises InputError if nothing of the picture is visible, or if the mesh does not lie on its picture, which
+    may be so for a mesh from a file or after a new rest pose.
     """
-    made = drawing.meshing or Meshing()
-    away = np.abs(drawing.uv * np.array(drawing.size) - drawing.mesh.vertices).max()
-    if away > _ON_PICTURE:
+    current = drawing.meshing or Meshing()
+    offset = np.abs(drawing.uv * np.array(drawing.size) - drawing.mesh.vertices).max()
+    if offset > _MAX_UV_OFFSET:
         raise InputError(
             f"the mesh of {drawing.name} cannot be made anew: expected one that lies on its picture, "
-            f"but a vertex is {away:.1f} pixels away from its place there"
+            f"but a vertex is {offset:.1f} pixels away from its place there"
         )
-    if meshing.background == made.background:
+    if meshing.background == current.background:
         return mesh_drawing(drawing.image, meshing, drawing.name, drawing.original)
-    before = drawing.original if drawing.original is not None else drawing.image
-    return remove_background_and_mesh(before, meshing, drawing.name)
+    image = drawing.original if drawing.original is not None else drawing.image
+    return remove_background_and_mesh(image, meshing, drawing.name)
 
 
-def transfer_state(state: EditState, old: TriMesh, drawing: Drawing) -> EditState:
-    """The state of a drawing with the mesh ``old`` on another mesh of the same picture.
+def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditState:
+    """Transfer a state of ``mesh`` to the mesh of ``drawing``, which shows the same picture.
 
-    The pose goes on as a map: a vertex goes where its place was taken, one beside the old mesh goes along
-    with the face nearest to it, rigidly. Pins stay where they are on the drawing; those on parts that are
-    gone are gone. Faces are as stiff as the old ones nearest to them. They do not flip where none was
-    flipped; InputError is raised where that is not possible.
+    Poses are transferred by `map_points`; if no face of the current pose is flipped, none will be. Pins stay
+    at their places on the picture; those on parts that are gone are removed. Each face gets the stiffness of
+    the nearest old one. Raises InputError if faces flip that cannot be unflipped.
     """
-    mesh = drawing.mesh
-    at_rest = np.array_equal(state.positions, old.vertices)
-    positions = mesh.vertices if at_rest else _carried(mesh.vertices, old, state.positions)
-    flipped = signed_areas(positions, mesh.faces) <= 0
-    if flipped.any() and (signed_areas(state.positions, old.faces) > 0).all():
-        positions = _unfolded(positions, mesh)
-        if (signed_areas(positions, mesh.faces) <= 0).any():
+    new_mesh = drawing.mesh
+    is_at_rest = np.array_equal(state.positions, mesh.vertices)
+    positions = new_mesh.vertices if is_at_rest else map_points(new_mesh.vertices, mesh, state.positions)
+    if _has_flipped(positions, new_mesh) and not _has_flipped(state.positions, mesh):
+        positions = _unflip_faces(positions, new_mesh)
+        if _has_flipped(positions, new_mesh):
             raise InputError(
-                f"the drawing is bent too sharply for a mesh of {len(mesh.vertices)} vertices: "
+                f"the drawing is bent too sharply for a mesh of {len(new_mesh.vertices)} vertices: "
                 "expected a pose that it can follow; bend it less first"
             )
-    pins = _moved_pins(state, old, mesh)
-    poses = tuple(
-        replace(pose, positions=_carried(mesh.vertices, old, pose.positions)) for pose in state.poses
-    )
-    animation = state.animation.with_poses(lambda pose: _carried(mesh.vertices, old, pose))
     stiffness = state.stiffness
     if stiffness is not None:
-        stiffness = stiffness[_nearest(mesh.vertices[mesh.faces].mean(axis=1), old)[0]]
-    return EditState(pins, positions, state.settings, drawing, poses, stiffness, animation)
+        centers = new_mesh.vertices[new_mesh.faces].mean(axis=1)
+        stiffness = stiffness[_nearest_on_mesh(centers, mesh)[0]]
+    return EditState(
+        pins=_transfer_pins(state, mesh, new_mesh),
+        positions=positions,
+        settings=state.settings,
+        drawing=drawing,
+        poses=tuple(
+            replace(pose, positions=map_points(new_mesh.vertices, mesh, pose.positions))
+            for pose in state.poses
+        ),
+        stiffness=stiffness,
+        animation=state.animation.map_poses(lambda pose: map_points(new_mesh.vertices, mesh, pose)),
+    )
 
 
-def _nearest(points: Floats, mesh: TriMesh) -> tuple[Ints, Floats, Floats]:
-    """The face (k,) that each of ``points`` (k, 2) is on or nearest to, the place there, (k, 2), and its
-    weights (k, 3).
+def map_points(points: Floats, mesh: TriMesh, pose: Floats) -> Floats:
+    """Map points (k, 2) of the rest pose of ``mesh`` to its ``pose`` (n, 2).
+
+    The map is linear on each face. A point outside the mesh moves rigidly with the nearest face.
+    """
+    faces, nearest, weights = _nearest_on_mesh(points, mesh)
+    rest_corners, corners = mesh.vertices[mesh.faces[faces]], pose[mesh.faces[faces]]
+    is_outside = np.abs(points - nearest).max(axis=1) > 0
+    mapped = np.einsum("kc,kcd->kd", weights, corners)
+    # The rotation of a face that fits its corners best, as a complex number of modulus 1.
+    arms = _centered(rest_corners)
+    rotation = _unit((arms.conj() * _centered(corners)).sum(axis=1))
+    offset = rotation * to_complex(points - nearest)
+    mapped[is_outside] += to_points(offset)[is_outside]
+    return mapped
+
+
+def _nearest_on_mesh(points: Floats, mesh: TriMesh) -> tuple[Ints, Floats, Floats]:
+    """Points of the rest pose that are nearest to ``points`` (k, 2).
+
+    Returns their faces (k,), their positions (k, 2), and their barycentric weights (k, 3).
     """
     corners = mesh.vertices[mesh.faces]
     triangles = shapely.polygons(corners)
-    places = shapely.points(points)
-    faces = shapely.STRtree(triangles).nearest(places)
-    lines = shapely.shortest_line(triangles[faces], places)
-    on_face = shapely.get_coordinates(lines).reshape(-1, 2, 2)[:, 0]
-    inside = shapely.intersects(triangles[faces], places)
-    on_face[inside] = points[inside]
-    weights = np.clip(barycentric(corners[faces], on_face), 0.0, 1.0)
+    shapely_points = shapely.points(points)
+    faces = shapely.STRtree(triangles).nearest(shapely_points)
+    lines = shapely.shortest_line(triangles[faces], shapely_points)
+    nearest = shapely.get_coordinates(lines).reshape(-1, 2, 2)[:, 0]
+    is_inside = shapely.intersects(triangles[faces], shapely_points)
+    nearest[is_inside] = points[is_inside]
+    weights = np.clip(barycentric(corners[faces], nearest), 0.0, 1.0)
     weights /= weights.sum(axis=1, keepdims=True)
-    return faces, on_face, weights
+    return faces, nearest, weights
 
 
-def _carried(points: Floats, old: TriMesh, pose: Floats) -> Floats:
-    """Where the map from the mesh ``old`` at rest to its ``pose`` takes points (k, 2)."""
-    faces, on_face, weights = _nearest(points, old)
-    corners, moved = old.vertices[old.faces[faces]], pose[old.faces[faces]]
-    outside = np.abs(points - on_face).max(axis=1) > 0
-    result = np.einsum("kc,kcd->kd", weights, moved)
-    arms = (corners - corners.mean(axis=1, keepdims=True)) @ _COMPLEX
-    turn = _unit((arms.conj() * ((moved - moved.mean(axis=1, keepdims=True)) @ _COMPLEX)).sum(axis=1))
-    offset = turn * ((points - on_face) @ _COMPLEX)
-    result[outside] += np.stack([offset.real, offset.imag], axis=1)[outside]
-    return result
-
-
-def _moved_pins(state: EditState, old: TriMesh, mesh: TriMesh) -> tuple[Pin, ...]:
+def _transfer_pins(state: EditState, mesh: TriMesh, new_mesh: TriMesh) -> tuple[Pin, ...]:
+    """The pins at their places of the rest pose on another mesh, without those that are too far from it."""
     if not state.pins:
         return ()
-    places = old.evaluate(state.points, old.vertices)
-    faces, on_face, weights = _nearest(places, mesh)
-    near = np.linalg.norm(places - on_face, axis=1) <= _LOST * mesh.length
+    rest_positions = mesh.evaluate(state.points, mesh.vertices)
+    faces, nearest, weights = _nearest_on_mesh(rest_positions, new_mesh)
+    distances = np.linalg.norm(rest_positions - nearest, axis=1)
     return tuple(
-        replace(pin, face=int(face), weights=weight)
-        for pin, face, weight, stays in zip(state.pins, faces, weights, near, strict=True)
-        if stays
+        replace(pin, face=int(face), weights=row)
+        for pin, face, row, distance in zip(state.pins, faces, weights, distances, strict=True)
+        if distance <= _MAX_PIN_DISTANCE * new_mesh.length
     )
 
 
-def _unfolded(positions: Floats, mesh: TriMesh) -> Floats:
-    """The pose with the few faces unfolded that have flipped because they lie across sharply bent ones.
+def _has_flipped(positions: Floats, mesh: TriMesh) -> bool:
+    return bool((signed_areas(positions, mesh.faces) <= 0).any())
 
-    Again and again the corners of each face that is flipped, or nearly so, are moved the shortest way that
-    gives it a little area, and by the mean of these moves where faces share them.
+
+def _unflip_faces(positions: Floats, mesh: TriMesh) -> Floats:
+    """Unflip the few faces of a pose (n, 2) that lie across sharply bent old ones, as far as possible.
+
+    Repeatedly grows faces that are flipped, or nearly so, to a small area by the shortest moves of their
+    corners, until no face is flipped.
     """
-    pose = positions @ _COMPLEX
-    for number in range(_ROUNDS):
-        least = _THIN * 2 ** (number / _DOUBLING) * mesh.rest_areas
-        areas = signed_areas(np.stack([pose.real, pose.imag], axis=1), mesh.faces)
+    pose = to_complex(positions)
+    for index in range(_MAX_ROUNDS):
+        min_areas = _MIN_AREA * 2 ** (index / _ROUNDS_PER_DOUBLING) * mesh.rest_areas
+        areas = signed_areas(to_points(pose), mesh.faces)
         if areas.min() > 0:
             break
-        thin = np.flatnonzero(areas < least)
-        pose = grow_faces(pose, mesh.faces[thin], least[thin] - areas[thin], least[thin])
-    return np.stack([pose.real, pose.imag], axis=1)
+        small = np.flatnonzero(areas < min_areas)
+        pose = grow_faces(pose, mesh.faces[small], min_areas[small] - areas[small], min_areas[small])
+    return to_points(pose)
+
+
+def _centered(corners: Floats) -> Complexes:
+    """Corners (k, 3, 2) relative to their centroids, (k, 3) complex."""
+    return (corners - corners.mean(axis=1, keepdims=True)) @ np.array([1, 1j])
 
 
 def _unit(values: Complexes) -> Complexes:
+    """``values`` divided by their moduli; 1 where the value is 0."""
     size = np.abs(values)
     return np.where(size > 0, values / np.where(size > 0, size, 1.0), 1.0)

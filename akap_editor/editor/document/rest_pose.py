@@ -1,4 +1,4 @@
-"""The current pose as the rest pose: from then on the drawing springs back to it, and bends from it."""
+"""The current pose as the new rest pose, to which the drawing springs back and from which it deforms."""
 
 from dataclasses import replace
 
@@ -10,10 +10,10 @@ from .pin_angles import pins_fixed_at_pose
 
 
 def with_pose_as_rest(state: EditState, drawing: Drawing) -> EditState:
-    """``state`` of ``drawing`` with its pose as the rest pose: nothing moves, pins stay where they are.
+    """A state of ``drawing`` with its current pose as the rest pose; no vertex moves, pins stay.
 
-    The picture stays on the mesh as it is. Raises InputError where faces are flipped, for a mesh at rest has
-    none.
+    The picture stays on the mesh. Raises InputError if the pose has flipped faces, which a rest pose may not
+    have.
     """
     flipped = int((signed_areas(state.positions, drawing.mesh.faces) <= 0).sum())
     if flipped:
@@ -27,7 +27,7 @@ def with_pose_as_rest(state: EditState, drawing: Drawing) -> EditState:
 
 
 def bake(document: Document) -> Document:
-    """A document with its pose as the rest pose, see `with_pose_as_rest`. Raises InputError."""
+    """A document with its current pose as the rest pose, see `with_pose_as_rest`. Raises InputError."""
     state = with_pose_as_rest(document.state, document.drawing)
     assert state.drawing is not None
     return replace(document.with_state(state), drawing=state.drawing)

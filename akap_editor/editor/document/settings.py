@@ -1,39 +1,38 @@
-"""The deformation method of a drawing, and its parameters."""
+"""The deformation method of a document, and its parameters."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...deform.methods import DEFAULT_METHOD, get_method, parse_method
-
-
-def _document_defaults(method: str) -> tuple[tuple[str, Any], ...]:
-    return tuple(sorted(get_method(method).document_defaults.items()))
+from ...deform.methods import parse_method
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How the drawing bends: the method's name and its parameters (see `deform.methods.make_deformer`)."""
+    """How the drawing deforms: a method's name and its parameters, see `deform.deformer.make_deformer`.
 
-    method: str = DEFAULT_METHOD
-    parameters: tuple[tuple[str, Any], ...] = _document_defaults(DEFAULT_METHOD)
+    Parameters that are absent have the method's own defaults.
+    """
+
+    method: str = "akap"
+    parameters: tuple[tuple[str, Any], ...] = (("memory", 1.0),)
 
     def get(self, name: str, default: Any = None) -> Any:
-        """The value of one parameter, or ``default`` where it is left to the method."""
+        """The value of a parameter, ``default`` if it is absent."""
         return dict(self.parameters).get(name, default)
 
     def with_parameter(self, name: str, value: Any) -> "Settings":
-        """These settings with one parameter changed."""
+        """These settings with one parameter changed or added."""
         return replace(self, parameters=tuple(sorted({**dict(self.parameters), name: value}.items())))
 
     @classmethod
-    def of(cls, spec: str) -> "Settings":
-        """The editor's settings of a method, with what ``spec`` says of it (see `parse_method`).
+    def parse(cls, spec: str) -> "Settings":
+        """Read settings from a text such as "akap:memory=0.5", see `parse_method`.
 
-        Raises InputError.
+        Parameters that are absent have the editor's defaults. Raises InputError.
         """
         name, parameters = parse_method(spec)
-        settings = cls(name, _document_defaults(name))
+        settings = cls() if name == cls.method else cls(name, ())
         for parameter, value in parameters.items():
             settings = settings.with_parameter(parameter, value)
         return settings
@@ -44,5 +43,5 @@ class Settings:
 
     @classmethod
     def from_json(cls, record: Mapping[str, Any]) -> "Settings":
-        """Read what `to_json` wrote; parameters in the order of their names. Raises KeyError, TypeError."""
+        """Read the object of `to_json`; sorts parameters by name. Raises KeyError, TypeError, ValueError."""
         return cls(str(record["method"]), tuple(sorted(dict(record["parameters"]).items())))

@@ -1,4 +1,4 @@
-"""Parts that bend less: factors of the faces' energies, painted with a soft brush."""
+"""Stiffness: factors by which faces deform less, painted with a soft brush."""
 
 from functools import lru_cache
 
@@ -9,61 +9,62 @@ from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, as_number, as_points
 
-MIN_STIFFNESS, MAX_STIFFNESS = 1.0, 1000.0  # 1 bends as the drawing does by itself
-_FULL_STRENGTH = 0.5  # share of a brush's radius within which it works fully
-_DECIMALS = 2  # decimals of a factor: few, so that files and recordings stay small
+MIN_STIFFNESS, MAX_STIFFNESS = 1.0, 1000.0  # factors of the energy of a face; 1 leaves it as it is
+_FULL_STRENGTH = 0.5  # share of a brush's radius inside which a dab covers fully
+_DECIMALS = 2  # of a factor: few, so that files and recordings stay small
 
 
 def as_stiffness(values: ArrayLike, faces: int) -> Floats:
-    """Factors (m,) float64 of so many faces. Raises InputError where they are not from 1 to 1000."""
+    """``values`` as factors (faces,) float64. Raises InputError on another shape or factors out of range."""
     try:
         factors = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InputError(f"stiffness: expected {faces} numbers, got something else") from error
     if factors.shape != (faces,):
         raise InputError(f"stiffness: expected {faces} numbers, got shape {factors.shape}")
-    outside = factors[~((factors >= MIN_STIFFNESS) & (factors <= MAX_STIFFNESS))]
-    if len(outside):
+    out_of_range = factors[~((factors >= MIN_STIFFNESS) & (factors <= MAX_STIFFNESS))]
+    if len(out_of_range):
         expected = f"factors from {MIN_STIFFNESS:g} to {MAX_STIFFNESS:g}"
-        raise InputError(f"stiffness: expected {expected}, got {outside[0]:g}")
+        raise InputError(f"stiffness: expected {expected}, got {out_of_range[0]:g}")
     return factors
 
 
 def stroke_coverage(mesh: TriMesh, dabs: ArrayLike, radius: float) -> Floats:
-    """How much of each face, (m,) from 0 to 1, brushes at ``dabs`` (d, 2) with this radius cover at rest.
+    """How much of each face of the rest pose a stroke covers, (m,) from 0 to 1.
 
-    All of it near a dab, softly less towards the rim. A brush is never smaller than the face it is on.
-    Raises InputError.
+    dabs: (d, 2) centers of the brush, pixels; radius: of the brush, pixels, but at least that of the face
+    under it. Coverage falls off smoothly towards the edge of a dab. Raises InputError on bad arguments.
     """
     radius = as_number(radius, "radius", 0.0, np.inf)
-    x, y, sizes = _faces(mesh)
-    reach, result = max(radius, sizes.max()), np.zeros(len(sizes))
+    x, y, face_radii = _face_discs(mesh)
+    reach, coverage = max(radius, face_radii.max()), np.zeros(len(face_radii))
     for dab_x, dab_y in as_points(dabs, "dabs").tolist():
         dx, dy = x - dab_x, y - dab_y
         near = np.flatnonzero((np.abs(dx) <= reach) & (np.abs(dy) <= reach))
-        away = np.hypot(dx[near], dy[near])
-        share = (1.0 - away / np.maximum(radius, sizes[near])) / (1.0 - _FULL_STRENGTH)
-        result[near] = np.maximum(result[near], np.clip(share, 0.0, 1.0))
-    return result * result * (3.0 - 2.0 * result)
+        distances = np.hypot(dx[near], dy[near])
+        falloff = (1.0 - distances / np.maximum(radius, face_radii[near])) / (1.0 - _FULL_STRENGTH)
+        coverage[near] = np.maximum(coverage[near], np.clip(falloff, 0.0, 1.0))
+    return coverage * coverage * (3.0 - 2.0 * coverage)
 
 
 @lru_cache(maxsize=2)
-def _faces(mesh: TriMesh) -> tuple[Floats, Floats, Floats]:
-    """Centers of the faces at rest, x (m,) and y (m,), and how far they reach from there, (m,)."""
+def _face_discs(mesh: TriMesh) -> tuple[Floats, Floats, Floats]:
+    """Centroids x and y, (m,) each, of the rest faces, and the distances to their farthest corners, (m,)."""
     corners = mesh.vertices[mesh.faces]
     centers = corners.mean(axis=1)
-    sizes = np.sqrt(((corners - centers[:, None]) ** 2).sum(axis=2).max(axis=1))
-    return centers[:, 0].copy(), centers[:, 1].copy(), sizes
+    radii = np.sqrt(((corners - centers[:, None]) ** 2).sum(axis=2).max(axis=1))
+    return centers[:, 0].copy(), centers[:, 1].copy(), radii
 
 
-def apply_stroke(stiffness: Floats | None, covered: Floats, factor: float) -> Floats | None:
-    """Factors (m,) after a stroke with ``factor`` that covers faces so far, (m,); None is 1 everywhere.
+def apply_stroke(stiffness: Floats | None, coverage: Floats, factor: float) -> Floats | None:
+    """Factors (m,) after a stroke that covers faces by ``coverage`` (m,); None is 1 everywhere.
 
-    What is half covered comes half-way, in equal ratios. A factor of 1 erases. Raises InputError.
+    Logarithms of factors are blended, so a face that is half covered gets the geometric mean. A factor of 1
+    erases. Raises InputError on a factor out of range.
     """
     factor = as_number(factor, "factor", MIN_STIFFNESS, MAX_STIFFNESS)
-    before = np.zeros(len(covered)) if stiffness is None else np.log(stiffness)
-    after = before + covered * (np.log(factor) - before)
-    factors = np.clip(np.round(np.exp(after), _DECIMALS), MIN_STIFFNESS, MAX_STIFFNESS)
-    factors = np.where(covered > 0, factors, 1.0 if stiffness is None else stiffness)
+    log_before = np.zeros(len(coverage)) if stiffness is None else np.log(stiffness)
+    log_after = log_before + coverage * (np.log(factor) - log_before)
+    factors = np.clip(np.round(np.exp(log_after), _DECIMALS), MIN_STIFFNESS, MAX_STIFFNESS)
+    factors = np.where(coverage > 0, factors, 1.0 if stiffness is None else stiffness)
     return None if (factors == 1.0).all() else factors

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...deform.deformer import StepResult
-from ...deform.methods import get_method
+from ...deform.deformer import StepResult, holds_angles
 from ...errors import SolverError
 from ...geometry.validation import Floats
 from ..document.document import Document, EditState
@@ -138,7 +137,7 @@ class Session:
     @property
     def supports_rotation(self) -> bool:
         """Whether pins can hold angles with the current method."""
-        return get_method(self.state.settings.method).deformer.holds_angles
+        return holds_angles(self.state.settings.method)
 
     @property
     def has_pending_step(self) -> bool:

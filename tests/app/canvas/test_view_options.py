@@ -4,7 +4,7 @@ from imgui_bundle import imgui  # isort: skip
 import numpy as np
 import pytest
 
-from akap_editor.app import reference
+from akap_editor.app import file_commands
 from akap_editor.app.canvas.view_options import RANGES, arrows, heat, softened, spread
 from akap_editor.geometry.distortion import distortion
 from akap_editor.io.images import write_png
@@ -119,11 +119,11 @@ def test_a_click_on_the_scale_chooses_another_range(pinned):
 
 def test_a_reference_picture_is_chosen_by_its_file(pinned, tmp_path, image):
     write_png(tmp_path / "behind.png", image)
-    reference.ask(pinned.state)
+    file_commands.choose_reference(pinned.state)
     pinned.settle()
     pinned.type_name("Choose reference picture", str(tmp_path / "behind.png"))
     assert (pinned.state.view.reference.image == image).all()
-    reference.ask(pinned.state)
+    file_commands.choose_reference(pinned.state)
     pinned.settle()
     (tmp_path / "broken.png").write_bytes(b"no picture")
     pinned.type_name("Choose reference picture", str(tmp_path / "broken.png"))

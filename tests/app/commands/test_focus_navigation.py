@@ -146,8 +146,8 @@ def test_the_menu_of_a_pin_is_walked_by_keys(pinned):
 @pytest.fixture
 def keyed(pinned):
     """Keyframes at 0 and at 1 second."""
-    playback = pinned.state.keyframe_playback
-    pinned.state.show_timeline, pinned.state.timeline = True, "keyframes"
+    playback = pinned.state.timeline.keyframe_playback
+    pinned.state.timeline.is_shown, pinned.state.timeline.mode = True, "keyframes"
     pinned.settle()
     playback.put(0.0)
     gestures.move_pin(pinned.editor, 3, (210.0, 50.0))
@@ -172,16 +172,16 @@ def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
 
 
 def test_stepping_stops_what_plays(keyed):
-    keyed.state.playback.play()
+    keyed.state.timeline.playback.play()
     keys(keyed, Key.page_down)
-    assert not keyed.state.playback.playing
+    assert not keyed.state.timeline.playback.playing
 
 
 def test_the_session_is_looked_back_at_by_keys(pinned):
-    pinned.state.show_timeline = True
+    pinned.state.timeline.is_shown = True
     gestures.move_pin(pinned.editor, 3, (210.0, 50.0))
     pinned.settle()
-    playback = pinned.state.session_playback
+    playback = pinned.state.timeline.session_playback
     keys(pinned, Key.home)
     assert playback.at == 0.0
     assert pinned.session.is_previewing
@@ -190,9 +190,9 @@ def test_the_session_is_looked_back_at_by_keys(pinned):
 
 
 def test_keys_that_walk_a_panel_move_no_time(keyed):
-    keyed.state.keyframe_playback.scrub(0.5)
+    keyed.state.timeline.keyframe_playback.scrub(0.5)
     keys(keyed, Key.tab, Key.page_down, Key.end, Key.home)
-    assert keyed.state.keyframe_playback.at == 0.5
+    assert keyed.state.timeline.keyframe_playback.at == 0.5
 
 
 # -- around the canvas --------------------------------------------------------------------------------------

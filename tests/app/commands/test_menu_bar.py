@@ -3,6 +3,7 @@
 from imgui_bundle import imgui  # isort: skip
 import pytest
 
+from akap_editor.app import files
 from akap_editor.app.commands.command import CTRL, SHIFT, Key, Submenu
 from akap_editor.app.commands.palette import Entry, entries, match, ranked
 from akap_editor.app.commands.registry import COMMANDS, MENUS
@@ -69,7 +70,7 @@ def test_arrows_in_a_menu_of_files_stay_there(pinned):
 
 
 def test_while_a_name_is_typed_alt_opens_nothing(pinned):
-    pinned.state.ask_open()
+    files.choose_and_open(pinned.state)
     pinned.settle()
     (menus,) = after_each(pinned, Key.f10)
     assert menus == ["Open picture or drawing"]

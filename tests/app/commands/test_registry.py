@@ -13,7 +13,8 @@ from akap_editor.app.commands.registry import COMMANDS, MENUS
 from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.panels import side_panel as panels
-from akap_editor.deform.methods import get_method, method_names, nearest_preset, presets
+from akap_editor.deform.deformer import method_names
+from akap_editor.deform.methods import PRESETS, preset_of
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.events import PinRequest
 from akap_editor.editor.session.edits import PaintStiffness
@@ -84,8 +85,8 @@ def zoom_is(factor):
 
 def keyed(ui):
     """Two keyframes, at 0 and at 1 second, the second one chosen."""
-    playback = ui.state.keyframe_playback
-    ui.state.show_timeline, ui.state.timeline = True, "keyframes"
+    playback = ui.state.timeline.keyframe_playback
+    ui.state.timeline.is_shown, ui.state.timeline.mode = True, "keyframes"
     ui.settle()
     playback.put(0.0)
     bend(ui)
@@ -97,30 +98,30 @@ def keyed(ui):
 
 def looking_between(ui):
     keyed(ui)
-    ui.state.keyframe_playback.scrub(0.5)
+    ui.state.timeline.keyframe_playback.scrub(0.5)
 
 
 def once_keyed(ui):
     """Playing takes a tenth of a second, and then the range is over."""
     keyed(ui)
-    ui.state.keyframe_playback.loop = False
-    ui.state.keyframe_playback.cut_to(0.1, 0.2)
+    ui.state.timeline.keyframe_playback.loop = False
+    ui.state.timeline.keyframe_playback.cut_to(0.1, 0.2)
 
 
 def looked_at(ui):
     """Three seconds, the first and the last one cut off, looked at after a half second of the rest."""
     keyed(ui)
-    ui.state.keyframe_playback.put(3.0)
-    ui.state.keyframe_playback.cut_to(1.0, 2.5)
-    ui.state.keyframe_playback.scrub(1.5)
+    ui.state.timeline.keyframe_playback.put(3.0)
+    ui.state.timeline.keyframe_playback.cut_to(1.0, 2.5)
+    ui.state.timeline.keyframe_playback.scrub(1.5)
 
 
 def look_is(moment):
-    return lambda ui: ui.state.keyframe_playback.at == pytest.approx(moment)
+    return lambda ui: ui.state.timeline.keyframe_playback.at == pytest.approx(moment)
 
 
 def range_is(start, end):
-    return lambda ui: ui.state.keyframe_playback.range == pytest.approx((start, end))
+    return lambda ui: ui.state.timeline.keyframe_playback.range == pytest.approx((start, end))
 
 
 def watch_requests(ui):
@@ -162,12 +163,12 @@ CASES = {
     "Start Range Here": (looked_at, range_is(1.5, 2.5)),
     "End Range Here": (looked_at, range_is(1.0, 1.5)),
     "Range Is Everything": (looked_at, range_is(0.0, 3.0)),
-    "Zoom into Timeline": (keyed, lambda ui: ui.state.keyframe_playback.view.zoomed),
+    "Zoom into Timeline": (keyed, lambda ui: ui.state.timeline.keyframe_playback.view.zoomed),
     "Zoom out of Timeline": (
-        lambda ui: [keyed(ui), ui.state.keyframe_playback.view.zoom(1.4, 0.0)],
-        lambda ui: not ui.state.keyframe_playback.view.zoomed,
+        lambda ui: [keyed(ui), ui.state.timeline.keyframe_playback.view.zoom(1.4, 0.0)],
+        lambda ui: not ui.state.timeline.keyframe_playback.view.zoomed,
     ),
-    "Select All Keyframes": (keyed, lambda ui: ui.state.keyframe_playback.chosen == {0.0, 1.0}),
+    "Select All Keyframes": (keyed, lambda ui: ui.state.timeline.keyframe_playback.chosen == {0.0, 1.0}),
     "Crosshair": (watch_tools, lambda ui: "KeyboardPointer" in ui.tools),
     "Next Pin": (one_selected, lambda ui: ui.editor.selection == {3}),
     "Previous Pin": (one_selected, lambda ui: ui.editor.selection == {1}),
@@ -181,16 +182,16 @@ CASES = {
         lambda ui: setattr(ui.state.view, "heat", "area"),
         lambda ui: RANGES[ui.state.view.heat_range] == 2.0,
     ),
-    "Play": (once_keyed, lambda ui: ui.state.keyframe_playback.at == 0.2),
+    "Play": (once_keyed, lambda ui: ui.state.timeline.keyframe_playback.at == 0.2),
     "Export Animation...": (keyed, lambda ui: ui.state.dialog(ExportAnimationDialog).is_open),
     "Keyframe Here": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
     "Remove Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
     "Duplicate Keyframe": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5)),
-    "Next Keyframe": (looking_between, lambda ui: ui.state.keyframe_playback.at == 1.0),
-    "Previous Keyframe": (looking_between, lambda ui: ui.state.keyframe_playback.at == 0.0),
+    "Next Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.at == 1.0),
+    "Previous Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.at == 0.0),
     "Move Keyframe Earlier": (keyed, lambda ui: times(ui) == (0.0, 0.95)),
     "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
-    "Onion Skin": (keyed, lambda ui: ui.state.keyframe_playback.onion.shown),
+    "Onion Skin": (keyed, lambda ui: ui.state.timeline.keyframe_playback.onion.shown),
     "Open...": (nothing, lambda ui: ui.state.request is not None and not ui.state.request.saving),
     "Cut Out with Mask...": (
         nothing,
@@ -244,7 +245,7 @@ CASES = {
     "Apply Pose...": (nothing, lambda ui: ui.state.request is not None and not ui.state.request.saving),
     "Save Recording...": (nothing, lambda ui: ui.state.request is not None and ui.state.request.saving),
     "Two Methods Side by Side": (nothing, lambda ui: ui.state.split),
-    "Timeline": (nothing, lambda ui: ui.state.show_timeline),
+    "Timeline": (nothing, lambda ui: ui.state.timeline.is_shown),
     "Find Command...": (watch_palette, lambda ui: any(ui.palettes)),
     "Keys and Mouse": (nothing, lambda ui: ui.state.keys),
     "About akap-editor": (nothing, lambda ui: ui.state.about),
@@ -492,23 +493,21 @@ def test_help_opens_and_closes(pinned, label, name, title, close):
 
 
 def test_every_method_can_be_chosen():
-    assert {preset.method for preset in presets()} == set(method_names())
+    assert {variant.method for variant in PRESETS} == set(method_names())
 
 
-@pytest.mark.parametrize(
-    "preset", [each for each in presets() if each.parameters], ids=lambda each: each.spec
-)
-def test_a_preset_is_chosen_and_keeps_its_memory(pinned, preset):
+@pytest.mark.parametrize("variant", [each for each in PRESETS if each.settings], ids=lambda each: each.spec)
+def test_a_variant_is_chosen_and_keeps_its_memory(pinned, variant):
     def choose(hand):
         hand.set_ref("Panel")
-        hand.combo_click(f"##method/{preset.label}")
+        hand.combo_click(f"##method/{variant.label}")
 
     pinned.do(choose)
     settings = pinned.session.state.settings
-    assert settings.method == preset.method
-    memory = {"memory": 1.0} if get_method(preset.method).deformer.has_memory else {}
-    assert dict(settings.parameters) == {**preset.parameters, **memory}
-    assert nearest_preset(settings.method, dict(settings.parameters)) is preset
+    assert settings.method == variant.method
+    memory = {"memory": 1.0} if variant.method == "akap" else {}
+    assert dict(settings.parameters) == {**variant.settings, **memory}
+    assert preset_of(settings.method, dict(settings.parameters)) is variant
 
 
 def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):
@@ -517,7 +516,7 @@ def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):
 
     def choose(hand):
         hand.set_ref("Panel")
-        hand.combo_click("##method/As-rigid-as-possible (ARAP)")
+        hand.combo_click("##method/As rigid as possible")
 
     pinned.do(choose)
     assert pinned.session.state.settings.method == "arap"

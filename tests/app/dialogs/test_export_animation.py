@@ -31,12 +31,12 @@ TITLE = "Export animation"
 def keyed(pinned):
     """Keyframes at 0 and 0.4 seconds."""
     state = pinned.state
-    state.show_timeline, state.timeline = True, "keyframes"
+    state.timeline.is_shown, state.timeline.mode = True, "keyframes"
     pinned.settle()
-    state.keyframe_playback.put(0.0)
+    state.timeline.keyframe_playback.put(0.0)
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0] - 20, start[1] - 80))
-    state.keyframe_playback.put(0.4)
+    state.timeline.keyframe_playback.put(0.4)
     pinned.settle()
     return pinned
 
@@ -64,7 +64,7 @@ def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
 
 
 def test_asking_does_not_change_what_is_seen(keyed):
-    keyed.state.keyframe_playback.leave()
+    keyed.state.timeline.keyframe_playback.leave()
     before = keyed.session.state
     keyed.state.dialog(ExportAnimationDialog).open(keyed.state)
     keyed.dialog(TITLE, "Cancel")
@@ -92,8 +92,8 @@ def test_every_format_is_written(keyed, tmp_path, kind):
 
 def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
     state = keyed.state
-    state.show_in_timeline("session")
-    snapshots = state.session_playback.snapshots
+    state.timeline.set_mode("session")
+    snapshots = state.timeline.session_playback.snapshots
     index = next(
         k
         for k in range(1, len(snapshots))
@@ -109,7 +109,7 @@ def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
 
 
 def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
-    playback = keyed.state.keyframe_playback
+    playback = keyed.state.timeline.keyframe_playback
     playback.put(0.8, playback.animation.keyframes[0].positions)
     for options, count in (
         (AnimationExportOptions("APNG", fps=10), 8),

@@ -5,6 +5,7 @@ import os
 import numpy as np
 import pytest
 
+from akap_editor.app import files
 from akap_editor.io.akap.autosave import SECONDS, Autosave
 from akap_editor.io.akap.project import load, save
 
@@ -72,11 +73,11 @@ def test_recovering_brings_the_drawing_back_unsaved(bent, crash, restart, tmp_pa
     assert ui.editor.modified
     assert ui.state.title == "figure * - akap-editor"
     assert ui.state.notice == "Recovered figure, which is not saved yet"
-    ui.state.protect()
+    files.autosave(ui.state)
     wait(ui)
     assert list(tmp_path.glob("*.akap")), "a second crash would lose it otherwise"
-    ui.state._write(tmp_path / "saved.pose", None)
-    ui.state.protect()
+    files.write_document(ui.state, tmp_path / "saved.pose")
+    files.autosave(ui.state)
     wait(ui)
     assert os.listdir(tmp_path) == ["saved.pose"]
 
@@ -137,10 +138,10 @@ def test_a_damaged_copy_is_told_and_kept(bent, crash, restart, tmp_path):
 
 
 def test_a_crash_of_the_program_itself_keeps_the_work(bent, ui, tmp_path):
-    ui.state.show(bent)
+    files.show_document(ui.state, bent)
     ui.session.mark_unsaved()
     ui.state.autosave = Autosave(tmp_path)
-    ui.state.rescue()
+    files.rescue(ui.state)
     ui.state.autosave._worker.shutdown()
     ui.state.autosave._copy.lock.release()
     (copy,) = Autosave(tmp_path).lost()

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from akap_editor.app import files
 from akap_editor.editor.session.replay import replay
 from akap_editor.io.akap.recording import read_recording, recorded_drawing, write_recording
 from tests.support.window_driver import one_step
@@ -27,7 +28,7 @@ def test_what_was_done_by_hand_is_saved_and_done_again_to_the_last_bit(ui, tmp_p
 
 def recorded(ui, tmp_path):
     """A recording of three pins, a drag, an undo and a drag; and the session that it was made of."""
-    ui.state.session_playback.watch(ui.session)
+    ui.state.timeline.session_playback.watch(ui.session)
     for place in ((50.0, 80.0), (130.0, 80.0), (210.0, 80.0)):
         ui.click(ui.screen(place))
     start = ui.screen((210.0, 80.0))
@@ -43,14 +44,14 @@ def test_a_recording_opens_in_its_final_pose_with_all_of_it_on_the_timeline(ui, 
     session = recorded(ui, tmp_path)
     ui.editor.mark_saved(None)
     ui.drop(tmp_path / "wave.akaprec")
-    again, playback = ui.session, ui.state.session_playback
+    again, playback = ui.session, ui.state.timeline.session_playback
     assert again is not session
     assert not ui.state.error
     np.testing.assert_array_equal(again.state.positions, session.state.positions)
     assert list(again.recording.events) == list(session.recording.events)
     assert again.history.labels == session.history.labels
     assert not ui.editor.modified
-    assert ui.state.show_timeline
+    assert ui.state.timeline.is_shown
     assert playback.snapshots[-1].state is again.state
     playback.scrub(0.0)
     np.testing.assert_array_equal(again.state.positions, again.drawing.mesh.vertices)
@@ -61,7 +62,7 @@ def test_a_recording_that_was_opened_is_gone_on_with_and_branched(ui, tmp_path):
     recorded(ui, tmp_path)
     ui.editor.mark_saved(None)
     ui.drop(tmp_path / "wave.akaprec")
-    playback = ui.state.session_playback
+    playback = ui.state.timeline.session_playback
     playback.scrub(0.5 * playback.duration)
     ui.settle()
     start = ui.screen(ui.pin_place(1))
@@ -80,14 +81,14 @@ def test_opening_a_recording_is_stopped_half_way_or_cancelled(ui, tmp_path, monk
     ui.editor.mark_saved(None)
     monkeypatch.setattr("akap_editor.app.jobs.task.SLICE", 0.0)
     monkeypatch.setattr("akap_editor.app.jobs.task.Task.advance", one_step)
-    ui.state.open_path(tmp_path / "wave.akaprec")
+    files.open_path(ui.state, tmp_path / "wave.akaprec")
     for _ in range(12):
         ui.frame()
     assert 0 < ui.state.task.progress.share < 1
     ui.dialog("Opening wave.akaprec", "Cancel")
     assert ui.state.task is None
     assert ui.session is session
-    ui.state.open_path(tmp_path / "wave.akaprec")
+    files.open_path(ui.state, tmp_path / "wave.akaprec")
     for _ in range(12):
         ui.frame()
     ui.dialog("Opening wave.akaprec", "Stop here")

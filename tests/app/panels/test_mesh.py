@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from akap_editor.app import files
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing, make_drawing
 from akap_editor.io.mesh_files.reader import read_mesh
@@ -75,7 +76,7 @@ def test_a_pin_can_be_dragged_right_after(opened):
 def test_nothing_left_is_a_notice_and_all_stays(opened):
     faint = opened.document.drawing.image.copy()
     faint[..., 3] = np.minimum(faint[..., 3], 200)
-    opened.state.show(new_document(make_drawing(faint, vertices=200)))
+    files.show_document(opened.state, new_document(make_drawing(faint, vertices=200)))
     opened.settle()
     before = opened.document
     slide(opened, "##Edge", 0.5, 0.97)
@@ -87,7 +88,7 @@ def test_nothing_left_is_a_notice_and_all_stays(opened):
 def test_the_background_goes_and_comes_back(opened):
     image = np.full((160, 240, 4), 255, np.uint8)
     image[40:120, 60:180, :3] = (200, 60, 30)
-    opened.state.show(new_document(make_drawing(image, vertices=200, name="scan")))
+    files.show_document(opened.state, new_document(make_drawing(image, vertices=200, name="scan")))
     opened.settle()
     area = 160 * 240
     assert opened.document.drawing.mesh.rest_areas.sum() == pytest.approx(area)
@@ -106,7 +107,7 @@ def test_a_mesh_from_a_file_that_is_not_on_its_picture_says_so(opened, tmp_path)
     (tmp_path / "a.obj").write_text(
         "v 0 0 0\nv 90 0 0\nv 70 80 0\nv 0 60 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
     )
-    opened.state.show(new_document(read_mesh(tmp_path / "a.obj")))
+    files.show_document(opened.state, new_document(read_mesh(tmp_path / "a.obj")))
     opened.settle()
     slide(opened, "##Expansion", 0.1, 0.5)
     assert "cannot be made anew" in opened.state.notice

@@ -5,6 +5,7 @@ import pytest
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from akap_editor.app import files
 from akap_editor.editor import gestures
 from akap_editor.editor.session.replay import replay
 from akap_editor.io.akap.project import load, save
@@ -14,13 +15,13 @@ from akap_editor.io.akap.project import load, save
 def keyed(pinned):
     """Keyframes of the rest pose at 0, of a bent one at 1 second; one looks at the first."""
     state = pinned.state
-    state.show_timeline, state.timeline = True, "keyframes"
+    state.timeline.is_shown, state.timeline.mode = True, "keyframes"
     pinned.settle()
     pinned.key(imgui.Key.k)
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0] - 20, start[1] - 100))
-    state.keyframe_playback.put(1.0)
-    state.keyframe_playback.scrub(0.0)
+    state.timeline.keyframe_playback.put(1.0)
+    state.timeline.keyframe_playback.scrub(0.0)
     pinned.settle()
     return pinned
 
@@ -33,7 +34,7 @@ def on_track(ui, time, y=28):
     """A place on the track of keyframes, y points below its top."""
     found = {}
     ui.do(lambda hand: found.setdefault("rect", hand.item_info("//Timeline/##keys").rect_full))
-    rect, playback = found["rect"], ui.state.keyframe_playback
+    rect, playback = found["rect"], ui.state.timeline.keyframe_playback
     left, width = rect.min.x + 8, rect.max.x - rect.min.x - 16
     view = playback.view
     return round(left + width * (time - view.start) / view.seconds), round(rect.min.y + y)
@@ -43,7 +44,7 @@ def at_time(ui, time, share):
     """What is seen is the pose at a time, the share of the way from rest to the bent pose."""
     first, last = (ui.session.present.animation.keyframes[number].positions for number in (0, -1))
     seen = ui.session.state.positions
-    assert ui.state.keyframe_playback.at == pytest.approx(time)
+    assert ui.state.timeline.keyframe_playback.at == pytest.approx(time)
     far = np.abs(last - first).max()
     return np.abs(seen - first).max() == pytest.approx(share * far, abs=0.06 * far)
 
@@ -59,7 +60,7 @@ def test_a_drag_on_the_ruler_moves_along_and_edits_nothing(keyed):
 
 
 def test_a_drag_on_the_canvas_takes_what_is_seen_and_k_keeps_it(keyed):
-    keyed.state.keyframe_playback.scrub(0.5)
+    keyed.state.timeline.keyframe_playback.scrub(0.5)
     keyed.settle()
     seen, depth = keyed.session.state.positions, keyed.session.history.depth
     before = keyed.session.present
@@ -98,7 +99,7 @@ def test_keyframes_are_dragged_copied_and_stretched(keyed):
 
 
 def test_several_are_chosen_with_shift_and_moved_together(keyed):
-    keyed.state.keyframe_playback.put(0.5)
+    keyed.state.timeline.keyframe_playback.put(0.5)
     keyed.click(on_track(keyed, 0.5))
     keyed.click(on_track(keyed, 1.0), shift=True)
     keyed.drag(on_track(keyed, 0.5), on_track(keyed, 0.7))
@@ -113,7 +114,7 @@ def test_escape_takes_a_drag_of_keyframes_back(keyed):
     def drag(hand):
         keyed.begin_drag(hand, start)
         hand.mouse_move_to_pos(imgui.ImVec2(*end))
-        assert keyed.state.keyframe_playback.held
+        assert keyed.state.timeline.keyframe_playback.held
         hand.key_press(imgui.Key.escape)
         hand.mouse_move_to_pos(imgui.ImVec2(*start))
         hand.mouse_up(0)
@@ -138,7 +139,7 @@ def test_a_double_click_adds_and_delete_is_for_keyframes_where_no_pin_is_selecte
 
 def test_the_range_is_cut_by_its_marks(keyed):
     keyed.drag(on_track(keyed, 1.0, y=44), on_track(keyed, 0.8, y=44))
-    assert keyed.state.keyframe_playback.range == pytest.approx((0.0, 0.8))
+    assert keyed.state.timeline.keyframe_playback.range == pytest.approx((0.0, 0.8))
 
 
 def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
@@ -150,7 +151,7 @@ def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
     place = on_track(keyed, 0.0)
     keyed.do(choose)
     assert keyed.session.present.animation.keyframes[0].ease == "hold"
-    keyed.state.keyframe_playback.scrub(0.9)
+    keyed.state.timeline.keyframe_playback.scrub(0.9)
     keyed.settle()
     np.testing.assert_array_equal(
         keyed.session.state.positions, keyed.session.present.animation.keyframes[0].positions
@@ -161,7 +162,7 @@ def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
     for name in ("Up", "Down"):
         gestures.add_pose(keyed.editor, name)
 
-    keyed.state.keyframe_playback.set_time(1.0, 0.5)
+    keyed.state.timeline.keyframe_playback.set_time(1.0, 0.5)
     keyed.settle()
     keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Up", "//Timeline/##keys"))
     assert times(keyed) == (0.0, 0.5, 1.0)
@@ -203,7 +204,7 @@ def test_a_pose_is_renamed_with_a_double_click(keyed):
 
 
 def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):
-    playback = keyed.state.keyframe_playback
+    playback = keyed.state.timeline.keyframe_playback
     playback.scrub(0.5)
     plain = keyed.screenshot().astype(int)
     playback.onion.shown = True
@@ -222,7 +223,7 @@ def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):
 
 
 def test_playing_moves_on_with_the_clock_and_loops(keyed, monkeypatch):
-    playback, now = keyed.state.keyframe_playback, [100.0]
+    playback, now = keyed.state.timeline.keyframe_playback, [100.0]
     monkeypatch.setattr(playback, "_clock", lambda: now[0])
     playback.play()
     for moment in (0.25, 0.5, 0.75):
@@ -237,24 +238,24 @@ def test_playing_moves_on_with_the_clock_and_loops(keyed, monkeypatch):
 
 
 def test_keyframes_are_saved_and_opened(keyed, tmp_path):
-    keyed.state.keyframe_playback.scrub(0.3)
+    keyed.state.timeline.keyframe_playback.scrub(0.3)
     keyed.settle()
-    keyed.state._write(tmp_path / "a.akap", None)
+    files.write_document(keyed.state, tmp_path / "a.akap")
     assert not keyed.state.error
     again = load(tmp_path / "a.akap")
     assert [key.time for key in again.state.animation.keyframes] == [0.0, 1.0]
     assert save(again, tmp_path / "b.akap").path is not None
     assert (tmp_path / "a.akap").read_bytes() == (tmp_path / "b.akap").read_bytes()
     np.testing.assert_array_equal(again.state.positions, keyed.session.present.positions)
-    keyed.state.show_in_timeline("session")
-    keyed.state.show_timeline = False
-    keyed.state.show(again)
-    assert keyed.state.timeline == "keyframes"
-    assert keyed.state.show_timeline
+    keyed.state.timeline.set_mode("session")
+    keyed.state.timeline.is_shown = False
+    files.show_document(keyed.state, again)
+    assert keyed.state.timeline.mode == "keyframes"
+    assert keyed.state.timeline.is_shown
 
 
 def test_the_wheel_zooms_in_on_a_time_and_keyframes_are_taken_there(keyed):
-    playback = keyed.state.keyframe_playback
+    playback = keyed.state.timeline.keyframe_playback
     place = on_track(keyed, 1.0)
     keyed.wheel(place, 4)
     assert 0 < playback.view.start < 1.0 < playback.view.start + playback.view.seconds < 2.0
@@ -269,11 +270,11 @@ def test_looping_is_a_step_of_undo(keyed):
     keyed.do(lambda hand: hand.item_click(f"//Timeline/{icons.ICON_FA_REPEAT}##loop"))
     assert not keyed.session.present.animation.loop
     keyed.editor.undo()
-    assert keyed.state.keyframe_playback.loop
+    assert keyed.state.timeline.keyframe_playback.loop
 
 
 def test_without_the_timeline_the_present_is_seen(keyed):
-    keyed.state.keyframe_playback.scrub(0.5)
+    keyed.state.timeline.keyframe_playback.scrub(0.5)
     keyed.settle()
     assert keyed.session.is_previewing
     keyed.key(imgui.Key.mod_shift | imgui.Key.t)

@@ -15,7 +15,7 @@ from akap_editor.editor.session.replay import replay
 @pytest.fixture
 def bent(pinned):
     """The timeline is shown, and a drag was made."""
-    pinned.state.show_timeline = True
+    pinned.state.timeline.is_shown = True
     pinned.settle()
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0] - 20, start[1] - 100))
@@ -48,7 +48,7 @@ def test_a_drag_on_the_track_goes_back_and_forth(bent):
 
 
 def test_the_head_is_taken_at_the_end_and_the_mark_below_it(bent):
-    playback = bent.state.session_playback
+    playback = bent.state.timeline.session_playback
     bent.drag(on_track(bent, 0.99), on_track(bent, 0.5))
     assert playback.at == pytest.approx(0.5 * playback.duration, abs=0.05)
     assert playback.cut is None
@@ -57,7 +57,7 @@ def test_the_head_is_taken_at_the_end_and_the_mark_below_it(bent):
 
 
 def test_the_wheel_shows_a_part_of_the_time_where_the_head_goes_slower(bent):
-    playback = bent.state.session_playback
+    playback = bent.state.timeline.session_playback
     playback.snapshots = [replace(shot, time=float(number)) for number, shot in enumerate(playback.snapshots)]
     bent.wheel(on_track(bent, 0.5), 5)
     start, seconds = playback.view.start, playback.view.seconds
@@ -72,7 +72,7 @@ def test_the_wheel_shows_a_part_of_the_time_where_the_head_goes_slower(bent):
 
 
 def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(bent):
-    playback = bent.state.session_playback
+    playback = bent.state.timeline.session_playback
     playback.scrub(0.5 * playback.duration)
     bent.settle()
     here = playback.shot(playback.at).time
@@ -85,7 +85,7 @@ def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(be
 
 
 def test_a_drag_on_the_canvas_goes_on_from_there(bent):
-    bent.state.session_playback.scrub(0.0)
+    bent.state.timeline.session_playback.scrub(0.0)
     bent.settle()
     start = bent.screen(bent.pin_place(3))
     bent.drag(start, (start[0] - 20, start[1] + 60))
@@ -96,17 +96,17 @@ def test_a_drag_on_the_canvas_goes_on_from_there(bent):
 
 
 def test_control_and_drag_records_that_gesture_only(bent):
-    before = bent.state.session_playback.duration
+    before = bent.state.timeline.session_playback.duration
     start = bent.screen(bent.pin_place(3))
     bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
-    assert bent.state.session_playback.cut is not None
-    start, end = bent.state.session_playback.cut
-    assert before <= start < end <= bent.state.session_playback.duration
-    assert bent.state.session_playback.taking is None
+    assert bent.state.timeline.session_playback.cut is not None
+    start, end = bent.state.timeline.session_playback.cut
+    assert before <= start < end <= bent.state.timeline.session_playback.duration
+    assert bent.state.timeline.session_playback.taking is None
 
 
 def test_the_range_is_exported(bent, tmp_path):
-    playback = bent.state.session_playback
+    playback = bent.state.timeline.session_playback
     playback.cut_to(0.0, min(0.5, playback.duration))
     export_animation(bent.state, AnimationExportOptions(), tmp_path / "wave.webp")
     bent.settle()

@@ -5,7 +5,6 @@ import pytest
 
 from akap_editor.editor.animation.motion import LONGEST_MOVE, Motion, frame_times, shorten_pauses
 from akap_editor.editor.document.document import new_document
-from akap_editor.editor.document.easing import EASINGS
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import SetPins, SetPose
 from akap_editor.editor.session.pin_edits import add_pin
@@ -96,14 +95,6 @@ def test_pauses_are_shortened_and_nothing_else():
     short = shorten_pauses(Recording({}, events), 1.0)
     assert [event["t"] for event in short.events] == [0.0, 0.5, 1.5, 2.0, 3.0]
     assert events[-1]["t"] == 100.0
-
-
-@pytest.mark.parametrize("ease", EASINGS)
-def test_easings_rise_from_0_to_1(ease):
-    values = [EASINGS[ease](t) for t in np.linspace(0, 1, 101)]
-    assert values[0] == 0
-    assert values[-1] == 1
-    assert (np.diff(values) > 0).all()
 
 
 def test_frame_times():

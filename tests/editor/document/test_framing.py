@@ -1,10 +1,17 @@
-"""What part of the plane a picture shows: laws of the three ways to crop."""
+"""Framing: the boxes of the three crops, and the sizes of their images."""
 
 import numpy as np
 import pytest
 
 from akap_editor.editor.document.drawing import Drawing
-from akap_editor.editor.document.framing import CROPS, MAX_SIZE, crop_box, frame_box, output_size
+from akap_editor.editor.document.framing import (
+    CROPS,
+    MAX_SIZE,
+    crop_box,
+    frame_box,
+    output_size,
+    union_of_boxes,
+)
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import TriMesh
 
@@ -40,7 +47,12 @@ def test_rounding_noise_adds_no_row(drawing):
     )
 
 
-def test_errors(drawing):
+def test_a_union_holds_all_boxes():
+    assert union_of_boxes([(0, 2, 5, 6)]) == (0, 2, 5, 6)
+    assert union_of_boxes([(0, 2, 5, 6), (-3, 4, 2, 9)]) == (-3, 2, 5, 9)
+
+
+def test_bad_crops_and_poses_are_refused(drawing):
     with pytest.raises(InputError, match=r"crop: expected one of none, frame, pose, got 'tight'"):
         crop_box(drawing, drawing.mesh.vertices, "tight")
     with pytest.raises(InputError, match=r"pose: expected shape \(4, 2\), got \(3, 2\)"):
@@ -60,3 +72,17 @@ def test_errors(drawing):
 )
 def test_size_in_pixels(box, scale, size):
     assert output_size(box, scale) == size
+
+
+@pytest.mark.parametrize(
+    ("box", "scale", "message"),
+    [
+        ((0, 0, 40, 30), 0.0, "scale: expected a positive number, got 0"),
+        ((0, 0, 40, 30), float("nan"), "scale: expected a positive number"),
+        ((5, 0, 5, 30), 1.0, "box: expected x0 < x1"),
+        ((0, 0, 1, MAX_SIZE + 1), 1.0, "picture size: expected at most 8192×8192 pixels, got 1×8193"),
+    ],
+)
+def test_bad_sizes_are_refused(box, scale, message):
+    with pytest.raises(InputError, match=message):
+        output_size(box, scale)

@@ -1,15 +1,14 @@
-"""Another mesh for a drawing that is already bent."""
+"""Remeshing a posed drawing: pins, pose and flips, undo, and replays."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from akap_editor.editor.document import remesh as remesh_module
 from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document.drawing import Drawing, Meshing, make_drawing
 from akap_editor.editor.document.pin import Pin
-from akap_editor.editor.document.remesh import remesh_drawing, transfer_state
+from akap_editor.editor.document.remesh import map_points, remesh_drawing, transfer_state
 from akap_editor.editor.session.edits import Remesh, SetTargets
 from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import parse_recording
@@ -21,7 +20,7 @@ from akap_editor.geometry.mesh import TriMesh, signed_areas
 
 @pytest.fixture
 def figure():
-    """A bar with an island beside it, on white where it is opaque."""
+    """A picture of a bar and an island, on a white background with alpha 0."""
     image = np.full((120, 200, 4), 255, np.uint8)
     image[..., 3] = 0
     image[40:80, 20:150] = [200, 40, 30, 255]
@@ -31,7 +30,7 @@ def figure():
 
 @pytest.fixture
 def bent(figure):
-    """A session on it with three pins, of which the last was dragged."""
+    """A session with the figure and three pins; the last one was dragged."""
     session = Session(new_document(make_drawing(figure, vertices=300, name="bar")), clock=lambda: 0.0)
     session.begin("Bend")
     for at in [(30.0, 60.0), (85.0, 60.0), (140.0, 60.0)]:
@@ -49,19 +48,19 @@ def remesh(session, **changes):
 
 
 def smooth(points):
-    """A map that is linear nowhere, without folds."""
+    """A map of the plane that is linear nowhere and has no folds."""
     x, y = points.T
     return np.stack([x + 6 * np.sin(y / 20), y + 8 * np.cos(x / 30)], axis=1)
 
 
 @pytest.mark.parametrize(("vertices", "expand"), [(60, 2.0), (300, 6.0), (1500, 0.0), (4000, 3.0)])
-def test_a_pose_goes_on_as_a_map(figure, vertices, expand):
+def test_a_pose_is_transferred_as_a_map(figure, vertices, expand):
     drawing = make_drawing(figure, vertices=3000)
     state = EditState((), smooth(drawing.mesh.vertices))
     other = remesh_drawing(drawing, Meshing(vertices, expand))
-    found = transfer_state(state, drawing.mesh, other).positions
-    assert np.abs(found - smooth(other.mesh.vertices)).max() < 1.2
-    assert (signed_areas(found, other.mesh.faces) > 0).all()
+    positions = transfer_state(state, drawing.mesh, other).positions
+    assert np.abs(positions - smooth(other.mesh.vertices)).max() < 1.2
+    assert (signed_areas(positions, other.mesh.faces) > 0).all()
 
 
 def test_the_same_mesh_changes_nothing(bent):
@@ -71,7 +70,7 @@ def test_the_same_mesh_changes_nothing(bent):
 
 
 def test_a_drawing_at_rest_stays_at_rest(figure):
-    """Also where the new mesh goes beyond the old one."""
+    """The new mesh has a wider margin than the old one."""
     drawing = make_drawing(figure, vertices=200)
     state = EditState((), drawing.mesh.vertices)
     other = remesh_drawing(drawing, Meshing(900, 9.0))
@@ -84,7 +83,7 @@ def test_a_drawing_at_rest_stays_at_rest(figure):
     "changes", [{"vertices": 1200}, {"vertices": 80}, {"expand": 6.0}, {"threshold": 0.9}]
 )
 def test_pins_and_pose_stay_and_undo_takes_it_back(bent, changes):
-    state, drawing, places = bent.state, bent.drawing, bent.pin_positions()
+    state, drawing, pin_positions = bent.state, bent.drawing, bent.pin_positions()
     depth = bent.history.depth
     remesh(bent, **changes)
     assert bent.history.depth == depth + 1
@@ -92,7 +91,7 @@ def test_pins_and_pose_stay_and_undo_takes_it_back(bent, changes):
     assert bent.drawing.image is drawing.image  # nothing to upload again
     assert [pin.id for pin in bent.state.pins] == [1, 2, 3]
     assert [pin.target.tolist() for pin in bent.state.pins] == [pin.target.tolist() for pin in state.pins]
-    assert np.abs(bent.pin_positions() - places).max() < 1.5
+    assert np.abs(bent.pin_positions() - pin_positions).max() < 1.5
     assert not bent.is_moving
     after = bent.state
     bent.undo()
@@ -118,7 +117,7 @@ def test_escape_restores_the_mesh_bit_for_bit(bent):
     assert bent.drawing is drawing
 
 
-def test_a_pin_on_a_part_that_is_gone_goes_with_it(figure):
+def test_a_pin_on_a_part_that_is_gone_is_removed(figure):
     figure[50:70, 165:185, 3] = 150
     session = Session(new_document(make_drawing(figure, vertices=300)))
     session.begin("Add pins")
@@ -131,8 +130,8 @@ def test_a_pin_on_a_part_that_is_gone_goes_with_it(figure):
     assert [pin.id for pin in session.state.pins] == [1, 2]
 
 
-def test_recordings_do_it_again(bent, figure):
-    """To the last bit, undo and all; on another mesh nearly."""
+def test_a_recording_is_replayed(bent, figure):
+    """On the same mesh to the last bit, with undo and redo; on another mesh nearly."""
     remesh(bent, vertices=700)
     bent.begin("Add pin")
     add_pin(bent, tuple(bent.pin_positions()[0] + [6.0, 6.0]))
@@ -172,21 +171,13 @@ def test_background_is_removed_and_comes_back(figure):
     assert session.drawing.mesh.rest_areas.sum() == pytest.approx(200 * 120)
 
 
-def test_faces_that_would_flip_are_unfolded(figure, monkeypatch):
-    """Single vertices pulled far, and new faces that lie across the old ones there."""
-    unfolded = []
-
-    def watched(positions, mesh):
-        unfolded.append(int((signed_areas(positions, mesh.faces) <= 0).sum()))
-        return unfold(positions, mesh)
-
-    unfold = remesh_module._unfolded
-    monkeypatch.setattr(remesh_module, "_unfolded", watched)
+def test_faces_that_would_flip_are_unflipped(figure):
+    """A pose with single vertices pulled far, and new faces that lie across the old ones there."""
     drawing = make_drawing(figure, vertices=400)
     pose = drawing.mesh.vertices.copy()
-    inside = np.setdiff1d(np.arange(len(pose)), drawing.mesh.boundary_vertices)
+    inner = np.setdiff1d(np.arange(len(pose)), drawing.mesh.boundary_vertices)
     rng = np.random.default_rng(2)
-    for vertex in rng.permutation(inside)[:60]:  # each as far as no face flips
+    for vertex in rng.permutation(inner)[:60]:  # each as far as no face flips
         around = (drawing.mesh.faces == vertex).any(axis=1)
         for size in (20.0, 10.0, 5.0, 2.0):
             candidate = pose.copy()
@@ -194,17 +185,19 @@ def test_faces_that_would_flip_are_unfolded(figure, monkeypatch):
             if (signed_areas(candidate, drawing.mesh.faces[around]) > 0.5).all():
                 pose = candidate
                 break
-    state = EditState((), pose)
+    flipped = 0
     for vertices in (150, 380, 900):
         other = remesh_drawing(drawing, Meshing(vertices))
-        found = transfer_state(state, drawing.mesh, other).positions
-        assert (signed_areas(found, other.mesh.faces) > 0).all()
-    assert sum(unfolded) > 0
+        mapped = map_points(other.mesh.vertices, drawing.mesh, pose)
+        flipped += int((signed_areas(mapped, other.mesh.faces) <= 0).sum())
+        positions = transfer_state(EditState((), pose), drawing.mesh, other).positions
+        assert (signed_areas(positions, other.mesh.faces) > 0).all()
+    assert flipped > 0
 
 
-def test_a_mesh_beside_its_picture_cannot_be_made_anew(figure):
-    made = make_drawing(figure, vertices=100)
-    moved = Drawing(figure, TriMesh(made.mesh.vertices + 5, made.mesh.faces), made.uv, "fish")
+def test_a_mesh_off_its_picture_cannot_be_made_anew(figure):
+    drawing = make_drawing(figure, vertices=100)
+    moved = Drawing(figure, TriMesh(drawing.mesh.vertices + 5, drawing.mesh.faces), drawing.uv, "fish")
     with pytest.raises(InputError, match=r"the mesh of fish cannot be made anew: .* 5\.0 pixels away"):
         remesh_drawing(moved, Meshing())
 
@@ -218,10 +211,10 @@ def test_nothing_to_cut_out_changes_nothing(bent):
     assert bent.state is state
 
 
-def test_a_pin_beside_the_new_mesh_is_taken_to_its_rim(figure):
+def test_a_pin_outside_the_new_mesh_moves_to_its_boundary(figure):
     drawing = make_drawing(figure, vertices=300, expand=4.0)
-    found = drawing.mesh.find((16.5, 60.0))
-    pin = Pin(1, int(found.faces[0]), found.weights[0], np.array([16.5, 60.0]))
+    point = drawing.mesh.find((16.5, 60.0))
+    pin = Pin(1, int(point.faces[0]), point.weights[0], np.array([16.5, 60.0]))
     other = remesh_drawing(drawing, Meshing(300, 0.0))
     state = transfer_state(EditState((pin,), drawing.mesh.vertices), drawing.mesh, other)
     assert other.mesh.evaluate(state.points, other.mesh.vertices)[0] == pytest.approx([20, 60], abs=0.6)

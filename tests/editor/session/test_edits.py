@@ -50,7 +50,7 @@ EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     ),
     "targets": lambda session: SetTargets({2: (90.0, 65.0)}),
     "angles": lambda session: SetAngles({1: 0.25}),
-    "settings": lambda session: SetSettings(Settings.of("arap:iterations=3")),
+    "settings": lambda session: SetSettings(Settings.parse("arap:iterations=3")),
     "stiffness": lambda session: SetStiffness(np.linspace(1, 1000, len(session.drawing.mesh.faces))),
     "paint": lambda session: PaintStiffness([(45.0, 40.0), (50.0, 41.0)], 12.0, 50.0),
     "pose": lambda session: SetPose(session.state.positions + np.array([3.0, -2.0])),

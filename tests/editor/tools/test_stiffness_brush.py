@@ -1,17 +1,15 @@
 """The brush that paints stiffness, and what becomes of what it has painted."""
 
 import numpy as np
-import pytest
 
 from akap_editor.editor import gestures
 from akap_editor.editor.document.remesh import transfer_state
 from akap_editor.editor.document.rest_pose import with_pose_as_rest
 from akap_editor.editor.document.settings import Settings
-from akap_editor.editor.document.stiffness import apply_stroke, as_stiffness, stroke_coverage
+from akap_editor.editor.document.stiffness import stroke_coverage
 from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.tools.stiffness_brush import LARGEST, SMALLEST, Brush, shown_stiffness
-from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
 from tests.support.editor_driver import Driver, bits
 
@@ -125,39 +123,6 @@ def test_brushes_have_limits():
     for _ in range(30):
         small, large = small.resized(False), large.resized(True)
     assert (small.radius, large.radius) == (SMALLEST, LARGEST)
-
-
-def test_coverage_falls_softly_to_the_rim(drawing):
-    covered = stroke_coverage(drawing.mesh, [NECK], 25.0)
-    away = np.hypot(*(drawing.mesh.vertices[drawing.mesh.faces].mean(axis=1) - NECK).T)
-    assert (covered[away < 12.0] == 1.0).all()
-    assert (covered[away > 25.0] == 0.0).all()
-    order = np.argsort(away)
-    assert (np.diff(covered[order]) <= 1e-12).all()
-    assert ((covered > 0.1) & (covered < 0.9)).any()
-
-
-def test_the_smallest_brush_reaches_the_face_that_it_is_on(drawing):
-    rng = np.random.default_rng(5)
-    for face in rng.integers(0, len(drawing.mesh.faces), 40):
-        inside = rng.dirichlet([3.0, 3.0, 3.0]) @ drawing.mesh.vertices[drawing.mesh.faces[face]]
-        assert stroke_coverage(drawing.mesh, [inside], 0.0)[face] > 0
-
-
-def test_painting_twice_is_painting_once_and_half_covered_is_the_root(drawing):
-    m = len(drawing.mesh.faces)
-    covered = np.linspace(0, 1, m)
-    once = apply_stroke(None, covered, 400.0)
-    assert once[-1] == 400.0
-    assert once[m // 2] == pytest.approx(20.0, rel=0.05)
-    assert apply_stroke(apply_stroke(None, np.ones(m), 9.0), np.ones(m), 9.0).tolist() == [9.0] * m
-    assert apply_stroke(once, np.ones(m), 1.0) is None
-
-
-@pytest.mark.parametrize("bad", [[2.0], [0.5] * 3, [np.nan] * 3, [2000.0] * 3, "soft", [[1.0]] * 3])
-def test_bad_factors(bad):
-    with pytest.raises(InputError, match="stiffness: expected"):
-        as_stiffness(bad, 3)
 
 
 def test_stiffness_is_carried_over_to_another_mesh_and_baked(pinned, finer_drawing):

@@ -1,0 +1,132 @@
+"""Commands that ask for a file and use it: masks, poses, recordings and the reference picture."""
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from ..editor import gestures
+from ..editor.document.document import Document, new_document
+from ..editor.document.drawing import apply_mask, remove_background_and_mesh
+from ..errors import InputError
+from ..io.akap.pose import POSE_SUFFIX, load_pose, save_pose
+from ..io.akap.recording import RECORDING_SUFFIX, write_recording
+from ..io.images import read_image, read_mask
+from ..io.open_document import PICTURE_SUFFIXES
+from . import files
+from .app_state import AppState
+from .dialogs.file_dialog import FileRequest
+
+# -- masks --------------------------------------------------------------------------------------------------
+
+
+def can_mask(state: AppState) -> bool:
+    """Whether the mesh was made from the picture; drawings from mesh files bring their own."""
+    return state.document is not None and state.document.drawing.meshing is not None
+
+
+def choose_mask(state: AppState) -> None:
+    """Choose a mask file; confirm unsaved changes first, because the drawing is rebuilt."""
+
+    def use(path: Path) -> None:
+        document = state.document
+        if document is None:
+            return
+
+        def cut() -> None:
+            files.show_document(state, cut_out(document, path))
+            state.notice = f"Cut out with {path.name}"
+
+        files.confirm_unsaved(state, lambda: state.run_after_frame(cut, f"Cutting out with {path.name} ..."))
+
+    state.request = FileRequest("Choose mask", PICTURE_SUFFIXES, state.folder, use)
+
+
+def cut_out(document: Document, mask: Path) -> Document:
+    """A new document with the picture of ``document``, transparent wherever the mask file hides it.
+
+    mask: a picture of the same size, bright or opaque where the drawing is to be visible. A background that
+    was removed is in the picture again. The new document has no pins and the rest pose. Raises InputError.
+    """
+    drawing = document.drawing
+    assert drawing.meshing is not None
+    picture = drawing.image if drawing.original is None else drawing.original
+    visible = read_mask(mask)
+    try:
+        image = apply_mask(picture, visible)
+        return new_document(
+            remove_background_and_mesh(image, replace(drawing.meshing, background=None), drawing.name)
+        )
+    except InputError as error:
+        raise InputError(f"{mask}: {error}") from error
+
+
+# -- poses --------------------------------------------------------------------------------------------------
+
+
+def choose_pose_to_save(state: AppState) -> None:
+    """Ask for a pose file, then write pins and pose to it."""
+    if state.document is not None:
+        name = f"{state.document.drawing.name}{POSE_SUFFIX}"
+        use = partial(save_pose_file, state)
+        state.request = FileRequest("Save pose", (POSE_SUFFIX,), state.folder, use, name, saving=True)
+
+
+def save_pose_file(state: AppState, path: Path) -> None:
+    """Write pins and pose to a file."""
+    if state.document is not None and state.run_reporting_errors(partial(save_pose, state.document, path)):
+        state.notice = f"Saved {path.name}"
+
+
+def choose_pose_to_apply(state: AppState) -> None:
+    """Ask for a pose file of this drawing, then apply it."""
+    if state.document is not None:
+        use = partial(apply_pose_file, state)
+        state.request = FileRequest("Apply pose", (POSE_SUFFIX,), state.folder, use)
+
+
+def apply_pose_file(state: AppState, path: Path) -> None:
+    """Replace pins and pose by those of a file, as one undoable gesture."""
+
+    def apply() -> None:
+        assert state.document is not None
+        pose = load_pose(path, state.document.drawing)
+        gestures.apply_pose(state.editor, pose.pins, pose.positions)
+        state.notice = f"Applied {path.name}"
+
+    state.run_reporting_errors(apply)
+
+
+# -- recordings ---------------------------------------------------------------------------------------------
+
+
+def choose_recording_to_save(state: AppState) -> None:
+    """Ask for a recording file, then write the session to it."""
+    if state.document is not None:
+        name, use = f"{state.document.drawing.name}{RECORDING_SUFFIX}", partial(save_recording_file, state)
+        state.request = FileRequest(
+            "Save recording", (RECORDING_SUFFIX,), state.folder, use, name, saving=True
+        )
+
+
+def save_recording_file(state: AppState, path: Path) -> None:
+    """Write the drawing and everything that was done to it since it was opened."""
+
+    def write() -> None:
+        session = state.editor.session
+        assert session is not None
+        write_recording(session.recording, path, session.drawing)
+        state.notice = f"Saved {path.name}, {session.recording.duration:.0f} seconds"
+
+    state.run_after_frame(write, f"Saving {path.name} ...")
+
+
+# -- the reference picture ----------------------------------------------------------------------------------
+
+
+def choose_reference(state: AppState) -> None:
+    """Ask for a picture, then show it behind the drawing."""
+
+    def use(path: Path) -> None:
+        state.run_reporting_errors(lambda: state.view.set_reference(read_image(path), path))
+
+    state.request = FileRequest("Choose reference picture", PICTURE_SUFFIXES, state.folder, use)

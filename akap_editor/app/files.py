@@ -1,0 +1,187 @@
+"""Opens, saves and protects the document of the window; asks about unsaved changes first."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from ..editor.animation.session_playback import SessionPlayback
+from ..editor.document.document import Document
+from ..editor.document.settings import Settings
+from ..editor.session.session import Session
+from ..errors import InputError
+from ..io.akap.project import save as save_project
+from ..io.akap.recording import RECORDING_SUFFIX
+from ..io.images import has_transparency, is_animation
+from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, PROJECT_SUFFIX, open_document
+from ..resources import bundled_drawings
+from .app_state import AppState
+from .dialogs.file_dialog import FileRequest, UnsavedChangesQuestion
+from .jobs.open_recording import reenacting
+
+# -- opening ------------------------------------------------------------------------------------------------
+
+
+def show_document(state: AppState, document: Document) -> None:
+    """Make a document the open one. A new drawing gets the settings that were chosen last."""
+    preferred = state.preferred_settings() if document.state.settings == Settings() else None
+    try:
+        if preferred is not None and document.path is None:
+            state.editor.open(document.with_state(replace(document.state, settings=preferred)))
+        else:
+            state.editor.open(document)
+    except InputError:  # preferences that were written by hand, or by another version
+        state.editor.open(document)
+    if document.state.animation.keyframes:
+        state.timeline.mode, state.timeline.is_shown = "keyframes", True
+    opaque = document.path is None and not has_transparency(document.drawing.image)
+    state.notice = (
+        "This picture has no transparent background, so the whole rectangle bends; "
+        "Mesh, at the right, can remove it"
+        if opaque
+        else ""
+    )
+
+
+def choose_and_open(state: AppState) -> None:
+    """Ask for a picture, drawing or recording, then open it."""
+    suffixes = (PROJECT_SUFFIX, RECORDING_SUFFIX, *PICTURE_SUFFIXES, *MESH_SUFFIXES)
+    state.request = FileRequest("Open picture or drawing", suffixes, state.folder, partial(open_path, state))
+
+
+def open_dropped(state: AppState, paths: list[Path]) -> None:
+    """Open the first of the files that were dropped on the window."""
+    notice = f"Opened {paths[0].name}, the first of {len(paths)} files" if len(paths) > 1 else ""
+    open_path(state, paths[0], notice)
+
+
+def open_path(state: AppState, path: Path, notice: str = "") -> None:
+    """Open a picture, drawing or recording, after asking about unsaved changes; then show ``notice``."""
+
+    def read() -> None:
+        try:
+            if path.suffix.lower() == RECORDING_SUFFIX:
+                state.task = reenacting(path, partial(_show_recording, state, path))
+                return
+            document = open_document(path)
+        except InputError:
+            state.preferences.forget(path)
+            raise
+        show_document(state, document)
+        if is_animation(path):
+            state.notice = f"{path.name} is an animation; its first frame was opened"
+        remember_file(state, path)
+        state.notice = notice or state.notice
+
+    confirm_unsaved(state, lambda: state.run_after_frame(read, f"Opening {path.name} ..."))
+
+
+def _show_recording(state: AppState, path: Path, session: Session, playback: SessionPlayback) -> None:
+    """Continue the replayed session of a recording; the timeline shows all of it."""
+    session.mark_saved(None)
+    state.editor.take_over(session)
+    state.timeline.session_playback, state.timeline.mode, state.timeline.is_shown = playback, "session", True
+    remember_file(state, path)
+    state.notice = f"Opened {path.name}: {playback.duration:.0f} seconds are on the timeline"
+
+
+def remember_file(state: AppState, path: Path) -> None:
+    """Start the next file dialog in this file's folder, and list the file among the recent ones."""
+    state.folder = path.resolve().parent
+    if path.resolve() not in map(Path.resolve, bundled_drawings()):
+        state.preferences.opened(path)
+
+
+# -- saving -------------------------------------------------------------------------------------------------
+
+
+def save(state: AppState, then: Callable[[], None] | None = None) -> None:
+    """Write the document to its own file, or ask for one if it has none; after that, call ``then``."""
+    if state.document is None:
+        return
+    if state.document.path is None:
+        save_as(state, then)
+    else:
+        write_document(state, state.document.path, then)
+
+
+def save_as(state: AppState, then: Callable[[], None] | None = None) -> None:
+    """Ask for a file and write the document to it; after that, call ``then``."""
+    if state.document is None:
+        return
+    suggested = state.document.path or state.folder / f"{state.document.drawing.name}{PROJECT_SUFFIX}"
+    state.request = FileRequest(
+        "Save drawing",
+        (PROJECT_SUFFIX,),
+        suggested.resolve().parent,
+        lambda path: write_document(state, path, then),
+        suggested.name,
+        saving=True,
+    )
+
+
+def write_document(state: AppState, path: Path, then: Callable[[], None] | None = None) -> None:
+    """Write the document to a file, which becomes its own; after that, call ``then``."""
+
+    def write() -> None:
+        assert state.editor.session is not None
+        save_project(state.editor.session.present_document, path)
+        state.editor.mark_saved(path)
+        remember_file(state, path)
+        state.notice = f"Saved {path.name}"
+
+    if state.run_reporting_errors(write) and then is not None:
+        then()
+
+
+# -- closing ------------------------------------------------------------------------------------------------
+
+
+def confirm_unsaved(state: AppState, proceed: Callable[[], None]) -> None:
+    """Call ``proceed`` at once, or after the user has decided what happens to unsaved changes."""
+    if state.editor.modified:
+        state.question = UnsavedChangesQuestion(proceed)
+    else:
+        proceed()
+
+
+def close_document(state: AppState) -> None:
+    """Go to the start page, after asking about unsaved changes."""
+
+    def close() -> None:
+        state.editor.close()
+        state.notice = ""
+
+    confirm_unsaved(state, close)
+
+
+def quit_program(state: AppState) -> None:
+    """Close the window, after asking about unsaved changes."""
+
+    def close() -> None:
+        state.closing = True
+
+    confirm_unsaved(state, close)
+
+
+# -- recovery copies ----------------------------------------------------------------------------------------
+
+
+def autosave(state: AppState) -> None:
+    """Keep a recovery copy of unsaved changes up to date; to be called about once a frame."""
+    session = state.editor.session
+    if state.autosave is None:
+        return
+    try:
+        last_gesture = session.history.last if session is not None else None
+        document = session.present_document if session is not None else None
+        state.autosave.watch(document, state.editor.modified, last_gesture)
+    except InputError as error:
+        state.notice = str(error)
+
+
+def rescue(state: AppState) -> None:
+    """Write a recovery copy of unsaved changes now, because the program is about to end with an error."""
+    session = state.editor.session
+    if state.autosave is not None and session is not None and state.editor.modified:
+        state.run_reporting_errors(partial(state.autosave.rescue, session.present_document))

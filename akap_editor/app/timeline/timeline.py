@@ -1,0 +1,53 @@
+"""The motions that the timeline shows: the session so far and the keyframes, one of them at a time."""
+
+from typing import Literal
+
+from ...editor.animation.keyframe_playback import KeyframePlayback
+from ...editor.animation.playback import Playback
+from ...editor.animation.session_playback import SessionPlayback
+from ...editor.editor import Editor
+
+TimelineMode = Literal["session", "keyframes"]
+
+
+class Timeline:
+    """Both playbacks of a drawing, and the one that is shown.
+
+    is_shown: whether the timeline panel is visible; mode: the motion in it; keyframe_menu_requested: whether
+    a command has asked for the menu of the selected keyframe.
+    """
+
+    def __init__(self, editor: Editor) -> None:
+        self.is_shown = False
+        self.mode: TimelineMode = "session"
+        self.session_playback = SessionPlayback()
+        self.keyframe_playback = KeyframePlayback(editor)
+        self.keyframe_menu_requested = False
+
+    @property
+    def playback(self) -> Playback:
+        """The playback of the current mode."""
+        return self.keyframe_playback if self.mode == "keyframes" else self.session_playback
+
+    @property
+    def shows_keyframes(self) -> bool:
+        """Whether the panel is visible and shows keyframes."""
+        return self.is_shown and self.mode == "keyframes"
+
+    def set_mode(self, mode: TimelineMode) -> None:
+        """Show the other motion; the canvas goes back to the present pose."""
+        if mode != self.mode:
+            self.show_present()
+            self.mode = mode
+
+    def show_keyframes(self) -> None:
+        """Show the panel with the keyframes."""
+        self.set_mode("keyframes")
+        self.is_shown = True
+
+    def show_present(self) -> None:
+        """Show the present pose on the canvas instead of another moment's."""
+        if self.session_playback.at is not None:
+            self.session_playback.now()
+        if self.keyframe_playback.following:
+            self.keyframe_playback.leave()
