@@ -1,4 +1,4 @@
-"""The pages in docs: links lead somewhere, and pictures of the window are made by the script."""
+"""The pages: links and names of files and commands are valid, and scripts make the screenshots."""
 
 import importlib.util
 import re
@@ -9,6 +9,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
 LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
+FILE = re.compile(r"`([\w./<>]+\.(?:py|md|toml))`")  # <name> stands for any name
 
 
 def tool(name):
@@ -20,10 +21,30 @@ def tool(name):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_links_lead_to_files_that_are_there(page):
+def test_links_lead_to_files(page):
     links = [link for link in LINK.findall(page.read_text("utf-8")) if "://" not in link]
     missing = [link for link in links if not (page.parent / link).exists()]
     assert not missing
+
+
+@pytest.fixture(scope="module")
+def files():
+    """The paths of all files of the project that pages may name."""
+    folders = ("akap_editor", "benchmarks", "docs", "tests", "tools")
+    paths = [*ROOT.glob("*.*"), *(path for folder in folders for path in (ROOT / folder).rglob("*.*"))]
+    return [f"/{path.relative_to(ROOT).as_posix()}" for path in paths]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_named_files_exist(page, files):
+    names = FILE.findall(page.read_text("utf-8"))
+    patterns = [re.sub(r"<\w+>", r"\\w+", re.escape(f"/{name}")) + "$" for name in names]
+    unknown = [
+        name
+        for name, pattern in zip(names, patterns, strict=True)
+        if not any(re.search(pattern, path) for path in files)
+    ]
+    assert not unknown
 
 
 def test_every_page_is_in_the_index():
@@ -41,5 +62,5 @@ def test_every_screenshot_is_on_a_page():
 
 
 def test_the_page_of_keys_is_that_of_the_program():
-    """Where this fails: python tools/make_shortcuts.py"""
+    """If this fails, run python tools/make_shortcuts.py."""
     assert (ROOT / "docs" / "shortcuts.md").read_text("utf-8") == tool("make_shortcuts").page()
