@@ -18,7 +18,7 @@ from akap_editor.editor.tools.keyboard_pointer import BIG_STEP
 from akap_editor.editor.tools.pins import ZOOM_STEP
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
-from tests.support.x11 import Teller
+from tests.support.x11 import X11Client
 
 pytestmark = pytest.mark.window
 
@@ -144,17 +144,17 @@ class Program:
         self.hand("mouseup", 1, "mousemove", *CORNER)
         return self.until(lambda shot: True, "the drawing is at rest")
 
-    def teller(self):
+    def client(self):
         """Tells the window what other programs do."""
         search = ["xdotool", "search", "--name", "akap-editor"]
         found = subprocess.run(search, env=self._environment, check=True, capture_output=True, text=True)
         (window,) = map(int, found.stdout.split())
-        return Teller(self._display, window)
+        return X11Client(self._display, window)
 
     def close_window(self):
         """Ask as a window manager does for whom the cross was clicked."""
-        with self.teller() as teller:
-            teller.close()
+        with self.client() as client:
+            client.close()
 
     def save_as(self, path, last):
         """Save through the dialog; in the end the canvas is again what the screen ``last`` showed."""
@@ -471,8 +471,8 @@ def test_a_file_dropped_on_the_window_is_opened(start, picture, tmp_path):
     shutil.copy(resource("assets", "drawings", "raptor.png"), other)
     program = start(picture)
     before = canvas(program.grab())
-    with program.teller() as teller:
-        teller.drop(other, ((LEFT + RIGHT) // 2, (TOP + BOTTOM) // 2))
+    with program.client() as client:
+        client.drop(other, ((LEFT + RIGHT) // 2, (TOP + BOTTOM) // 2))
     shown = program.until(lambda shot: (canvas(shot) != before).any(axis=2).mean() > 0.05, "it is open")
     alpha = read_image(other)[..., 3]
     program.press("b")

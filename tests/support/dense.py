@@ -1,4 +1,4 @@
-"""The paper's equations once more, in loops and dense matrices: plain, and none of the code under test."""
+"""The paper's equations in loops and dense matrices, independent of the code under test."""
 
 import cmath
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def killing_rows(positions, faces):
-    """P of eq. 6 with the gradient split into ∂x and ∂y and rows weighted by √area, x0 y0 x1 y1 ..."""
+    """P of eq. 6 with the gradient split into ∂x and ∂y, rows weighted by √area; columns x0 y0 x1 y1 ..."""
     rows = np.zeros((3 * len(faces), 2 * len(positions)))
     for f, (a, b, c) in enumerate(faces):
         edges = np.linalg.inv(np.array([positions[b] - positions[a], positions[c] - positions[a]]))
@@ -23,7 +23,7 @@ def killing_rows(positions, faces):
 
 
 def pin_rows(mesh, points):
-    """I_k of eq. 6, with three weights for each pin instead of a single one."""
+    """I_k of eq. 6, with three barycentric weights for each pin."""
     rows = np.zeros((2 * len(points), 2 * len(mesh.vertices)))
     for pin, (face, weights) in enumerate(zip(points.faces, points.weights, strict=True)):
         for vertex, weight in zip(mesh.faces[face], weights, strict=True):
@@ -31,24 +31,24 @@ def pin_rows(mesh, points):
     return rows
 
 
-def boundary(mesh):
-    """Vertices of edges that belong to one face."""
+def boundary_vertices(mesh):
+    """Indices of the vertices of edges that belong to only one face."""
     sides = [tuple(sorted(s)) for a, b, c in mesh.faces.tolist() for s in ((a, b), (b, c), (c, a))]
     return sorted({vertex for side in sides if sides.count(side) == 1 for vertex in side})
 
 
 def smooth_field(mesh, positions, points, velocities, weight):
-    """U° of eq. 5 by least squares on the stacked rows, (n, 2)."""
+    """U° (n, 2) of eq. 5, by least squares on the stacked rows."""
     rows = np.vstack([killing_rows(positions, mesh.faces), weight * pin_rows(mesh, points)])
     right = np.concatenate([np.zeros(3 * len(mesh.faces)), weight * velocities.ravel()])
     return np.linalg.lstsq(rows, right, rcond=1e-13)[0].reshape(-1, 2)
 
 
 def dirichlet_field(mesh, positions, smooth):
-    """U_opt of eq. 8: least Killing energy among the fields that agree with ``smooth`` on the boundary."""
+    """U_opt (n, 2) of eq. 8: minimizes the Killing energy with the boundary values of ``smooth``."""
     rows = killing_rows(positions, mesh.faces)
     free = np.ones(len(smooth), dtype=bool)
-    free[boundary(mesh)] = False
+    free[boundary_vertices(mesh)] = False
     free = free.repeat(2)
     result = smooth.ravel().copy()
     result[free] = np.linalg.lstsq(rows[:, free], -rows[:, ~free] @ result[~free], rcond=1e-13)[0]
@@ -56,16 +56,16 @@ def dirichlet_field(mesh, positions, smooth):
 
 
 def spiral_flow(mesh, positions, field, t=1.0):
-    """Eqs. 14 to 16 edge by edge, with centers."""
+    """The flow of eqs. 14 to 16, edge by edge, with the centers of the spirals."""
     p, u = [complex(*q) for q in positions], [complex(*q) for q in field]
-    reached = [[] for _ in p]
+    endpoints = [[] for _ in p]
     for edge in mesh.edges.tolist():
         for i, j in (edge, edge[::-1]):
             s = (u[i] - u[j]) / (p[i] - p[j])
             if abs(s) < 1e-12:
-                reached[i].append(p[i] + t * u[i])
+                endpoints[i].append(p[i] + t * u[i])
             else:
                 center = p[i] - u[i] / s
-                reached[i].append(center + cmath.exp(s * t) * (p[i] - center))
-    means = [sum(places) / len(places) for places in reached]
+                endpoints[i].append(center + cmath.exp(s * t) * (p[i] - center))
+    means = [sum(points) / len(points) for points in endpoints]
     return np.array([[z.real, z.imag] for z in means])

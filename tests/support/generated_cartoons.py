@@ -1,4 +1,4 @@
-"""A zoo of outlines: alpha channels of all that is hard to cut out, drawn here."""
+"""Generated alpha channels that are hard to cut out, in families."""
 
 from collections.abc import Callable, Iterator
 
@@ -7,13 +7,13 @@ from PIL import Image, ImageDraw, ImageFont
 from scipy.ndimage import gaussian_filter
 
 SIZE = 160
-SAMPLES = 4  # per pixel and axis, for soft rims
+SAMPLES = 4  # per pixel and axis, for soft edges
 
 Alpha = np.ndarray
 
 
-def drawn(draw: Callable[[ImageDraw.ImageDraw, float], None], soft: bool = True) -> Alpha:
-    """(SIZE, SIZE) uint8 of what ``draw`` paints in white; it is given the pixels of its canvas per pixel."""
+def rasterize(draw: Callable[[ImageDraw.ImageDraw, float], None], soft: bool = True) -> Alpha:
+    """Return (SIZE, SIZE) uint8, painted by ``draw(canvas, s)`` on a canvas with s pixels per pixel."""
     scale = SAMPLES if soft else 1
     canvas = Image.new("L", (SIZE * scale, SIZE * scale))
     draw(ImageDraw.Draw(canvas), scale)
@@ -21,21 +21,21 @@ def drawn(draw: Callable[[ImageDraw.ImageDraw, float], None], soft: bool = True)
 
 
 def polygon(points: np.ndarray, soft: bool = True) -> Alpha:
-    """A filled polygon, (p, 2) in pixels."""
-    return drawn(lambda canvas, s: canvas.polygon([tuple(p) for p in points * s], fill=255), soft)
+    """Return a filled polygon; points (p, 2) in pixels."""
+    return rasterize(lambda canvas, s: canvas.polygon([tuple(p) for p in points * s], fill=255), soft)
 
 
-def around(radii: np.ndarray, turn: float = 0.0) -> np.ndarray:
-    """Points at these distances from the middle, at equal angles."""
-    angles = turn + np.arange(len(radii)) * 2 * np.pi / len(radii)
+def around(radii: np.ndarray, first_angle: float = 0.0) -> np.ndarray:
+    """Return points (p, 2) around the middle, at these distances and equal angles."""
+    angles = first_angle + np.arange(len(radii)) * 2 * np.pi / len(radii)
     return SIZE / 2 + np.stack([np.cos(angles), np.sin(angles)], axis=1) * np.asarray(radii)[:, None]
 
 
 def stars() -> Iterator[Alpha]:
     for points in (3, 4, 5, 7, 12, 20):
         for inner in (8, 20, 45):
-            for turn in (0.0, 0.3):
-                yield polygon(around(np.tile([75.0, inner], points), turn), soft=turn > 0)
+            for angle in (0.0, 0.3):
+                yield polygon(around(np.tile([75.0, inner], points), angle), soft=angle > 0)
 
 
 def combs() -> Iterator[Alpha]:
@@ -61,7 +61,7 @@ def spirals() -> Iterator[Alpha]:
                 def paint(canvas, s, line=line, width=width):
                     canvas.line([tuple(p) for p in line * s], fill=255, width=round(width * s), joint="curve")
 
-                yield drawn(paint)
+                yield rasterize(paint)
 
 
 def rings() -> Iterator[Alpha]:
@@ -76,7 +76,7 @@ def rings() -> Iterator[Alpha]:
                             low, high = (SIZE / 2 - radius + shift) * s, (SIZE / 2 + radius + shift) * s
                             canvas.ellipse((low, low, high, high), fill=fill)
 
-                yield drawn(paint)
+                yield rasterize(paint)
 
 
 def glyphs() -> Iterator[Alpha]:
@@ -109,39 +109,39 @@ def noise() -> Iterator[Alpha]:
 
 
 def lines() -> Iterator[Alpha]:
-    """Strokes of one pixel and a little more: straight, steep, crossing, round, zigzag."""
+    """Strokes of 1 to 1.5 pixels: straight, steep, crossing, round, zigzag."""
     middle = SIZE / 2
     for degrees in (0, 7, 30, 45, 80, 90):
-        way = 70 * np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+        half = 70 * np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
         for soft, width in ((False, 1), (True, 1), (True, 1.5)):
 
-            def paint(canvas, s, way=way, width=width):
-                ends = [*(middle - way) * s, *(middle + way) * s]
+            def paint(canvas, s, half=half, width=width):
+                ends = [*(middle - half) * s, *(middle + half) * s]
                 canvas.line(ends, fill=255, width=round(width * s))
 
-            yield drawn(paint, soft)
+            yield rasterize(paint, soft)
     for radius in (5, 20, 70):
-        yield drawn(
+        yield rasterize(
             lambda c, s, r=radius: c.ellipse(
                 ((middle - r) * s, (middle - r) * s, (middle + r) * s, (middle + r) * s), outline=255, width=s
             )
         )
     zigzag = np.stack([np.arange(10, 150, 5), np.where(np.arange(28) % 2, 20, 140)], axis=1)
-    yield drawn(lambda c, s: c.line([tuple(p) for p in zigzag * s], fill=255, width=s), soft=False)
+    yield rasterize(lambda c, s: c.line([tuple(p) for p in zigzag * s], fill=255, width=s), soft=False)
     grid = np.zeros((SIZE, SIZE), dtype=np.uint8)
     grid[10:150:9, 10:150] = grid[10:150, 10:150:9] = 255
     yield grid
 
 
 def touching() -> Iterator[Alpha]:
-    """Outlines that meet themselves in points, along sides and over long ways."""
+    """Outlines that touch themselves in points, along sides and over long distances."""
     for cell in (3, 5, 8, 13):
         squares = np.indices((10, 10)).sum(axis=0) % 2
         yield np.kron(squares, np.full((cell, cell), 255)).astype(np.uint8)
         diagonal = np.kron(np.eye(10, dtype=int), np.full((cell, cell), 255))
         yield np.pad(diagonal, 3).astype(np.uint8)
         yield np.pad(255 - diagonal, 3).astype(np.uint8)
-    for width in (1, 2, 3, 5):  # a slit that all but cuts it in two, hourglasses
+    for width in (1, 2, 3, 5):  # a slit that almost cuts a square in two, and an hourglass
         alpha = np.full((100, 100), 255, dtype=np.uint8)
         alpha[50 : 50 + width, : 100 - width] = 0
         yield np.pad(alpha, 4)

@@ -1,6 +1,6 @@
-"""A second reader of .akap and .pose.json files, made from docs/file-format.md alone, without akap_editor.
+"""A reader of .akap and .pose.json files, written from docs/file-format.md alone, without akap_editor.
 
-It checks what the page says, and knows no optional key or entry.
+It checks every rule of that page and ignores all optional keys and entries.
 """
 
 import hashlib
@@ -12,26 +12,29 @@ from math import isfinite
 import numpy as np
 from PIL import Image
 
-MOST_BYTES, MOST_DOCUMENT, MOST_PICTURE, MOST_PIXELS = 2**30, 2**24, 2**29, 100_000_000
-MOST_VERTICES, MOST_FACES, MOST_PINS, FARTHEST = 1_000_000, 2_000_000, 10_000, 1e9
+MAX_BYTES, MAX_DOCUMENT, MAX_PICTURE, MAX_PIXELS = 2**30, 2**24, 2**29, 100_000_000
+MAX_VERTICES, MAX_FACES, MAX_PINS, MAX_COORDINATE = 1_000_000, 2_000_000, 10_000, 1e9
 
 
-class Unfit(Exception):
-    """The file is not as the page says."""
+class FormatError(Exception):
+    """The file breaks a rule of the page."""
 
 
-def expect(holds: bool, what: str) -> None:
+def expect(holds: bool, rule: str) -> None:
+    """Raise FormatError with the rule unless it holds."""
     if not holds:
-        raise Unfit(what)
+        raise FormatError(rule)
 
 
 def read_json(text: bytes) -> dict:
+    """Parse one JSON object by the page's rules."""
+
     def once(pairs):
         expect(len(dict(pairs)) == len(pairs), "no key twice")
         return dict(pairs)
 
     def refuse(name):
-        raise Unfit("no NaN, no Infinity")
+        raise FormatError("no NaN, no Infinity")
 
     def whole(digits):
         value = int(digits)
@@ -43,17 +46,19 @@ def read_json(text: bytes) -> dict:
     return record
 
 
-def entry(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
+def entry(archive: zipfile.ZipFile, name: str, limit: int) -> bytes:
+    """Read an entry of at most ``limit`` bytes."""
     info = archive.getinfo(name)
     expect(info.compress_type in (0, 8) and not info.flag_bits & 1, "stored or deflated, not encrypted")
-    expect(info.file_size <= most, f"{name} is too large")
+    expect(info.file_size <= limit, f"{name} is too large")
     with archive.open(info) as file:
         data = file.read(info.file_size + 1)
-    expect(len(data) == info.file_size, f"{name} is not as long as it says")
+    expect(len(data) == info.file_size, f"{name} has the size that the directory gives")
     return data
 
 
 def array(archive: zipfile.ZipFile, name: str, kind: str, rows: int, columns: int) -> np.ndarray:
+    """Read an entry of numbers of a dtype."""
     size = rows * columns * np.dtype(kind).itemsize
     data = entry(archive, name, size)
     expect(len(data) == size, f"{name} has the size that the counts give")
@@ -63,10 +68,11 @@ def array(archive: zipfile.ZipFile, name: str, kind: str, rows: int, columns: in
 
 
 def check_mesh(vertices: np.ndarray, faces: np.ndarray) -> None:
-    expect(bool((abs(vertices) <= FARTHEST).all()), "coordinates up to 10^9")
+    """Check the rules for meshes."""
+    expect(bool((abs(vertices) <= MAX_COORDINATE).all()), "coordinates up to 10^9")
     expect(bool((faces >= 0).all() and (faces < len(vertices)).all()), "indices from 0 to n - 1")
     expect(len(set(faces.ravel().tolist())) == len(vertices), "every vertex in at least one face")
-    expect(len({(x, y) for x, y in (vertices + 0.0).tolist()}) == len(vertices), "no two at the same place")
+    expect(len({(x, y) for x, y in (vertices + 0.0).tolist()}) == len(vertices), "no two vertices coincide")
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     areas = ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
     expect(bool((areas > 0).all()), "positive signed areas")
@@ -77,8 +83,9 @@ def check_mesh(vertices: np.ndarray, faces: np.ndarray) -> None:
 
 
 def check_pins(pins: list, faces: int) -> None:
-    expect(type(pins) is list and len(pins) <= MOST_PINS, "at most 10 000 pins")
-    expect(len({pin["id"] for pin in pins}) == len(pins), "no two ids alike")
+    """Check the rules for pins on a mesh with ``faces`` faces."""
+    expect(type(pins) is list and len(pins) <= MAX_PINS, "at most 10 000 pins")
+    expect(len({pin["id"] for pin in pins}) == len(pins), "unique ids")
     for pin in pins:
         expect(type(pin["id"]) is int and type(pin["face"]) is int, "id and face are integers")
         expect(0 <= pin["face"] < faces, "a face from 0 to m - 1")
@@ -91,26 +98,26 @@ def check_pins(pins: list, faces: int) -> None:
 
 
 def read_akap(data: bytes) -> dict:
-    """name, picture (h, w, 4), vertices, faces, uv, positions, pins, method, parameters, tied."""
-    expect(len(data) <= MOST_BYTES, "at most 2^30 bytes")
+    """Return name, picture (h, w, 4), vertices, faces, uv, positions, pins, method, parameters and tied."""
+    expect(len(data) <= MAX_BYTES, "at most 2^30 bytes")
     expect(data[30:56] == b"mimetypeapplication/x-akap", "the type at byte 30")
     with zipfile.ZipFile(BytesIO(data)) as archive:
         expect(len(set(archive.namelist())) == len(archive.namelist()), "no name twice")
         expect(entry(archive, "mimetype", 18) == b"application/x-akap", "the type")
-        record = read_json(entry(archive, "document.json", MOST_DOCUMENT))
+        record = read_json(entry(archive, "document.json", MAX_DOCUMENT))
         expect(record["format"] == "akap" and type(record["version"]) is int, "format and version")
         expect(record["version"] == 1, "a newer file")
         width, height = record["picture"]["width"], record["picture"]["height"]
         n, m = record["mesh"]["vertices"], record["mesh"]["faces"]
         expect(all(type(x) is int and x >= 1 for x in (width, height, n, m)), "integers from 1")
-        expect(width * height <= MOST_PIXELS and n <= MOST_VERTICES and m <= MOST_FACES, "limits")
+        expect(width * height <= MAX_PIXELS and n <= MAX_VERTICES and m <= MAX_FACES, "limits")
         drawing = {
             "vertices": array(archive, "mesh/vertices", "<f8", n, 2),
             "faces": array(archive, "mesh/faces", "<i4", m, 3),
             "uv": array(archive, "mesh/uv", "<f4", n, 2),
             "positions": array(archive, "pose/positions", "<f8", n, 2),
         }
-        picture = Image.open(BytesIO(entry(archive, "picture.png", MOST_PICTURE)), formats=["PNG"])
+        picture = Image.open(BytesIO(entry(archive, "picture.png", MAX_PICTURE)), formats=["PNG"])
     expect(picture.size == (width, height), "the picture's size")
     check_mesh(drawing["vertices"], drawing["faces"])
     check_pins(record["pins"], m)
@@ -129,8 +136,8 @@ def read_akap(data: bytes) -> dict:
 
 
 def read_pose(data: bytes, vertices: np.ndarray, faces: np.ndarray) -> dict:
-    """pins, positions (n, 2), of the mesh given."""
-    expect(len(data) <= MOST_DOCUMENT, "at most 2^24 bytes")
+    """Return pins and positions (n, 2) of a pose of the given mesh."""
+    expect(len(data) <= MAX_DOCUMENT, "at most 2^24 bytes")
     record = read_json(data)
     expect(record["format"] == "akap-pose" and record["version"] == 1, "format and version")
     digest = hashlib.sha256(vertices.astype("<f8").tobytes() + faces.astype("<i4").tobytes())

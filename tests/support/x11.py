@@ -1,4 +1,4 @@
-"""What other programs say to a window on an X server: a window manager, and one that gives a file."""
+"""`X11Client`: sends a window the messages of a window manager and of a program that drops a file."""
 
 import time
 from pathlib import Path
@@ -8,23 +8,23 @@ from Xlib.display import Display
 from Xlib.protocol import event
 
 DEADLINE = 30.0  # seconds
-VERSION = 5  # of the XDND protocol
+XDND_VERSION = 5
 
 
-class Teller:
-    """Connected to a display, to tell a window something. Use as a context manager."""
+class X11Client:
+    """A connection to a display, for messages to one of its windows. Use as a context manager."""
 
     def __init__(self, display: str, window: int) -> None:
         self._display = Display(display)
         self._window = self._display.create_resource_object("window", window)
 
-    def __enter__(self) -> "Teller":
+    def __enter__(self) -> "X11Client":
         return self
 
     def __exit__(self, *error: object) -> None:
         self._display.close()
 
-    def tell(self, kind: str, *values: int) -> None:
+    def send(self, kind: str, *values: int) -> None:
         """Send a client message."""
         data = 32, [*values, 0, 0, 0, 0, 0][:5]
         message = event.ClientMessage(window=self._window, client_type=self.atom(kind), data=data)
@@ -32,41 +32,43 @@ class Teller:
         self._display.flush()
 
     def atom(self, name: str) -> int:
-        """The number of a name."""
+        """The number of an atom, which may be new."""
         number: int = self._display.intern_atom(name)
         return number
 
     def close(self) -> None:
-        """As if the cross was clicked."""
-        self.tell("WM_PROTOCOLS", self.atom("WM_DELETE_WINDOW"))
+        """Ask the window to close, as its close button does."""
+        self.send("WM_PROTOCOLS", self.atom("WM_DELETE_WINDOW"))
         self._display.sync()
 
     def drop(self, path: Path, at: tuple[int, int]) -> None:
-        """Drag a file over the window and let it go at a place of the screen, by the XDND protocol."""
+        """Drag a file over the window and drop it at a point of the screen, by the XDND protocol."""
         source = self._display.screen().root.create_window(0, 0, 1, 1, 0, X.CopyFromParent)
         source.set_selection_owner(self.atom("XdndSelection"), X.CurrentTime)
         kind = self.atom("text/uri-list")
-        self.tell("XdndEnter", source.id, VERSION << 24, kind)
-        place, copy = at[0] << 16 | at[1], self.atom("XdndActionCopy")
-        self.tell("XdndPosition", source.id, 0, place, X.CurrentTime, copy)
+        self.send("XdndEnter", source.id, XDND_VERSION << 24, kind)
+        point, copy = at[0] << 16 | at[1], self.atom("XdndActionCopy")
+        self.send("XdndPosition", source.id, 0, point, X.CurrentTime, copy)
         answer = self._await(X.ClientMessage)
         assert answer.client_type == self.atom("XdndStatus")
-        assert answer.data[1][1] & 1, "a file may be dropped here"
-        self.tell("XdndDrop", source.id, 0, X.CurrentTime)
-        asked = self._await(X.SelectionRequest)
+        assert answer.data[1][1] & 1, "the window refused the drop"
+        self.send("XdndDrop", source.id, 0, X.CurrentTime)
+        request = self._await(X.SelectionRequest)
         uris = f"{path.as_uri()}\r\n".encode()
-        asked.requestor.change_property(asked.property, asked.target, 8, uris)
+        request.requestor.change_property(request.property, request.target, 8, uris)
         names = ("requestor", "selection", "target", "property", "time")
-        asked.requestor.send_event(event.SelectionNotify(**{name: getattr(asked, name) for name in names}))
+        request.requestor.send_event(
+            event.SelectionNotify(**{name: getattr(request, name) for name in names})
+        )
         assert self._await(X.ClientMessage).client_type == self.atom("XdndFinished")
 
     def _await(self, kind: int) -> event.rq.Event:
-        """The next event of a kind."""
+        """Wait for the next event of a kind; AssertionError after `DEADLINE`."""
         deadline = time.monotonic() + DEADLINE
         while time.monotonic() < deadline:
             while self._display.pending_events():
-                found = self._display.next_event()
-                if found.type == kind:
-                    return found
+                received = self._display.next_event()
+                if received.type == kind:
+                    return received
             time.sleep(0.01)
         raise AssertionError(f"no event of kind {kind} within {DEADLINE:g} s")

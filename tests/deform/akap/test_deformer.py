@@ -269,7 +269,7 @@ def test_velocities_of_another_number_of_pins_are_refused(mesh, shapes):
 def test_denser_mesh_moves_nearly_alike(shapes):
     """Energies are weighted by area, so that λ means the same on a finer mesh."""
     coarse = shapes.SHAPES["bar"]
-    fine = TriMesh(*shapes.cut_in_four(coarse.vertices, coarse.faces))
+    fine = TriMesh(*shapes.subdivide(coarse.vertices, coarse.faces))
     where = np.array([[5.0, 30.0], [155.0, 20.0], [290.0, 35.0]])
     goals = where + np.array([[0.0, 0.0], [0.0, 15.0], [0.0, 0.0]])
     poses = []

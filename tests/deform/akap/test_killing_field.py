@@ -65,7 +65,7 @@ def test_first_field_minimizes_energy_and_pin_error(mesh, case):
 def test_second_field_minimizes_energy_with_the_boundary_fixed(mesh, case, dense):
     positions, points, velocities = case
     optimal, smooth = fields(mesh, positions, points, velocities)
-    rim = dense.boundary(mesh)
+    rim = dense.boundary_vertices(mesh)
     assert optimal[rim].tolist() == smooth[rim].tolist()
     least = killing_energy(positions, mesh.faces, optimal)
     assert least <= killing_energy(positions, mesh.faces, smooth) * (1 + 1e-12)
@@ -78,7 +78,7 @@ def test_second_field_minimizes_energy_with_the_boundary_fixed(mesh, case, dense
 
 def test_second_solve_changes_nothing_where_all_pins_sit_on_the_boundary(mesh, shapes, dense):
     rng = np.random.default_rng(5)
-    rim = np.array(dense.boundary(mesh))
+    rim = np.array(dense.boundary_vertices(mesh))
     chosen = np.concatenate(
         [rng.choice(rim[mesh.component[rim] == c], 3, replace=False) for c in set(mesh.component)]
     )

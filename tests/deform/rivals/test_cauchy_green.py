@@ -141,7 +141,7 @@ def test_angle_distortion_vanishes_as_the_mesh_is_refined(shapes):
         after = distortion(mesh, found)
         excess.append(after.angle - 2)
         areas.append(after.area - 2)
-        points, faces = shapes.cut_in_four(points, faces)
+        points, faces = shapes.subdivide(points, faces)
     ratios = np.divide(excess[:-1], excess[1:])
     assert (ratios > 3).all()
     assert excess[-1] < 1e-3 < areas[-1]

@@ -16,7 +16,7 @@ from akap_editor.io.akap.pose import encode_pose
 from akap_editor.io.akap.project import decode_document, encode_document, load
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
-from tests.support.second_reader import Unfit, check_mesh, read_akap, read_pose
+from tests.support.second_reader import FormatError, check_mesh, read_akap, read_pose
 
 FIXTURE = Path(__file__).with_name("version1.akap")
 
@@ -82,9 +82,9 @@ def test_another_reader_gets_the_same_pose(document):
 def test_another_reader_refuses_what_is_not_as_the_page_says(document):
     bad = replace(document.state.settings, method=5)
     state = EditState(document.state.pins, document.state.positions, bad)
-    with pytest.raises(Unfit):
+    with pytest.raises(FormatError):
         read_akap(encode_document(document.with_state(state)))
-    with pytest.raises(Unfit, match="positive signed areas"):
+    with pytest.raises(FormatError, match="positive signed areas"):
         check_mesh(document.drawing.mesh.vertices, document.drawing.mesh.faces[:, ::-1])
 
 
