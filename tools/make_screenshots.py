@@ -28,8 +28,7 @@ from akap_editor.editor.events import KeyEvent, PinRequest, PointerEvent
 from akap_editor.editor.session.edits import PaintStiffness
 from akap_editor.editor.session.pin_edits import hold_angles
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.tools.keyboard_pointer import toggle_keyboard_pointer
-from akap_editor.editor.tools.rotate import RING
+from akap_editor.editor.tools.rotate import RING_RADIUS
 from akap_editor.io.akap.recording import read_recording
 from akap_editor.io.images import read_image, write_png
 from akap_editor.resources import resource
@@ -120,7 +119,7 @@ def crosshair(window: Window) -> None:
     editor = window.state.editor
     width, height = posed_elephant().drawing.size
     editor.last_pointer = editor.camera.to_screen((0.42 * width, 0.5 * height))
-    toggle_keyboard_pointer(editor)
+    editor.toggle_keyboard_pointer()
 
 
 @shot("ring")
@@ -130,7 +129,7 @@ def ring(window: Window) -> None:
     pins = [pin.id for pin in posed_elephant().state.pins]
     editor.edit("Hold angle", lambda session: hold_angles(session, pins[:1]))
     x, y = editor.pins_on_screen()[pins[-1]]
-    radius = window.scale * RING
+    radius = window.scale * RING_RADIUS
     path = [(x + radius * np.cos(a), y + radius * np.sin(a)) for a in np.radians((0, 15, 30, 35))]
     editor.handle_event(KeyEvent("alt"))
     editor.handle_event(PointerEvent("move", path[0]))
@@ -144,7 +143,7 @@ def brush(window: Window) -> None:
     """The stiffness brush; the back and a tusk of the elephant are stiff."""
     show_rest_pose(window)
     editor = window.state.editor
-    editor.chosen_tool = "brush"
+    editor.chosen_tool = editor.brush_tool
     width, height = posed_elephant().drawing.size
     for factor, points in (
         (1000.0, [(0.30, 0.35), (0.36, 0.42)]),

@@ -106,7 +106,7 @@ class AppState:
         brush: list[object] = preferences.get("brush", [])
         match brush:
             case [int() | float() as factor, int() | float() as radius]:
-                state.editor.brush = Brush.of(radius, factor)
+                state.editor.brush_tool.brush = Brush.within_limits(radius, factor)
         return state
 
     def remember(self) -> None:
@@ -115,7 +115,8 @@ class AppState:
             self.preferences.put(name, getattr(self, name))
         self.preferences.put("show_timeline", self.timeline.is_shown)
         self.preferences.put("overlays", self.view.kept())
-        self.preferences.put("brush", [self.editor.brush.factor, self.editor.brush.radius])
+        brush = self.editor.brush_tool.brush
+        self.preferences.put("brush", [brush.factor, brush.radius])
         try:
             self.preferences.write()
         except InputError as error:

@@ -23,6 +23,7 @@ from . import files, theme, widgets
 from . import glfw_key_order as key_order
 from .app_state import AppState
 from .canvas import split_view
+from .canvas.pin_markers import draw_markers
 from .canvas.pointer_input import Canvas
 from .canvas.scene import Scene
 from .canvas.view_options import draw_legend
@@ -279,7 +280,7 @@ class Window:
         state.editor.advance()
         state.timeline.session_playback.watch(state.editor.session)
         state.editor.start_next_step()
-        self._canvas.draw_overlay(state, self.scale)
+        draw_markers(state, self.scale)
         draw_legend(state.view, state.editor, self.scale)
 
     def _recover(self, recovery: Any, message: str) -> None:

@@ -1,10 +1,11 @@
-"""Where the drawing appears on the canvas."""
+"""The camera: a zoom and an offset that map the drawing to the screen."""
 
 from dataclasses import dataclass, replace
 
 Point = tuple[float, float]
 
 MIN_ZOOM, MAX_ZOOM = 0.02, 64.0
+ZOOM_STEP = 1.15  # zoom factor of one notch of the wheel
 
 
 @dataclass(frozen=True)
@@ -15,19 +16,19 @@ class Camera:
     offset: Point = (0.0, 0.0)
 
     def to_screen(self, point: Point) -> Point:
-        """From drawing pixels to the screen."""
+        """Map a point from drawing pixels to the screen."""
         return point[0] * self.zoom + self.offset[0], point[1] * self.zoom + self.offset[1]
 
     def to_drawing(self, point: Point) -> Point:
-        """From the screen to drawing pixels."""
+        """Map a point from the screen to drawing pixels."""
         return (point[0] - self.offset[0]) / self.zoom, (point[1] - self.offset[1]) / self.zoom
 
     def panned(self, dx: float, dy: float) -> "Camera":
-        """Moved by so many points of the screen."""
+        """The camera after the drawing moved by points of the screen."""
         return replace(self, offset=(self.offset[0] + dx, self.offset[1] + dy))
 
     def zoomed(self, factor: float, at: Point) -> "Camera":
-        """Magnified by ``factor``; what is under the screen point ``at`` stays there."""
+        """The camera magnified by ``factor`` within the limits; the screen point ``at`` stays fixed."""
         zoom = min(max(self.zoom * factor, MIN_ZOOM), MAX_ZOOM)
         x, y = self.to_drawing(at)
         return Camera(zoom, (at[0] - x * zoom, at[1] - y * zoom))
@@ -35,7 +36,7 @@ class Camera:
     def view(self, width: float, height: float) -> tuple[float, float, float, float]:
         """(sx, sy, tx, ty) for ``ndc = s * drawing + t`` in a viewport of this size in screen units.
 
-        The one place where y is turned upwards for the screen.
+        Only this method turns y upwards, as normalized device coordinates need it.
         """
         return (
             2 * self.zoom / width,
@@ -46,7 +47,10 @@ class Camera:
 
 
 def fit(low: Point, high: Point, canvas_low: Point, canvas_high: Point, margin: float = 0.06) -> Camera:
-    """The camera that shows the box ``low``..``high`` of the drawing centered in a part of the screen."""
+    """The camera that centers the box ``low``..``high`` of the drawing in a part of the screen.
+
+    margin: on each side, as a share of that part.
+    """
     width, height = canvas_high[0] - canvas_low[0], canvas_high[1] - canvas_low[1]
     span = max(high[0] - low[0], 1e-9), max(high[1] - low[1], 1e-9)
     room = 1 - 2 * margin

@@ -1,4 +1,4 @@
-"""The one door through which a window, a script or a test changes anything."""
+"""The editor: a session with a selection, tools, a pointer and a camera, driven by events."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -9,7 +9,7 @@ from typing import Literal
 from ..errors import SolverError
 from ..geometry.mesh import TriMesh
 from ..geometry.validation import Floats
-from .camera import Camera, Point, fit
+from .camera import ZOOM_STEP, Camera, Point, fit
 from .document.document import Document
 from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
 from .gestures import NudgeSeries, T
@@ -17,19 +17,23 @@ from .pin_trails import Trails
 from .session.edits import Edit
 from .session.session import Session
 from .session.stepper import INLINE
-from .tools.base import Tool, distance
-from .tools.keyboard_pointer import KeyboardPointer
-from .tools.pins import ZOOM_STEP, Idle
-from .tools.stiffness_brush import Brush
+from .tools.base import IdleTool, Tool, distance
+from .tools.keyboard_pointer import MARGIN, KeyboardPointer
+from .tools.pan import HandIdle, Panning
+from .tools.pins import PinsIdle
+from .tools.stiffness_brush import BrushIdle
 
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
-FRAME_BUDGET = 0.02  # seconds in which a frame waits for steps
+FRAME_BUDGET = 0.02  # seconds that a frame waits for steps
 NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
-HELD_KEYS = ("space", "alt", "shift", "h")  # what they mean lasts as long as they are held
+HELD_KEYS = ("space", "alt", "shift", "h")  # keys that have a meaning while they are held
 
 
 class Editor:
-    """A session with the selected pins, the active tool, the pointer and the camera.
+    """A session with the selected pins, the tools, the pointer and the camera.
+
+    Windows, scripts and tests drive it: by events, by the functions in `gestures`, and by `advance` once a
+    frame. It implements `ToolContext` and `EditContext`.
 
     clock: returns seconds, for the recording and for nudges; worker: computes the steps of `advance`, one at
     a time; by default they are computed at once.
@@ -38,20 +42,19 @@ class Editor:
     def __init__(self, clock: Callable[[], float] = time.monotonic, worker: Executor = INLINE) -> None:
         self.session: Session | None = None
         self.selection: frozenset[int] = frozenset()
-        self.trails = Trails()
         self.worker = worker
         self.camera = Camera()
-        self._canvas = (0.0, 0.0, 1280.0, 800.0)
-        self._fitted: Camera | None = None
-        self.pointer: Point | None = None
-        self.last_pointer: Point | None = None  # where it was when it left the canvas
+        self.pointer: Point | None = None  # None while the mouse is not over the canvas
+        self.last_pointer: Point | None = None  # the last position of the pointer on the canvas
         self.ui_scale = 1.0  # points of the window per point of the design
-        self.chosen_tool: Literal["pins", "hand", "brush"] = "pins"
-        self.brush = Brush()
         self.held: frozenset[str] = frozenset()  # of HELD_KEYS
         self.request: PinRequest | None = None
-        self.newest_pin: int | None = None  # added by the last click: a second one on it is no double click
-        self.tool: Tool = Idle(self)
+        self.trails = Trails()
+        self.pins_tool, self.hand_tool, self.brush_tool = PinsIdle(self), HandIdle(self), BrushIdle(self)
+        self.chosen_tool: IdleTool = self.pins_tool
+        self._active_tool: Tool | None = None  # None while the idle tool is active
+        self._canvas = (0.0, 0.0, 1280.0, 800.0)
+        self._fitted: Camera | None = None
         self._clock = clock
         self._nudges = NudgeSeries(clock)
         self._last_hit_test: tuple[TriMesh, Floats, Point, bool] | None = None  # mesh, pose, place, result
@@ -59,11 +62,11 @@ class Editor:
     # -- document ------------------------------------------------------------------------------------------
 
     def open(self, document: Document) -> None:
-        """Show a drawing; the one before it is gone."""
+        """Show a document in place of the open one. Raises InputError if its settings are invalid."""
         self.take_over(Session(document, self._clock))
 
     def take_over(self, session: Session) -> None:
-        """Go on with a session; the one before it is gone."""
+        """Continue a session in place of the open one."""
         self.cancel()
         self.return_to_idle()
         self.session = session
@@ -72,44 +75,90 @@ class Editor:
         self.fit()
 
     def close(self) -> None:
-        """Nothing is open any more."""
+        """Close the session."""
         self.cancel()
         self.return_to_idle()
         self.session = None
         self.select(())
 
     def mark_saved(self, path: Path | None) -> None:
-        """The file at ``path`` now holds the current state."""
+        """Note that the file at ``path`` holds the current state."""
         if self.session is not None:
             self.session.mark_saved(path)
 
     @property
     def modified(self) -> bool:
-        """Whether closing would lose something."""
+        """Whether closing would lose changes."""
         return self.session is not None and self.session.is_modified
+
+    # -- tools ---------------------------------------------------------------------------------------------
+
+    @property
+    def tool(self) -> Tool:
+        """The active tool, which gets the events: a gesture, the keyboard pointer, or the idle tool."""
+        return self.idle_tool if self._active_tool is None else self._active_tool
+
+    @property
+    def idle_tool(self) -> IdleTool:
+        """The tool whose gesture a press starts: the chosen one, or the hand while Space is held."""
+        return self.hand_tool if "space" in self.held else self.chosen_tool
+
+    def set_tool(self, tool: Tool) -> None:
+        """Make a state the active tool."""
+        self._active_tool = tool
+
+    def return_to_idle(self) -> None:
+        """Make `idle_tool` the active tool."""
+        self._active_tool = None
+
+    def toggle_keyboard_pointer(self) -> None:
+        """Let keys move the pointer, or end that. The hand has nothing to click, so the pins replace it."""
+        if self.tool.is_keyboard_driven:
+            self.return_to_idle()
+        elif self.session is not None and not self.busy:
+            if self.chosen_tool is self.hand_tool:
+                self.chosen_tool = self.pins_tool
+            self.set_tool(KeyboardPointer(self))
+
+    def cancel(self) -> None:
+        """Cancel the gesture under way: on Escape, on loss of focus and on errors."""
+        self.tool.cancel()
+        if self.session is not None and self.session.history.is_open:
+            self.session.abort()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a gesture is under way."""
+        return not self.tool.is_idle or (self.session is not None and self.session.history.is_open)
 
     # -- events --------------------------------------------------------------------------------------------
 
     def handle_event(self, event: Event) -> None:
-        """Let the active tool act on what the user did."""
-        if isinstance(event, KeyEvent):
-            self._key(event)
-            return
-        self.pointer = self.last_pointer = event.position
-        if isinstance(event, ScrollEvent):
-            self.camera = self.camera.zoomed(ZOOM_STEP**event.amount, event.position)
-        else:
-            self._pointer(event)
-
-    def _pointer(self, event: PointerEvent) -> None:
-        act = {"press": self.tool.press, "move": self.tool.move, "release": self.tool.release}
+        """Let the active tool react to an event; on an error the gesture is cancelled."""
         try:
-            act[event.kind](event)
+            if isinstance(event, KeyEvent):
+                self._handle_key(event)
+                return
+            self.pointer = self.last_pointer = event.position
+            if isinstance(event, ScrollEvent):
+                self.camera = self.camera.zoomed(ZOOM_STEP**event.amount, event.position)
+            else:
+                self._handle_pointer(event)
         except Exception:
             self.cancel()
             raise
 
-    def _key(self, event: KeyEvent) -> None:
+    def _handle_pointer(self, event: PointerEvent) -> None:
+        if event.kind == "move":
+            self.tool.move(event)
+        elif event.kind == "release":
+            self.tool.release(event)
+        elif event.button == "middle" and self.tool.is_idle:
+            self.set_tool(Panning(self, event))
+        else:
+            self.tool.press(event)
+
+    def _handle_key(self, event: KeyEvent) -> None:
         if event.key in HELD_KEYS:
             self.held = self.held | {event.key} if event.pressed else self.held - {event.key}
         elif event.pressed and self.tool.key(event):
@@ -117,34 +166,14 @@ class Editor:
         elif event.key == "escape" and event.pressed:
             self.cancel()
         elif event.key in ARROWS and event.pressed:
-            size = BIG_NUDGE if event.shift else NUDGE
+            length = BIG_NUDGE if event.shift else NUDGE
             x, y = ARROWS[event.key]
-            self._nudges.nudge(self, size * x, size * y)
+            self._nudges.nudge(self, length * x, length * y)
 
     def pointer_left(self) -> None:
-        """The mouse is no longer over the canvas."""
-        if not isinstance(self.tool, KeyboardPointer):
+        """Note that the mouse left the canvas."""
+        if not self.tool.is_keyboard_driven:
             self.pointer = None
-
-    def set_tool(self, tool: Tool) -> None:
-        """Make a tool state the active one."""
-        self.tool = tool
-
-    def return_to_idle(self) -> None:
-        """No tool is at work any more."""
-        self.set_tool(Idle(self))
-
-    def cancel(self) -> None:
-        """The one way out of a gesture: Escape, focus loss and errors all come here."""
-        if not isinstance(self.tool, Idle):
-            self.tool.cancel()
-        if self.session is not None and self.session.history.is_open:
-            self.session.abort()
-
-    @property
-    def hint(self) -> str:
-        """What can be done now, in words."""
-        return self.tool.hint
 
     # -- edits and selection -------------------------------------------------------------------------------
 
@@ -210,6 +239,17 @@ class Editor:
         if self.session is not None:
             self.select(pin.id for pin in self.session.state.pins)
 
+    def select_next(self, forward: bool = True) -> None:
+        """Select the pin after the selected ones, or before them; after the last comes the first."""
+        if self.session is None or not self.session.state.pins:
+            return
+        ids = [pin.id for pin in self.session.state.pins]
+        selected = [index for index, pin in enumerate(ids) if pin in self.selection]
+        index = max(selected, default=-1) + 1 if forward else min(selected, default=0) - 1
+        pin = ids[index % len(ids)]
+        self.select({pin})
+        self.tool.reveal_pin(pin)
+
     def _drop_missing_pins(self) -> None:
         """Keep the selection and the popup request to pins that exist."""
         pins = set() if self.session is None else {pin.id for pin in self.session.state.pins}
@@ -217,38 +257,44 @@ class Editor:
         if self.request is not None and self.request.pin not in pins:
             self.request = None
 
+    def request_pin_popup(self, kind: Literal["values", "menu"], pin: int) -> None:
+        """Ask the window to open the values or the menu of a pin, which is selected for it."""
+        if pin not in self.selection or kind == "values":
+            self.select({pin})
+        self.request = PinRequest(kind, pin)
+
     # -- motion --------------------------------------------------------------------------------------------
 
     @property
     def moving(self) -> bool:
-        """Whether `advance` has something to do."""
+        """Whether `advance` has steps to make."""
         return self.session is not None and self.session.is_moving
 
     @property
     def waiting(self) -> bool:
-        """Whether nothing moves until the worker is done with a step."""
+        """Whether the worker computes a step, so that nothing moves until it is done."""
         session = self.session
         return session is not None and session.has_pending_step and not session.step_is_ready()
 
     def advance(self, budget: float = FRAME_BUDGET) -> bool:
-        """Take the drawing closer to its pins' targets, waiting about ``budget`` seconds; whether it moved.
+        """Step the pose towards the pins' targets for about ``budget`` seconds; return whether it moved.
 
-        A step that takes longer goes on meanwhile, and a later call takes it over. On SolverError the gesture
-        is cancelled, the pose is the one from before it, and the error is raised.
+        A step that takes longer stays pending, and a later call takes it over. On a SolverError the gesture
+        is cancelled, which restores the pose from before it, and the error is raised.
         """
         session = self.session
         if session is None or not session.is_moving:
             return False
-        until, moved, enough = time.perf_counter() + budget, False, False
+        deadline, moved, done = time.perf_counter() + budget, False, False
         self.trails.follow(session)
         try:
-            while session.is_moving and not enough:
+            while session.is_moving and not done:
                 session.start_step(self.worker)
-                if not session.step_is_ready(until - time.perf_counter()):
+                if not session.step_is_ready(deadline - time.perf_counter()):
                     break
                 seconds = session.step().report.seconds
                 moved = True
-                enough = session.has_visually_arrived or seconds > budget or time.perf_counter() > until
+                done = session.has_visually_arrived or seconds > budget or time.perf_counter() > deadline
                 self.trails.follow(session)
         except SolverError:
             self.cancel()
@@ -256,101 +302,75 @@ class Editor:
         return moved
 
     def start_next_step(self) -> None:
-        """Let the worker begin with the next step while a frame is drawn, if steps take longer than that."""
+        """Start the next step while a frame is drawn, if steps take longer than a frame waits for them."""
         session = self.session
         if session is None or session.last_step is None or not session.is_moving:
             return
         if session.last_step.report.seconds > FRAME_BUDGET:
             session.start_step(self.worker)
 
-    @property
-    def busy(self) -> bool:
-        """Whether a gesture is under way."""
-        is_open = self.session is not None and self.session.history.is_open
-        return is_open or not isinstance(self.tool, Idle)
-
     # -- view ----------------------------------------------------------------------------------------------
 
-    def request_pin_popup(self, kind: Literal["values", "menu"], pin: int) -> None:
-        """Ask the window to open something for a pin, which becomes selected."""
-        if pin not in self.selection or kind == "values":
-            self.select({pin})
-        self.request = PinRequest(kind, pin)
+    @property
+    def hint(self) -> str:
+        """What the user can do now, in one sentence."""
+        return self.tool.hint
 
     def pins_on_screen(self) -> dict[int, Point]:
-        """Where the pins are seen, by id."""
+        """Positions of the pins on the screen, by id."""
         if self.session is None:
             return {}
-        places = zip(self.session.state.pins, self.session.pin_positions().tolist(), strict=True)
-        return {pin.id: self.camera.to_screen((x, y)) for pin, (x, y) in places}
+        positions = zip(self.session.state.pins, self.session.pin_positions().tolist(), strict=True)
+        return {pin.id: self.camera.to_screen((x, y)) for pin, (x, y) in positions}
 
     def pin_at(self, position: Point) -> int | None:
         """The nearest pin within reach of a point of the screen, or None."""
-        near = [(distance(place, position), pin) for pin, place in self.pins_on_screen().items()]
-        best = min(near, default=None)
-        return best[1] if best is not None and best[0] <= PICK_RADIUS * self.ui_scale else None
+        distances = [(distance(center, position), pin) for pin, center in self.pins_on_screen().items()]
+        nearest = min(distances, default=None)
+        return nearest[1] if nearest is not None and nearest[0] <= PICK_RADIUS * self.ui_scale else None
 
     def is_on_drawing(self, position: Point) -> bool:
         """Whether the drawing is under a point of the screen. Caches the last result."""
         if self.session is None:
             return False
-        mesh, pose, place = (
-            self.session.drawing.mesh,
-            self.session.state.positions,
-            self.camera.to_drawing(position),
-        )
-        last = self._last_hit_test
+        mesh, pose = self.session.drawing.mesh, self.session.state.positions
+        place, last = self.camera.to_drawing(position), self._last_hit_test
         if last is None or last[0] is not mesh or last[1] is not pose or last[2] != place:
             last = self._last_hit_test = mesh, pose, place, mesh.find(place, pose) is not None
         return last[3]
 
     @property
-    def hovered_pin(self) -> int | None:
-        """The pin under the pointer, if a press would take it."""
-        if self.pointer is None or self.chosen_tool == "brush":
-            return None
-        return self.pin_at(self.pointer)
-
-    @property
-    def would_add_pin(self) -> bool:
-        """Whether a click where the pointer is would add a pin."""
-        if self.session is None or self.pointer is None or not isinstance(self.tool, Idle):
-            return False
-        if self.pans_on_drag or self.chosen_tool == "brush" or self.held & {"shift", "alt"}:
-            return False
-        if self.hovered_pin is not None:
-            return False
-        return self.is_on_drawing(self.pointer)
-
-    @property
-    def pans_on_drag(self) -> bool:
-        """Whether a left drag moves the canvas."""
-        return self.chosen_tool == "hand" or "space" in self.held
-
-    @property
     def canvas(self) -> tuple[float, float, float, float]:
-        """The part of the window where the drawing is seen, (left, top, right, bottom) in points."""
+        """The part of the window that shows the drawing, (left, top, right, bottom) in points."""
         return self._canvas
 
     @canvas.setter
     def canvas(self, canvas: tuple[float, float, float, float]) -> None:
-        """A drawing that was fitted into the old canvas is fitted into the new one."""
+        """Fit the drawing into the new canvas if the old one still showed it as `fit` does."""
         if canvas != self._canvas:
             self._canvas = canvas
             if self.camera == self._fitted:
                 self.fit()
-            self.tool.resized()
+            self.tool.resize()
 
     def zoom(self, factor: float) -> None:
-        """Magnify about the middle of the canvas, or about the crosshair."""
+        """Zoom about the middle of the canvas, or about the keyboard pointer."""
         left, top, right, bottom = self.canvas
-        middle = (left + right) / 2, (top + bottom) / 2
-        self.camera = self.camera.zoomed(
-            factor, self.tool.place if isinstance(self.tool, KeyboardPointer) else middle
-        )
+        center = (left + right) / 2, (top + bottom) / 2
+        if self.tool.is_keyboard_driven and self.pointer is not None:
+            center = self.pointer
+        self.camera = self.camera.zoomed(factor, center)
+
+    def reveal(self, position: Point) -> Point:
+        """Pan until a point of the screen is inside the canvas, with a margin; return where it is then."""
+        left, top, right, bottom = self.canvas
+        dx = _shift_into(position[0], left, right, MARGIN * self.ui_scale)
+        dy = _shift_into(position[1], top, bottom, MARGIN * self.ui_scale)
+        self.camera = self.camera.panned(dx, dy)
+        return position[0] + dx, position[1] + dy
 
     def fit(self) -> None:
-        """Show the whole picture and all of the pose."""
+        """Show the whole picture and the whole pose."""
         if self.session is None:
             return
         width, height = self.session.drawing.size
@@ -363,3 +383,9 @@ class Editor:
             (left, top),
             (right, bottom),
         )
+
+
+def _shift_into(value: float, low: float, high: float, margin: float) -> float:
+    """How much to add to ``value`` so that it lies between the limits, with a margin where there is room."""
+    margin = min(margin, (high - low) / 2)
+    return max(low + margin - value, 0.0) + min(high - margin - value, 0.0)

@@ -14,8 +14,7 @@ from akap_editor.app.canvas.view_options import RANGES, ViewOptions
 from akap_editor.app.preferences import MOST_RECENT, Preferences, preferences_path
 from akap_editor.app.window import SIZE, SMALLEST, _remembered_place, _remembered_size
 from akap_editor.editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
-from akap_editor.editor.tools.stiffness_brush import LARGEST, Brush
-from akap_editor.editor.tools.stiffness_brush import SMALLEST as SMALLEST_BRUSH
+from akap_editor.editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS, Brush
 from akap_editor.errors import InputError
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
@@ -180,7 +179,7 @@ def test_overlays_come_back(path, tmp_path):
     state.view.heat, state.view.heat_range = "angle", 4
     state.view.set_reference(np.zeros((1, 1, 4), np.uint8), picture)
     state.view.show_reference = False
-    state.editor.brush = Brush(80.0, 500.0, erasing=True)
+    state.editor.brush_tool.brush = Brush(80.0, 500.0, erasing=True)
     state.remember()
     again = AppState.remembering(Preferences(path))
     for name in ("vectors", "ghost", "trails", "heat", "heat_range", "show_reference", "reference_path"):
@@ -191,7 +190,7 @@ def test_overlays_come_back(path, tmp_path):
     assert again.view.reference is not None
     assert again.view.reference.image.shape == read_image(picture).shape
     assert not again.view.show_reference
-    assert again.editor.brush == Brush(80.0, 500.0)
+    assert again.editor.brush_tool.brush == Brush(80.0, 500.0)
 
 
 def test_a_reference_picture_that_is_gone_is_not_missed(path, tmp_path):
@@ -222,8 +221,8 @@ def test_overlays_that_make_no_sense_are_passed_over():
 def test_a_remembered_brush_is_one_that_there_is(brush):
     preferences = Preferences()
     preferences.put("brush", brush)
-    found = AppState.remembering(preferences).editor.brush
-    assert SMALLEST_BRUSH <= found.radius <= LARGEST
+    found = AppState.remembering(preferences).editor.brush_tool.brush
+    assert MIN_RADIUS <= found.radius <= MAX_RADIUS
     assert MIN_STIFFNESS <= found.factor <= MAX_STIFFNESS
 
 

@@ -14,8 +14,8 @@ from PIL import Image, ImageGrab
 from scipy.ndimage import distance_transform_edt
 
 import akap_editor
+from akap_editor.editor.camera import ZOOM_STEP
 from akap_editor.editor.tools.keyboard_pointer import BIG_STEP
-from akap_editor.editor.tools.pins import ZOOM_STEP
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
 from tests.support.x11 import X11Client

@@ -12,7 +12,6 @@ from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import KeyEvent, PointerEvent
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.stepper import INLINE
-from akap_editor.editor.tools.keyboard_pointer import select_next, toggle_keyboard_pointer
 from tests.support.editor_driver import BESIDE, Driver, bits
 
 HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
@@ -60,10 +59,10 @@ def machine(drawing, worker):
 
         @rule(clicks=st.integers(0, 2), forward=st.booleans())
         def point_by_keys(self, clicks, forward):
-            toggle_keyboard_pointer(self.editor)
+            self.editor.toggle_keyboard_pointer()
             for _ in range(clicks):
                 self.driver.key("enter")
-                select_next(self.editor, forward)
+                self.editor.select_next(forward)
                 self.driver.check()
 
         @rule(at=places)

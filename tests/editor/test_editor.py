@@ -26,8 +26,8 @@ def test_without_a_drawing_nothing_happens():
     gestures.remove_pins(editor, [1])
     gestures.set_settings(editor, Settings("akap"))
     assert gestures.add_pin(editor, (1.0, 1.0)) is None
-    assert not any([editor.moving, editor.advance(), editor.modified, editor.would_add_pin])
-    assert editor.hovered_pin is None
+    assert not any([editor.moving, editor.advance(), editor.modified, editor.tool.markers.new_pin])
+    assert editor.tool.markers.hovered_pin is None
     assert "Open" in editor.hint
 
 
@@ -47,7 +47,7 @@ def test_opening_ends_the_gesture_of_the_old_drawing(pinned, drawing):
     pinned.press(END)
     pinned.move((90.0, 60.0))
     pinned.editor.open(new_document(drawing))
-    assert pinned.tool == "Idle"
+    assert pinned.tool == "PinsIdle"
     assert not old.history.is_open
     assert not pinned.editor.busy
 
@@ -91,24 +91,24 @@ def test_the_wheel_zooms_about_the_pointer_and_back(pinned):
 
 def test_hover(pinned):
     pinned.move(NECK)
-    assert pinned.editor.hovered_pin == 2
-    assert not pinned.editor.would_add_pin
+    assert pinned.hovered_pin == 2
+    assert not pinned.would_add_pin
     pinned.move((45.0, 25.0))
-    assert pinned.editor.hovered_pin is None
-    assert pinned.editor.would_add_pin
+    assert pinned.hovered_pin is None
+    assert pinned.would_add_pin
     pinned.move(BESIDE)
-    assert not pinned.editor.would_add_pin
+    assert not pinned.would_add_pin
     pinned.move((45.0, 25.0))
-    pinned.editor.chosen_tool = "hand"
-    assert not pinned.editor.would_add_pin
-    pinned.editor.chosen_tool = "pins"
+    pinned.editor.chosen_tool = pinned.editor.hand_tool
+    assert not pinned.would_add_pin
+    pinned.editor.chosen_tool = pinned.editor.pins_tool
     pinned.press((45.0, 25.0))
-    assert not pinned.editor.would_add_pin
+    assert not pinned.would_add_pin
     pinned.key("escape")
-    assert pinned.editor.would_add_pin
+    assert pinned.would_add_pin
     pinned.editor.pointer_left()
-    assert pinned.editor.hovered_pin is None
-    assert not pinned.editor.would_add_pin
+    assert pinned.hovered_pin is None
+    assert not pinned.would_add_pin
 
 
 @pytest.mark.parametrize("looked_elsewhere", [False, True])
@@ -149,7 +149,7 @@ def test_the_hint_of_idle_says_what_a_press_would_do(driver):
     for at in (NECK, BESIDE):
         driver.move(at)
         hints.append(driver.editor.hint)
-    driver.editor.chosen_tool = "hand"
+    driver.editor.chosen_tool = driver.editor.hand_tool
     hints.append(driver.editor.hint)
     assert len(set(hints)) == 5
 
@@ -330,7 +330,7 @@ def test_a_solver_error_cancels_the_gesture_and_is_raised(pinned, monkeypatch):
         patch.setattr(AkapDeformer, "step", fail)
         with pytest.raises(SolverError, match="on purpose"):
             pinned.editor.advance()
-    assert pinned.tool == "Idle"
+    assert pinned.tool == "PinsIdle"
     assert pinned.everything == before
     assert not pinned.editor.moving
     pinned.drag(END, (95.0, 50.0))
@@ -365,10 +365,10 @@ def test_the_drawing_under_the_pointer_is_looked_up_once_for_each_place_and_pose
     inside, outside = editor.camera.to_screen((84.0, 45.0)), editor.camera.to_screen((2.0, 2.0))
     for place, there in ((inside, True), (outside, False), (inside, True)):
         editor.handle_event(PointerEvent("move", place))
-        assert [editor.would_add_pin, editor.would_add_pin] == [there, there]
+        assert [pinned.would_add_pin, pinned.would_add_pin] == [there, there]
     assert len(looked) == 3
     pinned.session.begin("Away")
     pinned.session.apply(SetPose(pinned.state.positions + 1000.0))
     pinned.session.commit()
-    assert not editor.would_add_pin
+    assert not pinned.would_add_pin
     assert len(looked) == 4

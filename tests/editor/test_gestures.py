@@ -146,13 +146,13 @@ def test_a_click_for_pins_that_misses_them_adds_none(pinned, modifier):
     pinned.editor.select({1})
     pinned.key(modifier)
     pinned.move((45.0, 55.0))
-    assert not pinned.editor.would_add_pin
+    assert not pinned.would_add_pin
     press(pinned, (45.0, 55.0), **{modifier: True})
     pinned.release((45.0, 55.0))
     assert pinned.ids == [1, 2, 3]
     assert pinned.editor.selection == ({1} if modifier == "shift" else set())
     pinned.key(modifier, pressed=False)
-    assert pinned.editor.would_add_pin
+    assert pinned.would_add_pin
 
 
 def test_shift_drags_a_rubber_band_on_the_drawing(pinned):
@@ -189,7 +189,7 @@ def test_the_menu_of_a_selected_pin_keeps_the_selection(pinned):
 def test_a_right_drag_does_nothing(pinned, start):
     before = pinned.everything
     pinned.drag(start, (90.0, 60.0), button="right")
-    assert pinned.tool == "Idle"
+    assert pinned.tool == "PinsIdle"
     assert pinned.everything == before
     assert pinned.editor.request is None
 

@@ -66,6 +66,16 @@ class Driver:
         return type(self.editor.tool).__name__
 
     @property
+    def hovered_pin(self) -> int | None:
+        """The pin that the tool marks under the pointer."""
+        return self.editor.tool.markers.hovered_pin
+
+    @property
+    def would_add_pin(self) -> bool:
+        """Whether the tool marks a pin that a click would add."""
+        return self.editor.tool.markers.new_pin is not None
+
+    @property
     def depth(self) -> int:
         return self.session.history.depth
 

@@ -1,89 +1,129 @@
-"""What the canvas shows of angles that pins hold, of the ring that turns them, brush and crosshair."""
+"""Draws the pins and the markers of the active tool over the drawing, under the panels."""
 
 import math
 
 from imgui_bundle import ImVec2, imgui
 
 from ...editor.camera import Point
+from ...editor.document.pin import Pin
 from ...editor.editor import Editor
-from ...editor.tools.keyboard_pointer import KeyboardPointer
-from ...editor.tools.rotate import RING, RotatingPin, ring_pin
+from ...editor.session.session import Session
+from ...editor.tools.base import BrushCircle, Crosshair, Markers, RotationRing
+from ...editor.tools.rotate import RING_RADIUS
+from ..app_state import AppState
 from ..theme import ACCENT, DARK, packed
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
-_UP = -math.pi / 2  # where the handle of a pin is that is not turned
+_UP = -math.pi / 2  # direction of the ring's handle at angle 0
+_HORIZONTAL, _VERTICAL, _RISING, _FALLING = (1, 0), (0, 1), (1, -1), (1, 1)  # strokes of + and ×
+_PLUS, _MINUS, _TIMES = (_HORIZONTAL, _VERTICAL), (_HORIZONTAL,), (_FALLING, _RISING)
 
 
-def _beside(center: Point, angle: float, radius: float) -> ImVec2:
-    direction = _UP + angle
-    return ImVec2(center[0] + radius * math.cos(direction), center[1] + radius * math.sin(direction))
-
-
-def draw_held_angle(draw: imgui.ImDrawList, center: Point, scale: float, angle: float, counts: bool) -> None:
-    """A tick on a pin's rim at the angle (radians) that it holds; paler where the method does not care."""
-    ends = _beside(center, angle, 5.0 * scale), _beside(center, angle, 14.0 * scale)
-    draw.add_line(*ends, packed(DARK, 0.75), 5.0 * scale)
-    draw.add_line(*ends, packed(_WHITE, 1.0 if counts else 0.5), 2.2 * scale)
-
-
-def draw_ring(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
-    """The ring of the pin at hand, its handle at the angle of the pin, which is shown while it turns."""
-    pin, session = ring_pin(editor), editor.session
-    if pin is None or session is None:
+def draw_markers(state: AppState, scale: float) -> None:
+    """Draw the pins, if they are shown, and the markers of the active tool."""
+    editor, session = state.editor, state.editor.session
+    if session is None:
         return
-    place, turning = editor.pins_on_screen()[pin], isinstance(editor.tool, RotatingPin)
-    held = session.state.pin(pin).angle
-    angle = session.pin_angle(pin) if held is None else held
-    center, radius = ImVec2(*place), RING * scale
-    color = packed(ACCENT if turning else _WHITE)
+    draw, markers = imgui.get_background_draw_list(), editor.tool.markers
+    draw.push_clip_rect(ImVec2(*editor.canvas[:2]), ImVec2(*editor.canvas[2:]))
+    if state.show_pins and "h" not in editor.held:
+        _draw_pins(draw, editor, session, markers, scale)
+        if markers.new_pin is not None:
+            _draw_new_pin(draw, markers.new_pin, scale)
+        if markers.ring is not None:
+            _draw_ring(draw, markers.ring, scale)
+    if markers.brush is not None:
+        _draw_brush(draw, markers.brush, scale)
+    if markers.crosshair is not None:
+        _draw_crosshair(draw, markers.crosshair, editor.canvas, scale)
+    if markers.selection_box is not None:
+        low, high = (ImVec2(*corner) for corner in markers.selection_box)
+        draw.add_rect_filled(low, high, packed(ACCENT, 0.12))
+        draw.add_rect(low, high, packed(ACCENT, 0.9))
+    draw.pop_clip_rect()
+
+
+def draw_pin(
+    draw: imgui.ImDrawList, center: Point, scale: float, selected: bool = False, hovered: bool = False
+) -> None:
+    """Draw a pin: a dot in a white ring in a dark ring, which contrasts with any picture."""
+    position = ImVec2(*center)
+    radius = (8.0 if hovered else 7.0) * scale
+    draw.add_circle_filled(position, radius + 1.5 * scale, packed(DARK, 0.75))
+    draw.add_circle_filled(position, radius, packed(_WHITE))
+    draw.add_circle_filled(position, radius - 2.2 * scale, packed(ACCENT if selected else DARK))
+
+
+def _draw_pins(
+    draw: imgui.ImDrawList, editor: Editor, session: Session, markers: Markers, scale: float
+) -> None:
+    centers = editor.pins_on_screen()
+    for pin in session.state.pins:
+        center = centers[pin.id]
+        if pin.id in markers.pin_targets:
+            ends = ImVec2(*center), ImVec2(*markers.pin_targets[pin.id])
+            draw.add_line(*ends, packed(ACCENT, 0.8), 1.5 * scale)
+        draw_pin(draw, center, scale, pin.id in editor.selection, pin.id == markers.hovered_pin)
+        _draw_pin_values(draw, pin, center, scale, session.supports_rotation)
+        if pin.id == markers.hovered_pin and markers.removes_hovered_pin:
+            _draw_sign(draw, center, 4.0 * scale, scale, _TIMES)
+
+
+def _draw_pin_values(
+    draw: imgui.ImDrawList, pin: Pin, center: Point, scale: float, supports_rotation: bool
+) -> None:
+    """Draw a tick at the held angle, paler if the method ignores it, and the depth if it is not 0."""
+    if pin.angle is not None:
+        ends = _on_circle(center, pin.angle, 5.0 * scale), _on_circle(center, pin.angle, 14.0 * scale)
+        draw.add_line(*ends, packed(DARK, 0.75), 5.0 * scale)
+        draw.add_line(*ends, packed(_WHITE, 1.0 if supports_rotation else 0.5), 2.2 * scale)
+    if pin.depth:
+        middle = center[1] - 0.5 * imgui.calc_text_size("0").y
+        _draw_label(draw, (center[0] + 12 * scale, middle), f"{pin.depth:+d}", (4.0, 1.0), scale)
+
+
+def _draw_new_pin(draw: imgui.ImDrawList, center: Point, scale: float) -> None:
+    """Draw the outline of the pin that a click would add."""
+    position = ImVec2(*center)
+    draw.add_circle(position, 7.5 * scale, packed(DARK, 0.5), 0, 3.0 * scale)
+    draw.add_circle(position, 7.5 * scale, packed(_WHITE, 0.9), 0, 1.5 * scale)
+    _draw_sign(draw, center, 3.0 * scale, scale, _PLUS)
+
+
+def _draw_ring(draw: imgui.ImDrawList, ring: RotationRing, scale: float) -> None:
+    """Draw the ring of a pin with its handle; while it is dragged, also the angle as an arc and a number."""
+    center, radius = ImVec2(*ring.center), RING_RADIUS * scale
+    color = packed(ACCENT if ring.is_dragged else _WHITE)
     draw.add_circle(center, radius, packed(DARK, 0.6), 64, 4.5 * scale)
     draw.add_circle(center, radius, packed(_WHITE, 0.85), 64, 1.8 * scale)
-    if turning:
-        ends = sorted((_UP, _UP + max(-2 * math.pi, min(angle, 2 * math.pi))))
+    if ring.is_dragged:
+        ends = sorted((_UP, _UP + max(-2 * math.pi, min(ring.angle, 2 * math.pi))))
         draw.path_arc_to(center, radius, ends[0], ends[1], 64)
         draw.path_stroke(color, 3.0 * scale)
-    handle = _beside(place, angle, radius)
+    handle = _on_circle(ring.center, ring.angle, radius)
     draw.add_circle_filled(handle, 6.0 * scale, packed(DARK, 0.75))
     draw.add_circle_filled(handle, 4.5 * scale, color)
-    if turning:
-        text = f"{round(math.degrees(angle), 1) + 0.0:+.1f}°"
-        size = imgui.calc_text_size(text)
-        low = ImVec2(place[0] - size.x / 2 - 6 * scale, place[1] + radius + 12 * scale)
-        high = ImVec2(low.x + size.x + 12 * scale, low.y + size.y + 4 * scale)
-        draw.add_rect_filled(low, high, packed(DARK, 0.8), 4 * scale)
-        draw.add_text(ImVec2(low.x + 6 * scale, low.y + 2 * scale), packed(_WHITE), text)
+    if ring.is_dragged:
+        text = f"{round(math.degrees(ring.angle), 1) + 0.0:+.1f}°"  # + 0.0 turns -0.0 into 0.0
+        left = ring.center[0] - imgui.calc_text_size(text).x / 2 - 6 * scale
+        _draw_label(draw, (left, ring.center[1] + radius + 14 * scale), text, (6.0, 2.0), scale)
 
 
-def draw_brush(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
-    """The rim of the brush around the pointer, and the inner circle in which it works fully."""
-    if (
-        editor.session is None
-        or editor.chosen_tool != "brush"
-        or editor.pans_on_drag
-        or editor.pointer is None
-    ):
-        return
-    center, radius = ImVec2(*editor.pointer), editor.brush.radius * scale
-    draw.add_circle(center, radius, packed(DARK, 0.6), 0, 3.0 * scale)
-    draw.add_circle(center, radius, packed(_WHITE, 0.9), 0, 1.4 * scale)
-    draw.add_circle(center, radius / 2, packed(_WHITE, 0.35), 0, 1.0 * scale)
-    sign = 3.5 * scale
-    for dx, dy in ((1, 0),) if editor.brush.erasing else ((1, 0), (0, 1)):
-        start = ImVec2(center.x - sign * dx, center.y - sign * dy)
-        end = ImVec2(center.x + sign * dx, center.y + sign * dy)
-        draw.add_line(start, end, packed(DARK, 0.7), 3.5 * scale)
-        draw.add_line(start, end, packed(_WHITE), 1.6 * scale)
+def _draw_brush(draw: imgui.ImDrawList, brush: BrushCircle, scale: float) -> None:
+    """Draw the rim of the brush, the inner circle of full strength, and a + or − in the middle."""
+    center = ImVec2(*brush.center)
+    draw.add_circle(center, brush.radius, packed(DARK, 0.6), 0, 3.0 * scale)
+    draw.add_circle(center, brush.radius, packed(_WHITE, 0.9), 0, 1.4 * scale)
+    draw.add_circle(center, brush.radius / 2, packed(_WHITE, 0.35), 0, 1.0 * scale)
+    _draw_sign(draw, brush.center, 3.5 * scale, scale, _MINUS if brush.erases else _PLUS)
 
 
-def draw_crosshair(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None:
-    """Four arms around the place that it points at, which stays free; thin lines lead to them."""
-    if not isinstance(editor.tool, KeyboardPointer):
-        return
-    (x, y), (left, top, right, bottom) = editor.tool.place, editor.canvas
-    inner = 13 * scale
-    if editor.chosen_tool == "brush":
-        inner = max(inner, editor.brush.radius * scale + 3 * scale)
-    outer = inner + 18 * scale
+def _draw_crosshair(
+    draw: imgui.ImDrawList, crosshair: Crosshair, canvas: tuple[float, float, float, float], scale: float
+) -> None:
+    """Draw four arms around the center, and thin lines from them to the edges of the canvas."""
+    (x, y), (left, top, right, bottom) = crosshair.center, canvas
+    inner, outer = crosshair.gap, crosshair.gap + 18 * scale
     for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
         start = ImVec2(x + inner * dx, y + inner * dy)
         end = ImVec2(x + outer * dx, y + outer * dy)
@@ -92,3 +132,36 @@ def draw_crosshair(draw: imgui.ImDrawList, editor: Editor, scale: float) -> None
         draw.add_line(end, edge, packed(_WHITE, 0.45), 1.0 * scale)
         draw.add_line(start, end, packed(DARK, 0.8), 5.0 * scale)
         draw.add_line(start, end, packed(ACCENT), 2.4 * scale)
+
+
+def _on_circle(center: Point, angle: float, radius: float) -> ImVec2:
+    """The point of a circle around a pin at an angle of the pin (radians)."""
+    direction = _UP + angle
+    return ImVec2(center[0] + radius * math.cos(direction), center[1] + radius * math.sin(direction))
+
+
+def _draw_label(
+    draw: imgui.ImDrawList, corner: Point, text: str, padding: tuple[float, float], scale: float
+) -> None:
+    """Draw text on a dark plate. corner: left edge of the plate and top of the text."""
+    size = imgui.calc_text_size(text)
+    across, along = padding[0] * scale, padding[1] * scale
+    low = ImVec2(corner[0], corner[1] - along)
+    high = ImVec2(corner[0] + size.x + 2 * across, corner[1] + size.y + along)
+    draw.add_rect_filled(low, high, packed(DARK, 0.8), 4 * scale)
+    draw.add_text(ImVec2(corner[0] + across, corner[1]), packed(_WHITE), text)
+
+
+def _draw_sign(
+    draw: imgui.ImDrawList,
+    center: Point,
+    size: float,
+    scale: float,
+    strokes: tuple[tuple[int, int], ...],
+) -> None:
+    """Draw a sign of straight strokes through the center, white with a dark rim."""
+    x, y = center
+    for color, width in ((packed(DARK, 0.7), 3.5 * scale), (packed(_WHITE), 1.6 * scale)):
+        for dx, dy in strokes:
+            ends = ImVec2(x - size * dx, y - size * dy), ImVec2(x + size * dx, y + size * dy)
+            draw.add_line(*ends, color, width)

@@ -12,7 +12,7 @@ from ...geometry.distortion import Distortion
 from ...render.renderer import Background, Renderer
 from ..app_state import AppState
 from ..theme import QUIET, TEXT, packed
-from .pointer_input import draw_pin
+from .pin_markers import draw_pin
 
 Canvas = tuple[float, float, float, float]
 
@@ -108,7 +108,7 @@ def _pins(pane: Canvas, session: Session, camera: Camera, scale: float) -> None:
     lines = imgui.get_background_draw_list()
     lines.push_clip_rect(ImVec2(*pane[:2]), ImVec2(*pane[2:]))
     for x, y in session.pin_positions().tolist():
-        draw_pin(lines, camera.to_screen((x, y)), scale, False, False)
+        draw_pin(lines, camera.to_screen((x, y)), scale)
     lines.pop_clip_rect()
 
 

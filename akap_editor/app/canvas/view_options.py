@@ -15,8 +15,6 @@ from ...editor.document.drawing import Drawing
 from ...editor.document.stiffness import MAX_STIFFNESS
 from ...editor.editor import FRAME_BUDGET, Editor
 from ...editor.session.session import Session
-from ...editor.tools.pins import DraggingPin
-from ...editor.tools.stiffness_brush import shown_stiffness
 from ...errors import InputError
 from ...geometry.distortion import Distortion
 from ...geometry.validation import Floats, Ints
@@ -105,11 +103,7 @@ class ViewOptions:
         strokes: list[LineSegments] = []
         if self.trails:
             strokes += outlined(editor.trails.segments(), TRAIL, 1.5 * scale)
-        if (
-            self.vectors
-            and editor.session is not None
-            and (editor.moving or isinstance(editor.tool, DraggingPin))
-        ):
+        if self.vectors and editor.session is not None and (editor.moving or editor.tool.drags_pins):
             strokes += self._fields.strokes(editor, editor.session, scale)
         else:
             self._fields.drop()
@@ -133,7 +127,7 @@ class ViewOptions:
 
     def _tint_of(self, editor: Editor) -> FaceColors | None:
         """What bends less, while the brush is at hand; one object for each stiffness."""
-        stiffness = shown_stiffness(editor)
+        stiffness = editor.tool.shown_stiffness
         if stiffness is None:
             return None
         if self._tint is None or self._tint[0] is not stiffness:

@@ -6,7 +6,6 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...editor.events import ARROWS
-from ...editor.tools.keyboard_pointer import KeyboardPointer, select_next, toggle_keyboard_pointer
 from ..app_state import AppState
 from . import keying
 from .command import CTRL, MENU_KEYS, SHIFT, Command, Key, has_drawing
@@ -24,11 +23,11 @@ def _point(state: AppState) -> None:
     state.notice = ""
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
-    toggle_keyboard_pointer(state.editor)
+    state.editor.toggle_keyboard_pointer()
 
 
 def _points(state: AppState) -> bool:
-    return isinstance(state.editor.tool, KeyboardPointer)
+    return state.editor.tool.is_keyboard_driven
 
 
 def _one_pin(state: AppState) -> bool:
@@ -59,9 +58,9 @@ def _look(x: int, y: int) -> Callable[[AppState], None]:
 
 
 CROSSHAIR = Command("Crosshair", _point, (Key.c,), icons.ICON_FA_CROSSHAIRS, has_drawing, _points)
-NEXT_PIN = Command("Next Pin", lambda state: select_next(state.editor), (Key.j,), "", _has_pins)
+NEXT_PIN = Command("Next Pin", lambda state: state.editor.select_next(), (Key.j,), "", _has_pins)
 PREVIOUS_PIN = Command(
-    "Previous Pin", lambda state: select_next(state.editor, False), (SHIFT | Key.j,), "", _has_pins
+    "Previous Pin", lambda state: state.editor.select_next(False), (SHIFT | Key.j,), "", _has_pins
 )
 PIN_VALUES = Command(
     "Pin Values...",

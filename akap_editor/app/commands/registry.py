@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor import gestures
+from ...editor.editor import Editor
 from ...editor.session.edits import SetStiffness
+from ...editor.tools.base import IdleTool
 from ...resources import bundled_drawings
 from .. import file_commands, files
 from ..app_state import AppState
@@ -28,27 +29,32 @@ def _toggle(name: str) -> tuple[Callable[[AppState], None], Callable[[AppState],
     return flip, lambda state: bool(getattr(state, name))
 
 
-def _tool(name: Literal["pins", "hand", "brush"], label: str, key: Key, icon: str) -> Command:
-    def choose(state: AppState) -> None:
-        state.editor.chosen_tool = name
+def _tool(tool: Callable[[Editor], IdleTool], label: str, key: Key, icon: str) -> Command:
+    """The command that chooses a tool of the editor."""
 
-    return Command(label, choose, (key,), icon, always, lambda state: state.editor.chosen_tool == name)
+    def choose(state: AppState) -> None:
+        state.editor.chosen_tool = tool(state.editor)
+
+    def is_chosen(state: AppState) -> bool:
+        return state.editor.chosen_tool is tool(state.editor)
+
+    return Command(label, choose, (key,), icon, always, is_chosen)
 
 
 def _has_brush(state: AppState) -> bool:
-    return has_drawing(state) and state.editor.chosen_tool == "brush"
+    return has_drawing(state) and state.editor.chosen_tool is state.editor.brush_tool
 
 
 def _resize(up: bool) -> Callable[[AppState], None]:
     def resize(state: AppState) -> None:
-        state.editor.brush = state.editor.brush.resized(up)
+        state.editor.brush_tool.brush = state.editor.brush_tool.brush.resized(up)
 
     return resize
 
 
 def _erase(state: AppState) -> None:
-    brush = state.editor.brush
-    state.editor.brush = replace(brush, erasing=not brush.erasing)
+    brush = state.editor.brush_tool.brush
+    state.editor.brush_tool.brush = replace(brush, erasing=not brush.erasing)
 
 
 def _can_hold(state: AppState) -> bool:
@@ -244,10 +250,12 @@ HOLD_ANGLE = Command(
     "Hold Angle", lambda state: gestures.toggle_held_angles(state.editor), (), "", _can_hold, _holds
 )
 
-PIN_TOOL = _tool("pins", "Pins", Key.p, icons.ICON_FA_THUMBTACK)
-HAND_TOOL = _tool("hand", "Move Canvas", Key.n, icons.ICON_FA_HAND)
-BRUSH_TOOL = _tool("brush", "Stiffness Brush", Key.s, icons.ICON_FA_PAINTBRUSH)
-ERASE = Command("Erase Stiffness", _erase, (Key.e,), "", _has_brush, lambda state: state.editor.brush.erasing)
+PIN_TOOL = _tool(lambda editor: editor.pins_tool, "Pins", Key.p, icons.ICON_FA_THUMBTACK)
+HAND_TOOL = _tool(lambda editor: editor.hand_tool, "Move Canvas", Key.n, icons.ICON_FA_HAND)
+BRUSH_TOOL = _tool(lambda editor: editor.brush_tool, "Stiffness Brush", Key.s, icons.ICON_FA_PAINTBRUSH)
+ERASE = Command(
+    "Erase Stiffness", _erase, (Key.e,), "", _has_brush, lambda state: state.editor.brush_tool.brush.erasing
+)
 SMALLER = Command("Smaller Brush", _resize(False), (Key.left_bracket,), "", _has_brush)
 LARGER = Command("Larger Brush", _resize(True), (Key.right_bracket,), "", _has_brush)
 SOFTEN_ALL = Command(

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...deform.deformer import takes_stiffness
 from ...editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
-from ...editor.tools.stiffness_brush import LARGEST, SMALLEST
+from ...editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS
 from .. import widgets
 from ..app_state import AppState
 from ..commands import registry as commands
@@ -17,18 +17,20 @@ _LABELS = 6.0  # times the font's size: width of the labels
 
 def is_at_hand(state: AppState) -> bool:
     """Whether there is something to paint on, and the brush to do it."""
-    return state.document is not None and state.editor.chosen_tool == "brush"
+    return state.document is not None and state.editor.chosen_tool is state.editor.brush_tool
 
 
 def draw(state: AppState, scale: float) -> None:
     """Strength, size, eraser."""
     assert state.document is not None
-    brush = state.editor.brush
+    brush = state.editor.brush_tool.brush
     factor = _slider(
         "Strength", brush.factor, (MIN_STIFFNESS, MAX_STIFFNESS), "%.0f ×", "How much less a part bends."
     )
-    radius = _slider("Size", brush.radius, (SMALLEST, LARGEST), "%.0f px", "Radius on the screen: [ and ].")
-    state.editor.brush = replace(brush, factor=factor, radius=radius)
+    radius = _slider(
+        "Size", brush.radius, (MIN_RADIUS, MAX_RADIUS), "%.0f px", "Radius on the screen: [ and ]."
+    )
+    state.editor.brush_tool.brush = replace(brush, factor=factor, radius=radius)
     if widgets.switch("Erase", brush.erasing, "E, or drag with the right button.")[0]:
         widgets.run(state, commands.ERASE)
     if not takes_stiffness(state.document.state.settings.method):

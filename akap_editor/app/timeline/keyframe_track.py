@@ -8,8 +8,8 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor.animation.keyframe_playback import MOST_SKINS, STEP, KeyframePlayback, stretched
 from ...editor.animation.time_view import VisibleRange
+from ...editor.camera import ZOOM_STEP
 from ...editor.document.easing import KEYFRAME_EASINGS
-from ...editor.tools.pins import ZOOM_STEP
 from .. import widgets
 from ..app_state import AppState
 from ..commands import keying

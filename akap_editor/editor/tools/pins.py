@@ -1,281 +1,285 @@
-"""The states of the pointer, each named, each with the same way out."""
-
-from typing import TYPE_CHECKING
+"""The pins tool: it adds, selects, drags and removes pins."""
 
 import numpy as np
 
-from .. import gestures
 from ..camera import Point
 from ..events import PointerEvent
+from ..gestures import remove_pins
 from ..session.edits import SetTargets
 from ..session.pin_edits import add_pin, hold_pins
-from .base import Pointing, Tool
-from .rotate import PointingRotationRing, hovered_ring, ring_at
-from .stiffness_brush import Painting
-
-if TYPE_CHECKING:
-    from ..editor import Editor
-
-ZOOM_STEP = 1.15
+from .base import Cursor, IdleTool, Markers, PinGesture, Pointing, Tool, ToolContext
+from .rotate import PointingRotationRing, pin_with_ring, ring_at, rotation_ring
 
 
-class Idle(Tool):
-    """Nothing is pressed."""
+class PinsIdle(IdleTool):
+    """The pins tool waits for a press."""
+
+    newest_pin: int | None = None  # added by the last click: the second click of a double click selects it
 
     @property
-    def hint(self) -> str:  # type: ignore[override]
-        """What a press would do here."""
-        editor = self.editor
-        if editor.session is None:
-            return "Open a picture or a drawing to begin"
-        if editor.pans_on_drag:
-            return "Drag to move the canvas, wheel to zoom"
-        if editor.chosen_tool == "brush":
-            return editor.brush.hint
-        if hovered_ring(editor) is not None:
+    def press_hint(self) -> str:
+        context = self.context
+        if self._hovered_ring is not None:
             return "Drag the ring to turn the drawing around this pin, with Shift by steps of 15°"
-        if editor.hovered_pin is not None:
-            if "alt" in editor.held:
+        if self.hovered_pin is not None:
+            if "alt" in context.held:
                 return "Click to remove this pin, drag its ring to turn the drawing around it"
-            if "shift" in editor.held:
+            if "shift" in context.held:
                 return "Click to select this pin too, or to take it out of the selection"
             return "Drag to bend the drawing, Shift-click to select several pins, double-click for values"
-        if editor.would_add_pin:
+        if self._new_pin is not None:
             return "Click to add a pin, or press and drag to bend from here"
-        if not editor.session.state.pins:
+        if not self.session.state.pins:
             return "Click on the drawing to put a pin where it should hold still"
-        if len(editor.session.state.pins) == 1:
+        if len(self.session.state.pins) == 1:
             return "One pin takes all of the drawing along: click on the drawing where it should hold still"
         return "Drag a pin to bend the drawing, click on the drawing for another one"
 
+    @property
+    def keyboard_hint(self) -> str:
+        if self.hovered_pin is not None:
+            if "alt" in self.context.held:
+                return "Enter removes this pin"
+            if "shift" in self.context.held:
+                return "Enter selects this pin too, or takes it out of the selection"
+            return (
+                "Enter selects this pin, with Shift this one too, with Alt it removes it; "
+                "arrows move on, Esc ends"
+            )
+        if self._new_pin is not None:
+            return "Enter adds a pin; arrows move on, Esc ends"
+        return "Arrows move the crosshair, with Shift farther; Enter adds a pin on the drawing, Esc ends"
+
+    @property
+    def cursor(self) -> Cursor:
+        return "hand" if self.hovered_pin is not None or self._hovered_ring is not None else "arrow"
+
+    @property
+    def markers(self) -> Markers:
+        """The pin under the pointer, the pin that a click would add, and the rotation ring."""
+        hovered_pin, ring_pin = self.hovered_pin, pin_with_ring(self.context)
+        return Markers(
+            hovered_pin=hovered_pin,
+            removes_hovered_pin=hovered_pin is not None and "alt" in self.context.held,
+            new_pin=self._new_pin,
+            ring=None if ring_pin is None else rotation_ring(self.context, ring_pin),
+        )
+
+    @property
+    def _hovered_ring(self) -> int | None:
+        """The pin whose ring is under the pointer."""
+        pointer = self.context.pointer
+        return None if pointer is None else ring_at(self.context, pointer)
+
+    @property
+    def _new_pin(self) -> Point | None:
+        """The point of the screen where a click would add a pin."""
+        context, pointer = self.context, self.context.pointer
+        if pointer is None or self.hovered_pin is not None or context.held & {"shift", "alt"}:
+            return None
+        return pointer if context.is_on_drawing(pointer) else None
+
     def press(self, event: PointerEvent) -> None:
-        editor = self.editor
-        if event.button == "middle" or (event.button == "left" and editor.pans_on_drag):
-            editor.set_tool(Panning(editor, event))
+        context = self.context
+        if context.session is None:
             return
-        if editor.session is None:
-            return
-        if editor.chosen_tool == "brush":
-            editor.set_tool(Painting(editor, event))
-            return
-        pin = editor.pin_at(event.position)
-        ring = ring_at(editor, event.position) if event.alt else None
+        pin = context.pin_at(event.position)
+        ring_pin = ring_at(context, event.position) if event.alt else None
         if event.button == "right":
             if pin is not None:
-                editor.set_tool(OpeningPinMenu(editor, event, pin))
-        elif ring is not None:
-            editor.set_tool(PointingRotationRing(editor, event, ring))
+                context.set_tool(OpeningPinMenu(context, event, pin))
+        elif ring_pin is not None:
+            context.set_tool(PointingRotationRing(context, event, ring_pin))
         elif pin is None:
             self._press_beside_pins(event)
         elif event.alt:
-            editor.set_tool(RemovingPin(editor, event, pin))
-        elif event.clicks == 2 and pin != editor.newest_pin:
-            editor.request_pin_popup("values", pin)
+            context.set_tool(RemovingPin(context, event, pin))
+        elif event.clicks == 2 and pin != self.newest_pin:
+            context.request_pin_popup("values", pin)
         else:
-            editor.set_tool(PointingPin(editor, event, pin, is_new=False))
+            context.set_tool(PointingPin(context, event, pin, self, is_new=False))
 
     def _press_beside_pins(self, event: PointerEvent) -> None:
-        """A new pin where the drawing is; Shift and Alt are for pins that are there."""
-        editor = self.editor
-        assert editor.session is not None
+        """Add a pin on the drawing, except with Shift or Alt, which are for pins that exist."""
+        context = self.context
         if event.shift or event.alt:
-            editor.set_tool(PointingCanvas(editor, event))
+            context.set_tool(PointingCanvas(context, event))
             return
-        editor.session.begin("Add pin")
-        added = add_pin(editor.session, editor.camera.to_drawing(event.position))
-        if added is None:
-            editor.session.abort()
-            editor.set_tool(PointingCanvas(editor, event))
+        self.session.begin("Add pin")
+        pin = add_pin(self.session, context.camera.to_drawing(event.position))
+        if pin is None:
+            self.session.abort()
+            context.set_tool(PointingCanvas(context, event))
         else:
-            editor.set_tool(PointingPin(editor, event, added, is_new=True))
+            context.set_tool(PointingPin(context, event, pin, self, is_new=True))
 
 
 class PointingPin(Pointing):
-    """Pressed on a pin, or on the drawing where a pin now is; not dragged yet."""
+    """A pin is pressed and not dragged yet; ``is_new`` if the press added it."""
 
     hint = "Drag to bend the drawing"
+    cursor = "hand"
 
-    def __init__(self, editor: "Editor", event: PointerEvent, pin: int, is_new: bool) -> None:
-        super().__init__(editor, event)
-        self.pin, self.is_new = pin, is_new
-        self._selection_before = editor.selection
-        self._was_selected = pin in editor.selection
+    def __init__(
+        self, context: ToolContext, event: PointerEvent, pin: int, idle_tool: PinsIdle, is_new: bool
+    ) -> None:
+        super().__init__(context, event)
+        self.pin, self._idle_tool, self._is_new = pin, idle_tool, is_new
+        self._selection_before = context.selection
+        self._deselects = event.shift and pin in context.selection
         if event.shift:
-            editor.select(editor.selection | {pin})
-        elif not self._was_selected:
-            editor.select({pin})
-        self._toggle = event.shift and self._was_selected
+            context.select(context.selection | {pin})
+        elif pin not in context.selection:
+            context.select({pin})
 
-    def dragged(self, event: PointerEvent) -> None:
-        drag = DraggingPin(self.editor, self.start, self._selection_before, self.is_new)
-        self.editor.set_tool(drag)
-        drag.move(event)
+    def drag(self, event: PointerEvent) -> None:
+        dragging = DraggingPin(self.context, self.start, self._selection_before, self._is_new)
+        self.context.set_tool(dragging)
+        dragging.move(event)
 
-    def clicked(self, event: PointerEvent) -> None:
-        editor = self.editor
-        editor.newest_pin = self.pin if self.is_new else None
-        if self.is_new:
-            assert editor.session is not None
-            editor.session.commit()
-        elif self._toggle:
-            editor.select(editor.selection - {self.pin})
+    def click(self, event: PointerEvent) -> None:
+        context = self.context
+        self._idle_tool.newest_pin = self.pin if self._is_new else None
+        if self._is_new:
+            self.session.commit()
+        elif self._deselects:
+            context.select(context.selection - {self.pin})
         elif not event.shift:
-            editor.select({self.pin})
-        editor.set_tool(Idle(editor))
+            context.select({self.pin})
+        context.return_to_idle()
 
     def cancel(self) -> None:
-        if self.is_new and self.editor.session is not None:
-            self.editor.session.abort()
-        self.editor.select(self._selection_before)
+        if self._is_new:
+            self.session.abort()
+        self.context.select(self._selection_before)
         super().cancel()
 
 
-class RemovingPin(Pointing):
-    """Pressed on a pin with Alt."""
+class DraggingPin(PinGesture):
+    """The selected pins follow the pointer, and the drawing follows them."""
 
-    hint = "Release to remove this pin, Escape to keep it"
-
-    def __init__(self, editor: "Editor", event: PointerEvent, pin: int) -> None:
-        super().__init__(editor, event)
-        self.pin = pin
-
-    def clicked(self, event: PointerEvent) -> None:
-        self.editor.set_tool(Idle(self.editor))
-        gestures.remove_pins(self.editor, {self.pin})
-
-
-class OpeningPinMenu(Pointing):
-    """Pressed on a pin with the right button; a drag with that button does nothing."""
-
-    hint = "Release for the menu of this pin"
-
-    def __init__(self, editor: "Editor", event: PointerEvent, pin: int) -> None:
-        super().__init__(editor, event)
-        self.pin = pin
-
-    def clicked(self, event: PointerEvent) -> None:
-        self.editor.set_tool(Idle(self.editor))
-        self.editor.request_pin_popup("menu", self.pin)
-
-
-class DraggingPin(Tool):
-    """The selected pins follow the pointer; the drawing follows them."""
+    drags_pins = True
 
     def __init__(
-        self, editor: "Editor", start: Point, selection_before: frozenset[int], is_new: bool
+        self, context: ToolContext, start: Point, selection_before: frozenset[int], is_new: bool
     ) -> None:
-        super().__init__(editor)
-        session = editor.session
-        assert session is not None
-        self._start = editor.camera.to_drawing(start)
-        self._selection_before = selection_before
-        label = "Bend" if len(editor.selection) == 1 else f"Bend with {len(editor.selection)} pins"
+        super().__init__(context, selection_before)
+        session = self.session
+        self._start = context.camera.to_drawing(start)
         if is_new:
             session.rename("Add pin and bend")
         else:
-            session.begin(label)
+            count = len(context.selection)
+            session.begin("Bend" if count == 1 else f"Bend with {count} pins")
         hold_pins(session)
-        editor.trails.clear()
-        where = zip(session.state.pins, session.pin_positions(), strict=True)
-        self._from = {pin.id: (x, y) for pin, (x, y) in where if pin.id in editor.selection}
+        positions = zip(session.state.pins, session.pin_positions(), strict=True)
+        self._positions_before = {pin.id: (x, y) for pin, (x, y) in positions if pin.id in context.selection}
 
     @property
-    def hint(self) -> str:  # type: ignore[override]
-        """What a release would do, and why nothing bends where no pin holds still."""
-        session = self.editor.session
-        if session is not None and len(self._from) == len(session.state.pins):
+    def hint(self) -> str:
+        """What a release does; or that nothing bends because no pin stays where it is."""
+        if len(self._positions_before) == len(self.session.state.pins):
             return "No other pin holds the drawing, so all of it goes along; Escape to go back"
         return "Release to keep this pose, Escape to go back"
 
+    @property
+    def markers(self) -> Markers:
+        """The targets of the pins that are dragged."""
+        targets = {
+            pin.id: self.context.camera.to_screen(tuple(pin.target))
+            for pin in self.session.state.pins
+            if pin.id in self.context.selection
+        }
+        return Markers(pin_targets=targets)
+
     def move(self, event: PointerEvent) -> None:
-        assert self.editor.session is not None
-        x, y = self.editor.camera.to_drawing(event.position)
+        x, y = self.context.camera.to_drawing(event.position)
         dx, dy = x - self._start[0], y - self._start[1]
-        targets = {pin: (a + dx, b + dy) for pin, (a, b) in self._from.items()}
-        self.editor.session.apply(SetTargets(targets))
+        targets = {pin: (a + dx, b + dy) for pin, (a, b) in self._positions_before.items()}
+        self.session.apply(SetTargets(targets))
 
-    def release(self, event: PointerEvent) -> None:
-        if event.button == "left":
-            assert self.editor.session is not None
-            self.editor.session.commit()
-            self.editor.set_tool(Idle(self.editor))
 
-    def cancel(self) -> None:
-        if self.editor.session is not None:
-            self.editor.session.abort()
-        self.editor.trails.clear()
-        self.editor.select(self._selection_before)
-        super().cancel()
+class RemovingPin(Pointing):
+    """A pin is pressed with Alt; a click removes it."""
+
+    hint = "Release to remove this pin, Escape to keep it"
+    cursor = "hand"
+
+    def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
+        super().__init__(context, event)
+        self.pin = pin
+
+    def click(self, event: PointerEvent) -> None:
+        self.context.return_to_idle()
+        remove_pins(self.context, {self.pin})
+
+
+class OpeningPinMenu(Pointing):
+    """A pin is pressed with the right button; a click opens its menu."""
+
+    hint = "Release for the menu of this pin"
+    cursor = "hand"
+
+    def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
+        super().__init__(context, event)
+        self.pin = pin
+
+    def click(self, event: PointerEvent) -> None:
+        self.context.return_to_idle()
+        self.context.request_pin_popup("menu", self.pin)
 
 
 class PointingCanvas(Pointing):
-    """Pressed beside the drawing, or on it with Shift; not dragged yet."""
+    """The canvas is pressed beside the drawing, or with Shift or Alt, and not dragged yet."""
 
     hint = "Drag to select pins with a box"
 
-    def __init__(self, editor: "Editor", event: PointerEvent) -> None:
-        super().__init__(editor, event)
-        self._adds = event.shift
+    def __init__(self, context: ToolContext, event: PointerEvent) -> None:
+        super().__init__(context, event)
+        self._extends_selection = event.shift
 
-    def dragged(self, event: PointerEvent) -> None:
-        band = RubberBand(self.editor, self.start, self._adds)
-        self.editor.set_tool(band)
-        band.move(event)
+    def drag(self, event: PointerEvent) -> None:
+        rubber_band = RubberBand(self.context, self.start, self._extends_selection)
+        self.context.set_tool(rubber_band)
+        rubber_band.move(event)
 
-    def clicked(self, event: PointerEvent) -> None:
-        if not self._adds:
-            self.editor.select(())
-        self.editor.set_tool(Idle(self.editor))
+    def click(self, event: PointerEvent) -> None:
+        if not self._extends_selection:
+            self.context.select(())
+        self.context.return_to_idle()
 
 
 class RubberBand(Tool):
-    """A box that selects the pins inside it."""
+    """A box from the press to the pointer selects the pins inside it."""
 
     hint = "Release to select the pins in the box, Escape to go back"
 
-    def __init__(self, editor: "Editor", start: Point, adds: bool) -> None:
-        super().__init__(editor)
-        self.start = self.end = start
-        self._before = editor.selection
-        self._kept = editor.selection if adds else frozenset()
+    def __init__(self, context: ToolContext, start: Point, extends_selection: bool) -> None:
+        super().__init__(context)
+        self._start = self._end = start
+        self._selection_before = context.selection
+        self._extended_selection = context.selection if extends_selection else frozenset()
+
+    @property
+    def markers(self) -> Markers:
+        """The box."""
+        (x0, y0), (x1, y1) = self._start, self._end
+        return Markers(selection_box=((min(x0, x1), min(y0, y1)), (max(x0, x1), max(y0, y1))))
 
     def move(self, event: PointerEvent) -> None:
-        self.end = event.position
-        low, high = np.minimum(self.start, self.end), np.maximum(self.start, self.end)
-        inside = {
+        self._end = event.position
+        low, high = np.minimum(self._start, self._end), np.maximum(self._start, self._end)
+        pins_inside = {
             pin
-            for pin, place in self.editor.pins_on_screen().items()
-            if (low <= place).all() and (place <= high).all()
+            for pin, position in self.context.pins_on_screen().items()
+            if (low <= position).all() and (position <= high).all()
         }
-        self.editor.select(self._kept | inside)
+        self.context.select(self._extended_selection | pins_inside)
 
     def release(self, event: PointerEvent) -> None:
         if event.button == "left":
-            self.editor.set_tool(Idle(self.editor))
+            self.context.return_to_idle()
 
     def cancel(self) -> None:
-        self.editor.select(self._before)
-        super().cancel()
-
-
-class Panning(Tool):
-    """The canvas follows the pointer; not an edit, so nothing to undo."""
-
-    hint = "Release to stop moving the canvas"
-
-    def __init__(self, editor: "Editor", event: PointerEvent) -> None:
-        super().__init__(editor)
-        self._button, self._before, self._last = event.button, editor.camera, event.position
-
-    def move(self, event: PointerEvent) -> None:
-        dx, dy = event.position[0] - self._last[0], event.position[1] - self._last[1]
-        self.editor.camera = self.editor.camera.panned(dx, dy)
-        self._last = event.position
-
-    def release(self, event: PointerEvent) -> None:
-        if event.button == self._button:
-            self.editor.set_tool(Idle(self.editor))
-
-    def cancel(self) -> None:
-        self.editor.camera = self._before
+        self.context.select(self._selection_before)
         super().cancel()

@@ -1,118 +1,104 @@
-"""The ring around a pin that turns the drawing there, and pins that hold their angle."""
+"""The ring around a pin that rotates the drawing there; afterwards the pin holds its angle."""
 
 import math
-from typing import TYPE_CHECKING
 
 from ..camera import Point
 from ..events import PointerEvent
 from ..session.edits import SetAngles
 from ..session.pin_edits import hold_pins
-from .base import Pointing, Tool, distance
+from .base import Markers, PinGesture, Pointing, RotationRing, ToolContext, distance
 
-if TYPE_CHECKING:
-    from ..editor import Editor
-
-RING = 28.0  # points of the screen: radius of the ring
-_GRIP = 14.0  # how far beside the ring a press takes it
-SNAP = math.radians(15.0)
+RING_RADIUS = 28.0  # points of the screen
+_REACH = 14.0  # points of the screen: a press this close to the ring takes it
+SNAP_ANGLE = math.radians(15.0)
 
 
-def ring_pin(editor: "Editor") -> int | None:
-    """The pin whose ring is shown: with Alt the one near the pointer, or the only one that is selected."""
-    if isinstance(editor.tool, RotatingPin):
-        return editor.tool.pin
-    session = editor.session
-    idle = (
-        session is not None and session.supports_rotation and not editor.busy and editor.chosen_tool == "pins"
-    )
-    if not idle or editor.pans_on_drag or "alt" not in editor.held or editor.pointer is None:
+def pin_with_ring(context: ToolContext) -> int | None:
+    """The pin that shows its ring: while Alt is held, the one near the pointer or the only selected one.
+
+    None with a method that cannot rotate pins, and during a gesture.
+    """
+    session, pointer = context.session, context.pointer
+    if session is None or not session.supports_rotation or context.busy:
         return None
-    pointer, places = editor.pointer, editor.pins_on_screen()
-    near = min(((distance(place, pointer), pin) for pin, place in places.items()), default=None)
-    if near is not None and near[0] <= (RING + _GRIP) * editor.ui_scale:
-        return near[1]
-    return next(iter(editor.selection)) if len(editor.selection) == 1 else None
-
-
-def ring_at(editor: "Editor", position: Point) -> int | None:
-    """The pin whose ring a press at a point of the screen would take."""
-    pin = ring_pin(editor)
-    if pin is None or editor.pin_at(position) is not None:
+    if "alt" not in context.held or pointer is None:
         return None
-    away = distance(editor.pins_on_screen()[pin], position)
-    return pin if away <= (RING + _GRIP) * editor.ui_scale else None
+    distances = [(distance(center, pointer), pin) for pin, center in context.pins_on_screen().items()]
+    nearest = min(distances, default=None)
+    if nearest is not None and nearest[0] <= (RING_RADIUS + _REACH) * context.ui_scale:
+        return nearest[1]
+    return next(iter(context.selection)) if len(context.selection) == 1 else None
 
 
-def hovered_ring(editor: "Editor") -> int | None:
-    """The pin whose ring is under the pointer."""
-    return ring_at(editor, editor.pointer) if editor.pointer is not None else None
+def ring_at(context: ToolContext, position: Point) -> int | None:
+    """The pin whose ring a press at a point of the screen takes."""
+    pin = pin_with_ring(context)
+    if pin is None or context.pin_at(position) is not None:
+        return None
+    radius = distance(context.pins_on_screen()[pin], position)
+    return pin if radius <= (RING_RADIUS + _REACH) * context.ui_scale else None
+
+
+def rotation_ring(context: ToolContext, pin: int, is_dragged: bool = False) -> RotationRing:
+    """The ring of a pin; its handle is at the held angle or else at the current one."""
+    assert context.session is not None
+    held_angle = context.session.state.pin(pin).angle
+    angle = context.session.pin_angle(pin) if held_angle is None else held_angle
+    return RotationRing(pin, context.pins_on_screen()[pin], angle, is_dragged)
 
 
 class PointingRotationRing(Pointing):
-    """Pressed on a ring, not dragged yet."""
+    """The ring of a pin is pressed and not dragged yet."""
 
     hint = "Drag to turn the drawing around this pin"
+    cursor = "hand"
 
-    def __init__(self, editor: "Editor", event: PointerEvent, pin: int) -> None:
-        super().__init__(editor, event)
+    def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
+        super().__init__(context, event)
         self.pin = pin
 
-    def dragged(self, event: PointerEvent) -> None:
-        turning = RotatingPin(self.editor, self.start, self.pin)
-        self.editor.set_tool(turning)
-        turning.move(event)
+    def drag(self, event: PointerEvent) -> None:
+        rotating = RotatingPin(self.context, self.start, self.pin)
+        self.context.set_tool(rotating)
+        rotating.move(event)
 
-    def clicked(self, event: PointerEvent) -> None:
-        self.editor.return_to_idle()
+    def click(self, event: PointerEvent) -> None:
+        self.context.return_to_idle()
 
 
-class RotatingPin(Tool):
-    """The drawing turns around a pin with the pointer; in the end the pin holds that angle."""
+class RotatingPin(PinGesture):
+    """The drawing around a pin rotates with the pointer; Shift snaps to steps of 15°."""
 
-    def __init__(self, editor: "Editor", start: Point, pin: int) -> None:
-        super().__init__(editor)
-        session = editor.session
-        assert session is not None
-        self.pin, self._selection_before = pin, editor.selection
-        held = session.state.pin(pin).angle
-        self._angle = session.pin_angle(pin) if held is None else held
-        self._direction = self._towards(start)
-        editor.select({pin})
-        session.begin("Turn")
-        hold_pins(session)
-        editor.trails.clear()
+    def __init__(self, context: ToolContext, start: Point, pin: int) -> None:
+        super().__init__(context, context.selection)
+        self.pin = pin
+        held_angle = self.session.state.pin(pin).angle
+        self._angle = self.session.pin_angle(pin) if held_angle is None else held_angle
+        self._direction = self._direction_to(start)
+        context.select({pin})
+        self.session.begin("Turn")
+        hold_pins(self.session)
 
     @property
-    def hint(self) -> str:  # type: ignore[override]
+    def hint(self) -> str:
         """The angle, and how to end."""
-        session = self.editor.session
-        assert session is not None
-        angle = math.degrees(session.state.pin(self.pin).angle or 0.0)
+        angle = math.degrees(self.session.state.pin(self.pin).angle or 0.0)
         return f"{angle:+.1f}°: release to hold this angle, Shift for steps of 15°, Escape to go back"
 
+    @property
+    def markers(self) -> Markers:
+        """The ring, with the angle."""
+        return Markers(ring=rotation_ring(self.context, self.pin, is_dragged=True))
+
     def move(self, event: PointerEvent) -> None:
-        session = self.editor.session
-        assert session is not None
-        direction = self._towards(event.position)
+        direction = self._direction_to(event.position)
         self._angle += math.remainder(direction - self._direction, 2 * math.pi)
         self._direction = direction
-        snaps = event.shift or "shift" in self.editor.held
-        angle = SNAP * round(self._angle / SNAP) if snaps else self._angle
-        session.apply(SetAngles({self.pin: angle}))
+        snaps = event.shift or "shift" in self.context.held
+        angle = SNAP_ANGLE * round(self._angle / SNAP_ANGLE) if snaps else self._angle
+        self.session.apply(SetAngles({self.pin: angle}))
 
-    def _towards(self, position: Point) -> float:
-        x, y = self.editor.pins_on_screen()[self.pin]
+    def _direction_to(self, position: Point) -> float:
+        """Direction from the pin to a point of the screen, radians."""
+        x, y = self.context.pins_on_screen()[self.pin]
         return math.atan2(position[1] - y, position[0] - x)
-
-    def release(self, event: PointerEvent) -> None:
-        if event.button == "left":
-            assert self.editor.session is not None
-            self.editor.session.commit()
-            self.editor.return_to_idle()
-
-    def cancel(self) -> None:
-        if self.editor.session is not None:
-            self.editor.session.abort()
-        self.editor.trails.clear()
-        self.editor.select(self._selection_before)
-        super().cancel()

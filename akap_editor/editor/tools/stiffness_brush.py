@@ -1,117 +1,154 @@
-"""The brush that paints parts which bend less."""
+"""The stiffness brush: it paints areas that bend less."""
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...geometry.validation import Floats
+from ..camera import Point
 from ..document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS, apply_stroke, stroke_coverage
 from ..events import PointerEvent
 from ..session.edits import PaintStiffness
-from .base import Tool
+from .base import BrushCircle, Cursor, IdleTool, Markers, Tool, ToolContext
 
-if TYPE_CHECKING:
-    from ..editor import Editor
-
-SMALLEST, LARGEST = 4.0, 400.0  # points of the screen
-_GROWTH = 1.25
-_SPACING = 0.25  # share of the radius between two dabs of a stroke
+MIN_RADIUS, MAX_RADIUS = 4.0, 400.0  # points of the design
+_RADIUS_STEP = 1.25  # ratio of a radius to the next smaller one
+_DAB_SPACING = 0.25  # distance between two dabs of a stroke, as a share of the radius
 
 
 @dataclass(frozen=True)
 class Brush:
-    """radius: in points of the design, whatever the zoom; factor: how much less what it paints bends."""
+    """The options of the brush.
+
+    radius: in points of the design, at any zoom; factor: by which painted areas are stiffer; erasing: whether
+    it removes stiffness.
+    """
 
     radius: float = 32.0
     factor: float = 100.0
     erasing: bool = False
 
     @classmethod
-    def of(cls, radius: float, factor: float) -> "Brush":
-        """The nearest brush that there is."""
-        return cls(max(SMALLEST, min(LARGEST, radius)), max(MIN_STIFFNESS, min(MAX_STIFFNESS, factor)))
+    def within_limits(cls, radius: float, factor: float) -> "Brush":
+        """A brush with radius and factor clamped to their ranges; NaN becomes the upper limit."""
+        return cls(max(MIN_RADIUS, min(MAX_RADIUS, radius)), max(MIN_STIFFNESS, min(MAX_STIFFNESS, factor)))
+
+    def resized(self, larger: bool) -> "Brush":
+        """The next larger or smaller brush."""
+        radius = self.radius * (_RADIUS_STEP if larger else 1 / _RADIUS_STEP)
+        return replace(self, radius=min(max(radius, MIN_RADIUS), MAX_RADIUS))
+
+
+class BrushIdle(IdleTool):
+    """The stiffness brush waits for a press. brush: its options."""
+
+    def __init__(self, context: ToolContext) -> None:
+        super().__init__(context)
+        self.brush = Brush()
 
     @property
-    def hint(self) -> str:
-        """What a press would do."""
-        if self.erasing:
+    def press_hint(self) -> str:
+        if self.brush.erasing:
             return "Drag over parts that are to bend freely again, E to paint"
-        return f"Drag over parts that are to bend {self.factor:.3g} times less, right-drag or E to erase"
+        factor = f"{self.brush.factor:.3g}"
+        return f"Drag over parts that are to bend {factor} times less, right-drag or E to erase"
 
-    def resized(self, up: bool) -> "Brush":
-        """The next larger or smaller one."""
-        radius = self.radius * (_GROWTH if up else 1 / _GROWTH)
-        return replace(self, radius=min(max(radius, SMALLEST), LARGEST))
+    @property
+    def keyboard_hint(self) -> str:
+        action = "erases" if self.brush.erasing else "stiffens"
+        return f"Enter {action} what is in the circle, [ and ] change its size, arrows move on, Esc ends"
+
+    @property
+    def cursor(self) -> Cursor:
+        return "arrow" if self.context.session is None else "hidden"
+
+    @property
+    def markers(self) -> Markers:
+        """The circle of the brush around the pointer."""
+        pointer = self.context.pointer
+        if self.context.session is None or pointer is None:
+            return Markers()
+        return Markers(brush=BrushCircle(pointer, self.radius_on_screen, self.brush.erasing))
+
+    @property
+    def radius_on_screen(self) -> float:
+        """Radius of the brush in points of the screen."""
+        return self.brush.radius * self.context.ui_scale
+
+    @property
+    def shown_stiffness(self) -> Floats | None:
+        session = self.context.session
+        return None if session is None else session.state.stiffness
+
+    def press(self, event: PointerEvent) -> None:
+        if self.context.session is not None:
+            self.context.set_tool(Painting(self.context, event, self))
 
 
 class Painting(Tool):
-    """The brush is down; what it covers is shown, and taken over in the end.
+    """A stroke of the brush. It is shown while it grows, and applied to the document when it ends."""
 
-    stiffness: (m,) as it would be now, None is 1 everywhere.
-    """
+    cursor = "hidden"
 
-    def __init__(self, editor: "Editor", event: PointerEvent) -> None:
-        super().__init__(editor)
-        session = editor.session
-        assert session is not None
-        erases = editor.brush.erasing or event.button == "right"
+    def __init__(self, context: ToolContext, event: PointerEvent, idle_tool: BrushIdle) -> None:
+        super().__init__(context)
+        session, brush = self.session, idle_tool.brush
+        erases = brush.erasing or event.button == "right"
+        self._idle_tool = idle_tool
         self._button, self._last = event.button, event.position
-        self._factor = MIN_STIFFNESS if erases else editor.brush.factor
-        self._reach = editor.brush.radius * editor.ui_scale
-        self._radius = self._reach / editor.camera.zoom
+        self._factor = MIN_STIFFNESS if erases else brush.factor
+        self._radius_on_screen = idle_tool.radius_on_screen
+        self._radius = self._radius_on_screen / context.camera.zoom
         self._dabs: list[Floats] = []
-        self._covered = np.zeros(len(session.drawing.mesh.faces))
-        self.stiffness = session.state.stiffness
+        self._coverage = np.zeros(len(session.drawing.mesh.faces))
+        self._stiffness = session.state.stiffness
         session.begin("Erase stiffness" if erases else "Stiffen")
         self.move(event)
 
     @property
-    def hint(self) -> str:  # type: ignore[override]
+    def hint(self) -> str:
         """What the stroke does."""
-        does = "erase" if self._factor == MIN_STIFFNESS else "paint"
-        return f"Release to {does}, Escape to go back"
+        action = "erase" if self._factor == MIN_STIFFNESS else "paint"
+        return f"Release to {action}, Escape to go back"
+
+    @property
+    def markers(self) -> Markers:
+        """The circle of the brush around the pointer."""
+        return self._idle_tool.markers
+
+    @property
+    def shown_stiffness(self) -> Floats | None:
+        """(m,) stiffness with the stroke so far; None is 1 everywhere."""
+        return self._stiffness
 
     def move(self, event: PointerEvent) -> None:
         start, end = np.array(self._last), np.array(event.position)
-        count = max(1, math.ceil(float(np.hypot(*(end - start))) / (_SPACING * self._reach)))
-        places = (start + (end - start) * number / count for number in range(1, count + 1))
-        dabs = [dab for x, y in places if (dab := self._at_rest((float(x), float(y)))) is not None]
+        spacing = _DAB_SPACING * self._radius_on_screen
+        count = max(1, math.ceil(float(np.hypot(*(end - start))) / spacing))
+        positions = [start + (end - start) * number / count for number in range(1, count + 1)]
+        dabs = [dab for x, y in positions if (dab := self._at_rest((float(x), float(y)))) is not None]
         self._last = event.position
-        session = self.editor.session
-        if dabs and session is not None:
+        if dabs:
             self._dabs += dabs
-            more = stroke_coverage(session.drawing.mesh, dabs, self._radius)
-            self._covered = np.maximum(self._covered, more)
-            self.stiffness = apply_stroke(session.state.stiffness, self._covered, self._factor)
+            coverage = stroke_coverage(self.session.drawing.mesh, dabs, self._radius)
+            self._coverage = np.maximum(self._coverage, coverage)
+            self._stiffness = apply_stroke(self.session.state.stiffness, self._coverage, self._factor)
 
-    def _at_rest(self, position: tuple[float, float]) -> Floats | None:
-        """Where in the rest pose that is which is seen at a point of the screen, (2,)."""
-        session = self.editor.session
-        assert session is not None
-        mesh, at = session.drawing.mesh, self.editor.camera.to_drawing(position)
-        found = mesh.find(at, session.state.positions, session.document.face_order)
-        return None if found is None else np.round(mesh.evaluate(found, mesh.vertices)[0], 3)
+    def _at_rest(self, position: Point) -> Floats | None:
+        """The point (2,) of the rest pose that is seen at a point of the screen; None beside the drawing."""
+        session = self.session
+        mesh, place = session.drawing.mesh, self.context.camera.to_drawing(position)
+        point = mesh.find(place, session.state.positions, session.document.face_order)
+        return None if point is None else np.round(mesh.evaluate(point, mesh.vertices)[0], 3)
 
     def release(self, event: PointerEvent) -> None:
-        if event.button != self._button:
-            return
-        session = self.editor.session
-        assert session is not None
-        if self._dabs:
-            session.apply(PaintStiffness(self._dabs, self._radius, self._factor))
-        session.commit()
-        self.editor.return_to_idle()
+        if event.button == self._button:
+            if self._dabs:
+                self.session.apply(PaintStiffness(self._dabs, self._radius, self._factor))
+            self.session.commit()
+            self.context.return_to_idle()
 
     def cancel(self) -> None:
-        if self.editor.session is not None:
-            self.editor.session.abort()
+        self.session.abort()
         super().cancel()
-
-
-def shown_stiffness(editor: "Editor") -> Floats | None:
-    """(m,) what is shown of the stiffness: all while the brush is at hand, None where there is nothing."""
-    if editor.session is None or editor.chosen_tool != "brush":
-        return None
-    return editor.tool.stiffness if isinstance(editor.tool, Painting) else editor.session.state.stiffness

@@ -115,7 +115,7 @@ def test_a_rubber_band_that_is_escaped_selects_nothing(pinned):
         hand.mouse_up(0)
 
     pinned.do(actions)
-    assert seen == [("RubberBand", {3}), ("Idle", {1})]
+    assert seen == [("RubberBand", {3}), ("PinsIdle", {1})]
 
 
 # -- moving about -------------------------------------------------------------------------------------------
@@ -136,14 +136,13 @@ def test_panning_takes_the_canvas_along_and_edits_nothing(pinned, how):
     end = start[0] + 70, start[1] - 40
     place = pinned.place(start)
     if how == "hand tool":
-        pinned.editor.chosen_tool = "hand"
+        pinned.editor.chosen_tool = pinned.editor.hand_tool
     pinned.drag(
         start, end, button=2 if how == "middle button" else 0, held=Key.space if how == "space" else None
     )
     np.testing.assert_allclose(pinned.place(end), place, atol=1e-9)
     assert not pinned.editor.modified
-    assert pinned.tool == "Idle"
-    assert pinned.editor.pans_on_drag == (how == "hand tool")
+    assert pinned.tool == ("HandIdle" if how == "hand tool" else "PinsIdle")
 
 
 def test_escape_in_a_pan_goes_back(ui):
@@ -165,7 +164,7 @@ def test_space_released_where_the_canvas_does_not_hear_it_leaves_no_hand(ui):
         move(hand, ui.empty_place)
         hand.key_down(Key.space)
         hand.yield_(2)
-        assert ui.editor.pans_on_drag
+        assert ui.tool == "HandIdle"
         ui.state.error = "A message takes the keyboard."
         hand.yield_(3)
         hand.key_up(Key.space)
@@ -173,7 +172,7 @@ def test_space_released_where_the_canvas_does_not_hear_it_leaves_no_hand(ui):
         hand.item_click("//That did not work###dialog That did not work/OK")
 
     ui.do(actions)
-    assert not ui.editor.pans_on_drag
+    assert ui.tool == "PinsIdle"
 
 
 # -- canvas and panels --------------------------------------------------------------------------------------
@@ -191,7 +190,7 @@ def test_a_click_on_a_panel_never_reaches_the_canvas(ui, at):
         over.append((ui.editor.pointer, ui.tool))
 
     ui.do(click)
-    assert over == [(None, "Idle")]
+    assert over == [(None, "PinsIdle")]
     assert not ui.pins
 
 
@@ -218,7 +217,7 @@ def test_a_drag_goes_on_over_a_panel_and_ends_there(pinned):
     (tool, target), shift = seen[0], np.subtract(PANEL, start) / pinned.editor.camera.zoom
     assert tool == "DraggingPin"
     np.testing.assert_allclose(target, np.add((210.0, 80.0), shift), atol=0.01)
-    assert pinned.tool == "Idle"
+    assert pinned.tool == "PinsIdle"
     assert np.linalg.norm(wanted - target) < PIN_TOLERANCE
 
 
@@ -270,7 +269,7 @@ def test_a_drag_that_is_cut_short_restores_everything(pinned, end):
         move(hand, (start[0], start[1] + 150))
 
     pinned.do(actions)
-    assert seen == [("DraggingPin", False), ("Idle", True)]
+    assert seen == [("DraggingPin", False), ("PinsIdle", True)]
     assert pinned.session.state is before
     assert pinned.session.history.depth == 0
 
@@ -283,7 +282,7 @@ def test_a_pointer_that_has_left_the_window_hovers_over_nothing(pinned):
         for at in (pinned.screen(pinned.pin_place(2)), (no_place, no_place)):
             hand.mouse_teleport_to_pos(imgui.ImVec2(*at))
             hand.yield_(2)
-            hovered.append(pinned.editor.hovered_pin)
+            hovered.append(pinned.editor.tool.markers.hovered_pin)
 
     pinned.do(actions)
     assert hovered == [2, None]
@@ -309,7 +308,7 @@ def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkey
         raise SolverError("the pose became infinite")
 
     pinned.do(actions)
-    assert seen == [("the pose became infinite", "Idle")]
+    assert seen == [("the pose became infinite", "PinsIdle")]
     assert pinned.session.state is before
     assert not pinned.state.error
     monkeypatch.undo()

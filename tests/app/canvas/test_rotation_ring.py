@@ -8,7 +8,7 @@ import pytest
 
 from akap_editor.app.commands import registry as commands
 from akap_editor.editor.session.edits import PaintStiffness
-from akap_editor.editor.tools.rotate import RING, ring_pin
+from akap_editor.editor.tools.rotate import RING_RADIUS
 from akap_editor.render.overlays import FaceColors
 from tests.app.canvas.test_pin_markers import at_pin
 
@@ -18,7 +18,7 @@ Key = imgui.Key
 def ring_places(ui, pin, *degrees):
     x, y = ui.screen(ui.pin_place(pin))
     turns = [math.radians(each) for each in degrees]
-    return [(x + RING * math.cos(turn), y + RING * math.sin(turn)) for turn in turns]
+    return [(x + RING_RADIUS * math.cos(turn), y + RING_RADIUS * math.sin(turn)) for turn in turns]
 
 
 def test_an_alt_drag_of_the_ring_turns_and_holds(pinned):
@@ -47,7 +47,8 @@ def test_the_ring_is_seen_while_alt_is_held(pinned):
         hand.key_up(Key.mod_alt)
 
     def shoot():
-        snapshots.append((ring_pin(pinned.editor), pinned.window.screenshot()))
+        ring = pinned.editor.tool.markers.ring
+        snapshots.append((ring.pin if ring is not None else None, pinned.window.screenshot()))
         pinned.window.after_draw.clear()
 
     pinned.do(look)
@@ -102,7 +103,7 @@ def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned)
 def test_the_options_of_the_brush(pinned):
     pinned.tool_button(commands.BRUSH_TOOL)
     pinned.panel("Erase")
-    assert pinned.editor.brush.erasing
+    assert pinned.editor.brush_tool.brush.erasing
     pinned.editor.apply("Stiffen", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
     pinned.panel(commands.SOFTEN_ALL.label.capitalize())
     assert pinned.session.state.stiffness is None
@@ -112,5 +113,5 @@ def test_the_options_of_the_brush(pinned):
         hand.key_chars_replace_enter("1000")
 
     pinned.do(slide)
-    assert pinned.editor.brush.factor == pytest.approx(1000.0)
-    assert np.isfinite(pinned.editor.brush.radius)
+    assert pinned.editor.brush_tool.brush.factor == pytest.approx(1000.0)
+    assert np.isfinite(pinned.editor.brush_tool.brush.radius)

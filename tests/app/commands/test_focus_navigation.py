@@ -78,7 +78,8 @@ def test_shift_and_alt_mean_what_they_do_with_a_click(pinned):
 
 
 def test_escape_and_the_key_again_leave_it(ui):
-    assert keys(ui, Key.c, Key.escape, Key.c, Key.c, look=lambda: ui.tool) == ["KeyboardPointer", "Idle"] * 2
+    tools = keys(ui, Key.c, Key.escape, Key.c, Key.c, look=lambda: ui.tool)
+    assert tools == ["KeyboardPointer", "PinsIdle"] * 2
 
 
 def test_it_stays_through_menus_and_palette(ui):
@@ -99,7 +100,7 @@ def test_the_mouse_takes_over_where_it_really_moves(ui):
             tools.append(ui.tool)
 
     ui.do(act)
-    assert tools == ["KeyboardPointer", "Idle"]
+    assert tools == ["KeyboardPointer", "PinsIdle"]
 
 
 def test_it_is_seen(ui):

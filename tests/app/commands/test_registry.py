@@ -52,7 +52,7 @@ def one_selected(ui):
 
 
 def with_tool(name):
-    return lambda ui: setattr(ui.editor, "chosen_tool", name)
+    return lambda ui: setattr(ui.editor, "chosen_tool", getattr(ui.editor, name))
 
 
 def stiffened(ui):
@@ -249,12 +249,12 @@ CASES = {
     "Find Command...": (watch_palette, lambda ui: any(ui.palettes)),
     "Keys and Mouse": (nothing, lambda ui: ui.state.keys),
     "About akap-editor": (nothing, lambda ui: ui.state.about),
-    "Pins": (with_tool("hand"), lambda ui: ui.editor.chosen_tool == "pins"),
-    "Move Canvas": (nothing, lambda ui: ui.editor.chosen_tool == "hand"),
-    "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool == "brush"),
-    "Erase Stiffness": (with_tool("brush"), lambda ui: ui.editor.brush.erasing),
-    "Smaller Brush": (with_tool("brush"), lambda ui: ui.editor.brush.radius < Brush().radius),
-    "Larger Brush": (with_tool("brush"), lambda ui: ui.editor.brush.radius > Brush().radius),
+    "Pins": (with_tool("hand_tool"), lambda ui: ui.editor.chosen_tool is ui.editor.pins_tool),
+    "Move Canvas": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.hand_tool),
+    "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.brush_tool),
+    "Erase Stiffness": (with_tool("brush_tool"), lambda ui: ui.editor.brush_tool.brush.erasing),
+    "Smaller Brush": (with_tool("brush_tool"), lambda ui: ui.editor.brush_tool.brush.radius < Brush().radius),
+    "Larger Brush": (with_tool("brush_tool"), lambda ui: ui.editor.brush_tool.brush.radius > Brush().radius),
     "Remove All Stiffness": (stiffened, lambda ui: ui.session.state.stiffness is None),
     "Hold Angle": (one_selected, lambda ui: [pin.angle is None for pin in ui.pins] == [True, False, True]),
 }

@@ -134,7 +134,7 @@ def test_a_step_that_fails_in_the_worker_takes_the_gesture_back(slow, monkeypatc
     with pytest.raises(SolverError, match="singular"):
         slow.editor.advance(0.0)
     assert slow.everything == slow.before
-    assert slow.tool == "Idle"
+    assert slow.tool == "PinsIdle"
 
 
 def test_escape_wins_over_a_step_that_fails(slow, monkeypatch):
@@ -147,7 +147,7 @@ def test_a_release_does_not_wait_for_the_step(slow):
     count = len(kinds(slow))
     slow.move(FARTHER)
     slow.release(FARTHER)
-    assert slow.tool == "Idle"
+    assert slow.tool == "PinsIdle"
     assert slow.editor.waiting
     assert slow.session.history.undo_label == "Bend"
     slow.editor.worker.work()

@@ -10,10 +10,6 @@ from akap_editor.editor.tools.keyboard_pointer import (
     BIG_STEP,
     MARGIN,
     STEP,
-    KeyboardPointer,
-    reveal,
-    select_next,
-    toggle_keyboard_pointer,
 )
 from akap_editor.errors import SolverError
 from tests.support.editor_driver import BESIDE
@@ -25,7 +21,7 @@ def at(driver, place):
     """Enter the crosshair at a place of the drawing, as if the mouse had been there last."""
     driver.move(place)
     driver.editor.pointer_left()
-    toggle_keyboard_pointer(driver.editor)
+    driver.editor.toggle_keyboard_pointer()
     assert driver.tool == "KeyboardPointer"
     assert driver.editor.camera.to_drawing(driver.editor.pointer) == pytest.approx(place)
 
@@ -40,20 +36,20 @@ def middle(editor):
 
 
 def test_it_begins_where_the_mouse_was_last_or_in_the_middle(driver):
-    toggle_keyboard_pointer(driver.editor)
+    driver.editor.toggle_keyboard_pointer()
     assert driver.editor.pointer == middle(driver.editor)
-    toggle_keyboard_pointer(driver.editor)
-    assert driver.tool == "Idle"
+    driver.editor.toggle_keyboard_pointer()
+    assert driver.tool == "PinsIdle"
     at(driver, NECK)
     driver.key("escape")
-    assert driver.tool == "Idle"
+    assert driver.tool == "PinsIdle"
     driver.editor.canvas = (5000.0, 0.0, 6000.0, 500.0)
-    toggle_keyboard_pointer(driver.editor)
+    driver.editor.toggle_keyboard_pointer()
     assert driver.editor.pointer == middle(driver.editor), "where the mouse was is no canvas any more"
 
 
 def test_arrows_move_it_and_no_pin(pinned):
-    toggle_keyboard_pointer(pinned.editor)
+    pinned.editor.toggle_keyboard_pointer()
     pinned.editor.select(pinned.ids)
     before, (x, y) = pinned.everything, pinned.editor.pointer
     for name in ("left", "left", "up"):
@@ -68,7 +64,7 @@ def test_arrows_move_it_and_no_pin(pinned):
 
 def test_enter_adds_a_pin_exactly_there_in_one_gesture(driver):
     at(driver, NECK)
-    assert driver.editor.would_add_pin
+    assert driver.would_add_pin
     depth = driver.depth
     enter(driver)
     assert driver.tool == "KeyboardPointer"
@@ -83,7 +79,7 @@ def test_enter_adds_a_pin_exactly_there_in_one_gesture(driver):
 
 def test_enter_beside_the_drawing_adds_nothing(driver):
     at(driver, BESIDE)
-    assert not driver.editor.would_add_pin
+    assert not driver.would_add_pin
     before = driver.everything
     enter(driver)
     assert driver.everything == before
@@ -93,10 +89,10 @@ def test_enter_beside_the_drawing_adds_nothing(driver):
 def test_enter_selects_with_shift_several_and_alt_removes(pinned):
     first, second = pinned.ids[:2]
     at(pinned, pinned.where(first))
-    assert pinned.editor.hovered_pin == first
+    assert pinned.hovered_pin == first
     enter(pinned)
     assert pinned.editor.selection == {first}
-    pinned.editor.tool.go_to_pin(second)
+    pinned.editor.tool.reveal_pin(second)
     pinned.key("shift")
     enter(pinned)
     assert pinned.editor.selection == {first, second}
@@ -119,7 +115,7 @@ def test_once_it_is_left_arrows_nudge_the_pin_that_was_taken(pinned):
 
 
 def test_the_canvas_moves_to_keep_it_in_sight(driver):
-    toggle_keyboard_pointer(driver.editor)
+    driver.editor.toggle_keyboard_pointer()
     left, top, right, bottom = driver.editor.canvas
     seen = []
     for _ in range(40):
@@ -136,7 +132,7 @@ def test_at_the_edge_it_comes_in_without_a_move_of_the_canvas(driver):
     left, top, _, _ = driver.editor.canvas
     driver.handle(PointerEvent("move", (left + 5, top + 5)))
     camera = driver.editor.camera
-    toggle_keyboard_pointer(driver.editor)
+    driver.editor.toggle_keyboard_pointer()
     driver.key("right")
     driver.key("down")
     assert driver.editor.pointer == (left + 5 + STEP, top + 5 + STEP)
@@ -148,23 +144,23 @@ def test_at_the_edge_it_comes_in_without_a_move_of_the_canvas(driver):
 
 def test_nothing_is_panned_where_it_is_in_sight(driver):
     camera = driver.editor.camera
-    assert reveal(driver.editor, middle(driver.editor)) == middle(driver.editor)
+    assert driver.editor.reveal(middle(driver.editor)) == middle(driver.editor)
     assert driver.editor.camera == camera
     driver.editor.canvas = (0.0, 0.0, 40.0, 30.0)
-    assert reveal(driver.editor, (500.0, -20.0)) == pytest.approx((20.0, 15.0)), "no room for a margin"
+    assert driver.editor.reveal((500.0, -20.0)) == pytest.approx((20.0, 15.0)), "no room for a margin"
 
 
 def test_the_mouse_takes_over_again(driver):
-    toggle_keyboard_pointer(driver.editor)
+    driver.editor.toggle_keyboard_pointer()
     driver.editor.pointer_left()
     assert driver.editor.pointer is not None, "the crosshair is no mouse that could leave"
     driver.move(NECK)
-    assert driver.tool == "Idle"
+    assert driver.tool == "PinsIdle"
     assert driver.editor.camera.to_drawing(driver.editor.pointer) == pytest.approx(NECK)
 
 
 def test_it_hinders_no_edit_and_stays(pinned):
-    toggle_keyboard_pointer(pinned.editor)
+    pinned.editor.toggle_keyboard_pointer()
     pinned.editor.select({pinned.ids[0]})
     gestures.remove_selected_pins(pinned.editor)
     pinned.undo()
@@ -174,19 +170,19 @@ def test_it_hinders_no_edit_and_stays(pinned):
 
 
 def test_it_ends_with_the_drawing(driver):
-    toggle_keyboard_pointer(driver.editor)
+    driver.editor.toggle_keyboard_pointer()
     driver.editor.open(new_document(driver.session.drawing))
-    assert driver.tool == "Idle"
-    toggle_keyboard_pointer(driver.editor)
+    assert driver.tool == "PinsIdle"
+    driver.editor.toggle_keyboard_pointer()
     driver.editor.close()
-    assert type(driver.editor.tool).__name__ == "Idle"
-    toggle_keyboard_pointer(driver.editor)
-    assert type(driver.editor.tool).__name__ == "Idle", "there is nothing to point at"
+    assert driver.tool == "PinsIdle"
+    driver.editor.toggle_keyboard_pointer()
+    assert driver.tool == "PinsIdle", "there is nothing to point at"
 
 
 def test_it_waits_for_the_end_of_a_gesture(pinned):
     pinned.press(pinned.where(pinned.ids[0]))
-    toggle_keyboard_pointer(pinned.editor)
+    pinned.editor.toggle_keyboard_pointer()
     assert pinned.tool == "PointingPin"
 
 
@@ -199,13 +195,13 @@ def test_zooming_holds_what_it_points_at(driver):
 @pytest.mark.parametrize("erasing", [False, True])
 def test_enter_dabs_with_the_brush(driver, erasing):
     editor = driver.editor
-    editor.chosen_tool = "brush"
+    editor.chosen_tool = editor.brush_tool
     at(driver, NECK)
     enter(driver)
     assert driver.session.history.undo_label == "Stiffen"
     assert driver.state.stiffness.max() > 50
     if erasing:
-        editor.brush = type(editor.brush)(erasing=True)
+        editor.brush_tool.brush = type(editor.brush_tool.brush)(erasing=True)
         assert "erases" in editor.hint
         enter(driver)
         assert driver.state.stiffness is None or driver.state.stiffness.max() < 50
@@ -213,7 +209,7 @@ def test_enter_dabs_with_the_brush(driver, erasing):
 
 
 def test_the_hand_is_laid_aside(driver):
-    driver.editor.chosen_tool = "hand"
+    driver.editor.chosen_tool = driver.editor.hand_tool
     at(driver, NECK)
     enter(driver)
     assert len(driver.ids) == 1
@@ -222,7 +218,7 @@ def test_the_hand_is_laid_aside(driver):
 def test_hints_say_what_enter_does(pinned):
     at(pinned, BESIDE)
     assert "Arrows" in pinned.editor.hint
-    pinned.editor.tool.go_to_pin(pinned.ids[0])
+    pinned.editor.tool.reveal_pin(pinned.ids[0])
     assert "selects this pin" in pinned.editor.hint
     pinned.key("alt")
     assert "removes" in pinned.editor.hint
@@ -254,21 +250,21 @@ def test_pins_are_selected_one_after_the_other_and_around(pinned):
     pinned.editor.select(())
     seen = []
     for forward in (True, True, True, True, False, False):
-        select_next(pinned.editor, forward)
+        pinned.editor.select_next(forward)
         seen.append(*pinned.editor.selection)
     assert seen == [first, second, third, first, third, second]
     pinned.editor.select(())
-    select_next(pinned.editor, False)
+    pinned.editor.select_next(False)
     assert pinned.editor.selection == {third}
     pinned.editor.select({first, second})
-    select_next(pinned.editor)
+    pinned.editor.select_next()
     assert pinned.editor.selection == {third}
 
 
 def test_a_pin_out_of_sight_is_brought_there(pinned):
     pinned.editor.camera = pinned.editor.camera.panned(-5000.0, 300.0)
     pinned.editor.select(())
-    select_next(pinned.editor)
+    pinned.editor.select_next()
     x, y = pinned.editor.pins_on_screen()[pinned.ids[0]]
     left, top, right, bottom = pinned.editor.canvas
     assert left < x < right
@@ -276,20 +272,20 @@ def test_a_pin_out_of_sight_is_brought_there(pinned):
 
 
 def test_the_crosshair_goes_along(pinned):
-    toggle_keyboard_pointer(pinned.editor)
-    select_next(pinned.editor)
-    assert isinstance(pinned.editor.tool, KeyboardPointer)
-    assert pinned.editor.hovered_pin == pinned.ids[0]
+    pinned.editor.toggle_keyboard_pointer()
+    pinned.editor.select_next()
+    assert pinned.tool == "KeyboardPointer"
+    assert pinned.hovered_pin == pinned.ids[0]
 
 
 def test_without_pins_there_is_none_to_go_to(driver):
-    select_next(driver.editor)
+    driver.editor.select_next()
     assert not driver.editor.selection
 
 
 def test_a_click_of_the_mouse_where_it_stands_ends_it(driver):
-    toggle_keyboard_pointer(driver.editor)
+    driver.editor.toggle_keyboard_pointer()
     driver.handle(PointerEvent("press", driver.editor.camera.to_screen(NECK)))
     driver.handle(PointerEvent("release", driver.editor.camera.to_screen(NECK)))
-    assert driver.tool == "Idle"
+    assert driver.tool == "PinsIdle"
     assert len(driver.ids) == 1

@@ -107,7 +107,7 @@ def test_a_cancelled_gesture_leaves_no_trace(pinned, enter, way_out):
     before = pinned.everything
     assert enter(pinned) == pinned.tool
     {"escape": lambda: pinned.key("escape"), "cancel": pinned.editor.cancel, "undo": pinned.undo}[way_out]()
-    assert pinned.tool == "Idle"
+    assert pinned.tool == "PinsIdle"
     assert pinned.everything == before
     pinned.settle()
     assert pinned.everything == before
@@ -129,7 +129,7 @@ def test_after_a_cancelled_gesture_the_rest_of_it_does_nothing(pinned, enter):
 def test_a_release_completes(pinned, enter):
     enter(pinned)
     pinned.release((70.0, 70.0), BUTTON.get(pinned.tool, "left"))
-    assert pinned.tool == "Idle"
+    assert pinned.tool == "PinsIdle"
     assert not pinned.editor.busy
 
 
@@ -280,12 +280,12 @@ def test_an_unusable_position_leaves_no_gesture_open(pinned):
     before = pinned.everything
     with pytest.raises(InputError):
         pinned.press((np.nan, 1.0))
-    assert pinned.tool == "Idle"
+    assert pinned.tool == "PinsIdle"
     assert pinned.everything == before
     enter_dragging_pin(pinned)
     with pytest.raises(InputError):
         pinned.move((np.inf, 1.0))
-    assert pinned.tool == "Idle"
+    assert pinned.tool == "PinsIdle"
     pinned.editor.select(())
     assert pinned.everything == before
 
@@ -333,7 +333,7 @@ def pan(d, how):
     elif how == "space":
         d.key("space")
     else:
-        d.editor.chosen_tool = "hand"
+        d.editor.chosen_tool = d.editor.hand_tool
     d.drag(NECK, (72.0, 45.0), button=button)
     d.key("space", pressed=False)
 
@@ -351,7 +351,7 @@ def test_panning_moves_the_canvas_with_the_pointer_and_nothing_else(pinned, how)
 
 def test_space_let_go_gives_the_pointer_back(pinned):
     pinned.key("space")
-    assert pinned.editor.pans_on_drag
+    assert pinned.tool == "HandIdle"
     pinned.key("space", pressed=False)
     pinned.click(NECK)
     assert pinned.editor.selection == {2}

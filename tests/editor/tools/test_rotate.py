@@ -13,7 +13,7 @@ from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.edits import PaintStiffness, SetAngles
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.tools.rotate import RING, ring_pin
+from akap_editor.editor.tools.rotate import RING_RADIUS
 from akap_editor.errors import InputError
 from tests.support.editor_driver import Driver, bits
 
@@ -24,11 +24,17 @@ def on_ring(d: Driver, pin: int, degrees: float) -> tuple[float, float]:
     """A point of the screen on a pin's ring, in a direction from it."""
     x, y = d.editor.pins_on_screen()[pin]
     turn = math.radians(degrees)
-    return x + RING * math.cos(turn), y + RING * math.sin(turn)
+    return x + RING_RADIUS * math.cos(turn), y + RING_RADIUS * math.sin(turn)
 
 
 def point(d: Driver, kind: str, at: tuple[float, float], **more: bool) -> None:
     d.handle(PointerEvent(kind, at, alt="alt" in d.editor.held, **more))  # type: ignore[arg-type]
+
+
+def ring_pin(d: Driver) -> int | None:
+    """The pin whose ring is shown."""
+    ring = d.editor.tool.markers.ring
+    return None if ring is None else ring.pin
 
 
 def grab_ring(d: Driver, pin: int, start: float = 0.0) -> None:
@@ -103,7 +109,7 @@ def test_escape_in_the_middle_restores_exactly(pinned, way):
     assert pinned.tool == "RotatingPin"
     pinned.key("escape") if way == "escape" else pinned.undo()
     assert pinned.everything == before
-    assert pinned.tool == "Idle"
+    assert pinned.tool == "PinsIdle"
 
 
 def test_a_click_on_the_ring_does_nothing_and_one_on_the_pin_removes_it(pinned):
@@ -120,7 +126,7 @@ def test_a_click_on_the_ring_does_nothing_and_one_on_the_pin_removes_it(pinned):
 def test_the_ring_is_that_of_the_pin_nearby_or_of_the_only_selected_one(pinned):
     def shown(at):
         point(pinned, "move", at)
-        return ring_pin(pinned.editor)
+        return ring_pin(pinned)
 
     outside = pinned.editor.camera.to_screen((2.0, 78.0))
     assert shown(on_ring(pinned, 2, 30)) is None, "only with Alt"
@@ -131,7 +137,7 @@ def test_the_ring_is_that_of_the_pin_nearby_or_of_the_only_selected_one(pinned):
     pinned.editor.select({1})
     assert shown(outside) == 1
     assert shown(on_ring(pinned, 2, 30)) == 2
-    pinned.editor.chosen_tool = "hand"
+    pinned.editor.chosen_tool = pinned.editor.hand_tool
     assert shown(on_ring(pinned, 2, 30)) is None
 
 
@@ -140,7 +146,7 @@ def test_a_method_that_cannot_turn_pins_has_no_ring_and_keeps_the_angles(pinned)
     gestures.set_settings(pinned.editor, Settings("arap", ()))
     pinned.key("alt")
     point(pinned, "move", on_ring(pinned, 2, 0))
-    assert ring_pin(pinned.editor) is None
+    assert ring_pin(pinned) is None
     pinned.key("alt", pressed=False)
     pinned.drag(pinned.where(3), (100.0, 30.0))
     pinned.settle()

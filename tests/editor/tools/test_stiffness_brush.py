@@ -1,5 +1,7 @@
 """The brush that paints stiffness, and what becomes of what it has painted."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from akap_editor.editor import gestures
@@ -9,7 +11,7 @@ from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.document.stiffness import stroke_coverage
 from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.replay import replay
-from akap_editor.editor.tools.stiffness_brush import LARGEST, SMALLEST, Brush, shown_stiffness
+from akap_editor.editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS, Brush
 from akap_editor.geometry.distortion import distortion
 from tests.support.editor_driver import Driver, bits
 
@@ -20,8 +22,9 @@ def stroke(
     d: Driver, *places: tuple[float, float], button: str = "left", release: bool = True, radius: float = 12.0
 ) -> None:
     """Paint through places of the drawing."""
-    d.editor.chosen_tool = "brush"
-    d.editor.brush = Brush(radius * d.editor.camera.zoom, d.editor.brush.factor, d.editor.brush.erasing)
+    d.editor.chosen_tool = d.editor.brush_tool
+    brush_tool = d.editor.brush_tool
+    brush_tool.brush = replace(brush_tool.brush, radius=radius * d.editor.camera.zoom)
     on_screen = [d.editor.camera.to_screen(place) for place in places]
     d.handle(PointerEvent("press", on_screen[0], button))  # type: ignore[arg-type]
     for at in on_screen[1:]:
@@ -60,7 +63,7 @@ def test_what_is_stiff_bends_less(new_driver):
             d.click(place)
         if stiff:
             stroke(d, (62.0, 40.0), (88.0, 40.0))
-            d.editor.chosen_tool = "pins"
+            d.editor.chosen_tool = d.editor.pins_tool
         d.drag((105.0, 40.0), (70.0, 70.0))
         d.settle()
         faces = stroke_coverage(d.session.drawing.mesh, [(x, 40.0) for x in range(62, 89, 2)], 12.0) == 1.0
@@ -74,7 +77,7 @@ def test_the_eraser_and_the_right_button_take_it_away(pinned):
     stroke(pinned, NECK, button="right")
     assert at(pinned, NECK) == 1.0
     stroke(pinned, NECK)
-    pinned.editor.brush = Brush(pinned.editor.brush.radius, erasing=True)
+    pinned.editor.brush_tool.brush = Brush(pinned.editor.brush_tool.brush.radius, erasing=True)
     stroke(pinned, (70.0, 40.0), (80.0, 40.0), (90.0, 40.0), radius=30.0)
     assert pinned.state.stiffness is None, "where all is erased nothing is left"
     assert pinned.session.history.labels == ["Add pin"] * 3 + ["Stiffen", "Erase stiffness"] * 2
@@ -83,11 +86,11 @@ def test_the_eraser_and_the_right_button_take_it_away(pinned):
 def test_escape_takes_the_stroke_back_and_shows_what_was_before(pinned):
     before = pinned.everything
     stroke(pinned, NECK, release=False)
-    assert shown_stiffness(pinned.editor).max() == 100.0
+    assert pinned.editor.tool.shown_stiffness.max() == 100.0
     assert pinned.state.stiffness is None, "the deformer is made anew at the end only"
     pinned.key("escape")
     assert pinned.everything == before
-    assert shown_stiffness(pinned.editor) is None
+    assert pinned.editor.tool.shown_stiffness is None
 
 
 def test_a_stroke_beside_the_drawing_is_no_step(pinned):
@@ -114,15 +117,15 @@ def test_with_the_brush_a_click_on_a_pin_paints(pinned):
     assert len(pinned.ids) == 3
     assert not pinned.editor.selection
     assert at(pinned, (62.0, 40.0)) == 100.0
-    assert not pinned.editor.would_add_pin
-    assert pinned.editor.hovered_pin is None
+    assert not pinned.would_add_pin
+    assert pinned.hovered_pin is None
 
 
 def test_brushes_have_limits():
     small = large = Brush()
     for _ in range(30):
         small, large = small.resized(False), large.resized(True)
-    assert (small.radius, large.radius) == (SMALLEST, LARGEST)
+    assert (small.radius, large.radius) == (MIN_RADIUS, MAX_RADIUS)
 
 
 def test_stiffness_is_carried_over_to_another_mesh_and_baked(pinned, finer_drawing):
@@ -139,7 +142,7 @@ def test_stiffness_is_carried_over_to_another_mesh_and_baked(pinned, finer_drawi
 def test_other_methods_keep_it_and_bend_without(pinned):
     stroke(pinned, NECK)
     factors = pinned.state.stiffness
-    pinned.editor.chosen_tool = "pins"
+    pinned.editor.chosen_tool = pinned.editor.pins_tool
     gestures.set_settings(pinned.editor, Settings("arap", ()))
     pinned.drag(pinned.where(3), (90.0, 60.0))
     pinned.settle()
@@ -150,7 +153,7 @@ def test_a_replay_paints_the_same_on_the_same_mesh_and_the_same_place_on_another
     pinned, drawing, finer_drawing
 ):
     stroke(pinned, NECK)
-    pinned.editor.chosen_tool = "pins"
+    pinned.editor.chosen_tool = pinned.editor.pins_tool
     pinned.drag(pinned.where(3), (90.0, 60.0))
     pinned.settle()
     *_, last = replay(pinned.session.recording, drawing)

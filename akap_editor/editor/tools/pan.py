@@ -1,0 +1,48 @@
+"""The hand, which pans the canvas; the middle button does so with every tool."""
+
+from ..events import PointerEvent
+from .base import IdleTool, Markers, Tool, ToolContext
+from .pins import OpeningPinMenu
+
+
+class HandIdle(IdleTool):
+    """The hand waits for a press: the left button pans, the right one opens the menu of a pin."""
+
+    press_hint = "Drag to move the canvas, wheel to zoom"
+    cursor = "move"
+
+    @property
+    def markers(self) -> Markers:
+        """The pin under the pointer."""
+        return Markers(hovered_pin=self.hovered_pin)
+
+    def press(self, event: PointerEvent) -> None:
+        pin = self.context.pin_at(event.position)
+        if event.button == "left":
+            self.context.set_tool(Panning(self.context, event))
+        elif event.button == "right" and pin is not None:
+            self.context.set_tool(OpeningPinMenu(self.context, event, pin))
+
+
+class Panning(Tool):
+    """The canvas follows the pointer. This edits nothing, so the history gets no entry."""
+
+    hint = "Release to stop moving the canvas"
+    cursor = "move"
+
+    def __init__(self, context: ToolContext, event: PointerEvent) -> None:
+        super().__init__(context)
+        self._button, self._camera_before, self._last = event.button, context.camera, event.position
+
+    def move(self, event: PointerEvent) -> None:
+        dx, dy = event.position[0] - self._last[0], event.position[1] - self._last[1]
+        self.context.camera = self.context.camera.panned(dx, dy)
+        self._last = event.position
+
+    def release(self, event: PointerEvent) -> None:
+        if event.button == self._button:
+            self.context.return_to_idle()
+
+    def cancel(self) -> None:
+        self.context.camera = self._camera_before
+        super().cancel()
