@@ -12,7 +12,8 @@ The engine as a library, without a window::
     akap.distortion(drawing.mesh, pose)
 """
 
-from .deform.deformer import Deformer, StepReport, StepResult, make_deformer, method_names
+from .deform.deformer import Deformer, StepReport, StepResult
+from .deform.methods import make_deformer, method_names
 from .editor.document.document import Document, EditState, new_document
 from .editor.document.drawing import Drawing, make_drawing
 from .editor.document.pin import Pin

@@ -63,7 +63,7 @@ def test_package_keeps_its_import_contracts(package_copy: PackageCopy) -> None:
         ("layers", "resources.py", "from .geometry import mesh"),
         ("layers", "geometry/mesh.py", "from ..deform import akap"),
         ("layers", "geometry/mesh.py", "import akap_editor.deform.akap.deformer"),
-        ("layers", "meshing/outline.py", "from ..deform.deformer import make_deformer"),
+        ("layers", "meshing/outline.py", "from ..deform.methods import make_deformer"),
         ("layers", "deform/akap/deformer.py", "from ...editor.document.pin import Pin"),
         ("layers", "deform/akap/deformer.py", "if True:\n    from ...io.images import read_image"),
         ("layers", "deform/cholesky.py", "class A:\n    def f(self):\n        from ..render import renderer"),

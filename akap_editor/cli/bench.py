@@ -9,8 +9,7 @@ from typing import Any
 import click
 import numpy as np
 
-from ..deform.deformer import make_deformer
-from ..deform.methods import parse_method
+from ..deform.methods import make_deformer, parse_method
 from ..editor.document.drawing import Drawing, make_drawing
 from ..errors import InputError
 from ..geometry.distortion import distortion

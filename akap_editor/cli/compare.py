@@ -7,7 +7,7 @@ from typing import Any
 import click
 import numpy as np
 
-from ..deform.methods import parse_method
+from ..deform.methods import compared_methods, parse_method
 from ..editor.document.drawing import Drawing, make_drawing
 from ..editor.session.recording import Recording
 from ..errors import InputError
@@ -15,17 +15,6 @@ from ..geometry.distortion import distortion
 from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.atomic import write_atomic
 from .options import FILE, make_folder_of
-
-METHODS = (
-    "akap",
-    "akap:memory=1",
-    "akap:no-dirichlet",
-    "akap:trajectory=linear",
-    "arap",
-    "igarashi",
-    "cauchy-green",
-    "mls",
-)
 
 
 @click.command(
@@ -39,7 +28,7 @@ METHODS = (
     multiple=True,
     metavar="METHOD",
     help="A method, with settings after a colon: arap:converge. Several: more of this option, or divided by "
-    f"spaces. By default {' '.join(METHODS)}.",
+    f"spaces. By default {' '.join(compared_methods())}.",
 )
 @click.option(
     "--vertices",
@@ -51,7 +40,7 @@ def compare_command(
     recordings: tuple[Path, ...], output: Path, methods: tuple[str, ...], vertices: str
 ) -> None:
     """Bend drawings as recorded by several methods and write a report: index.html and comparison.json."""
-    specs = list(dict.fromkeys(" ".join(methods).split())) or list(METHODS)
+    specs = list(dict.fromkeys(" ".join(methods).split())) or compared_methods()
     for spec in specs:
         parse_method(spec)
     sizes = _sizes(vertices)

@@ -19,7 +19,7 @@ from ..io.open_document import PROJECT_SUFFIX, open_document
 from .options import FILE, check_png, color, make_folder_of, write_picture
 
 # What a word of --variant sets.
-PRESETS: dict[str, tuple[str, object]] = {
+VARIANT_WORDS: dict[str, tuple[str, object]] = {
     "dirichlet": ("dirichlet", True),
     "no-dirichlet": ("dirichlet", False),
     "spiral": ("trajectory", "spiral"),
@@ -29,7 +29,7 @@ PRESETS: dict[str, tuple[str, object]] = {
     "memory": ("memory", 1.0),
     "no-memory": ("memory", 0.0),
 }
-_WORDS = ", ".join(PRESETS)
+_WORDS = ", ".join(VARIANT_WORDS)
 
 
 @click.command(
@@ -146,7 +146,7 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
     """What to make of recorded settings. Raises InputError on unknown words."""
     words = [word.strip() for word in variant.split(",") if word.strip()]
     for word in words:
-        if word not in PRESETS:
+        if word not in VARIANT_WORDS:
             raise InputError(f"--variant: expected words among {_WORDS}, got {word!r}")
     if method is None and not words:
         return None
@@ -155,7 +155,7 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
     def change(settings: Settings) -> Settings:
         settings = chosen or settings
         for word in words:
-            settings = settings.with_parameter(*PRESETS[word])
+            settings = settings.with_parameter(*VARIANT_WORDS[word])
         return settings
 
     return change

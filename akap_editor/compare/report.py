@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import __version__
-from ..deform.methods import default_settings, parse_method, preset_of
+from ..deform.methods import default_parameters, nearest_preset, parse_method
 from ..editor.document.framing import Box
 from ..geometry.validation import Floats
 from ..render.offscreen import OffscreenRenderer
@@ -132,11 +132,11 @@ def to_html(models: Sequence[Model], renderer: OffscreenRenderer) -> str:
 
 
 def _label(run: Run) -> str:
-    """A method's name, with what it is told beyond its variant's settings."""
+    """The name of a run's preset, with the parameters that the preset does not set."""
     method, settings = parse_method(run.spec)
-    variant = preset_of(method, settings)
-    rest = [f"{key} {_word(value)}" for key, value in settings.items() if key not in variant.settings]
-    return ", ".join([variant.short, *rest])
+    preset = nearest_preset(method, settings)
+    rest = [f"{key} {_word(value)}" for key, value in settings.items() if key not in preset.parameters]
+    return ", ".join([preset.short, *rest])
 
 
 def _word(value: Any) -> str:
@@ -147,17 +147,18 @@ def _word(value: Any) -> str:
 
 def _method(run: Run) -> str:
     method, settings = parse_method(run.spec)
-    variant = preset_of(method, settings)
+    preset = nearest_preset(method, settings)
     escape = html.escape
+    source = f" <cite>{escape(preset.source)}.</cite>" if preset.source else ""
     return (
         f"<dt>{escape(_label(run))} <code>{escape(run.spec)}</code></dt>"
-        f"<dd>{escape(f'{variant.label}. {variant.note}')} <cite>{escape(variant.source)}.</cite>"
+        f"<dd>{escape(f'{preset.label}. {preset.note}'.strip())}{source}"
         f"<br><span>{escape(_parameters(method, settings))}</span></dd>"
     )
 
 
 def _parameters(method: str, settings: dict[str, Any]) -> str:
-    values = {**default_settings(method), **settings}
+    values = {**default_parameters(method), **settings}
     return ", ".join(f"{key} {_word(value)}" for key, value in values.items())
 
 
@@ -197,7 +198,7 @@ def _printed(model: Model) -> list[tuple[float, float] | None]:
     found = []
     for run in model.runs:
         method, settings = parse_method(run.spec)
-        plain = preset_of(method, settings).spec == method and not settings.get("memory")
+        plain = nearest_preset(method, settings).spec == method and not settings.get("memory")
         found.append(left.pop(method, None) if plain else None)
     return found
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..deform.deformer import Deformer, make_deformer
-from ..deform.methods import parse_method
+from ..deform.deformer import Deformer
+from ..deform.methods import make_deformer, parse_method
 from ..editor.document.document import Document, EditState
 from ..editor.document.drawing import Drawing
 from ..editor.document.settings import Settings

@@ -1,14 +1,13 @@
-"""The contract of all deformation methods, and the table of those that there are."""
+"""The contract that every deformation method keeps, and the result of a step."""
 
-import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..geometry.mesh import MeshPoints, TriMesh
+from ..geometry.mesh import MeshPoints
 from ..geometry.validation import Floats, as_number
 
 
@@ -55,14 +54,27 @@ class StepResult:
 class Deformer(Protocol):
     """Bends a mesh by its pins.
 
-    What depends on topology is prepared in the constructor, what depends on where the pins are in `set_pins`,
-    the rest in `step`. Arguments are never modified. The result depends only on constructor, `set_pins` and
-    arguments. It is finite, or SolverError is raised. Moving, turning or scaling rest pose, positions and
-    targets together does the same to the result; renumbering the vertices renumbers it.
+    The constructor prepares what depends on the rest mesh, `set_pins` what depends on where the pins are, and
+    `step` the rest. Arguments are never modified. The result depends only on the arguments of constructor,
+    `set_pins` and `step`; a cache may change the cost of a step, and its result within the method's stated
+    tolerance. The result is finite, or SolverError is raised. Moving, rotating or scaling rest pose,
+    positions and targets together does the same to the result; renumbering the vertices renumbers it.
 
-    A method may have more: `step` with ``angles`` that pins hold (see `holds_angles`), and a constructor with
-    the ``stiffness`` of faces (see `takes_stiffness`).
+    A method can do more than this contract asks for; the attributes say what.
+
+    holds_angles: `step` takes ``angles``, (k,) radians by which the surroundings of pins are rotated from
+    rest, NaN for pins that let them rotate freely.
+    takes_stiffness: the constructor takes ``stiffness``, (m,) factors of the faces' energies.
+    has_memory: the constructor takes ``memory``, from 0 to 1: how strongly a step pulls towards the rest
+    pose.
+    has_vector_fields: the pose follows a vector field: results have one, and ``vector_fields(positions,
+    velocities)`` returns two of shape (n, 2), the one followed and the one before its last solve.
     """
+
+    holds_angles: bool = False
+    takes_stiffness: bool = False
+    has_memory: bool = False
+    has_vector_fields: bool = False
 
     def set_pins(self, points: MeshPoints) -> None:
         """Choose the pins, k points of the mesh; moves nothing."""
@@ -72,64 +84,3 @@ class Deformer(Protocol):
 
         Raises InputError and SolverError.
         """
-
-
-def _methods() -> dict[str, Any]:
-    from .akap.deformer import AkapDeformer
-    from .rivals.arap import ArapDeformer
-    from .rivals.cauchy_green import CauchyGreenDeformer
-    from .rivals.igarashi import IgarashiDeformer
-    from .rivals.moving_least_squares import MovingLeastSquaresDeformer
-
-    return {
-        "akap": AkapDeformer,
-        "arap": ArapDeformer,
-        "igarashi": IgarashiDeformer,
-        "cauchy-green": CauchyGreenDeformer,
-        "mls": MovingLeastSquaresDeformer,
-    }
-
-
-def method_names() -> list[str]:
-    """The names that `make_deformer` knows."""
-    return list(_methods())
-
-
-def method_class(method: str) -> Any:
-    """The class behind a method's name. Raises InputError on an unknown one."""
-    methods = _methods()
-    if method not in list(methods):
-        raise InputError(f"method: expected one of {', '.join(methods)}, got {method!r}")
-    return methods[method]
-
-
-def holds_angles(method: str) -> bool:
-    """Whether pins of a method can hold angles: `step` then takes ``angles``, (k,) radians from rest or NaN.
-
-    Raises InputError on an unknown method.
-    """
-    return "angles" in inspect.signature(method_class(method).step).parameters
-
-
-def takes_stiffness(method: str) -> bool:
-    """Whether a method takes ``stiffness``, (m,) factors by which faces bend less, as one of its settings.
-
-    Raises InputError on an unknown method.
-    """
-    return "stiffness" in inspect.signature(method_class(method)).parameters
-
-
-def make_deformer(method: str, mesh: TriMesh, /, **settings: Any) -> Deformer:
-    """A deformation method by name, its settings by keyword. Raises InputError on unknown ones.
-
-    Of a mesh whose parts are tied, those without a pin ride with the others.
-    """
-    from .islands import IslandDeformer
-
-    chosen = method_class(method)
-    known = list(inspect.signature(chosen).parameters)[1:]
-    for name in settings:
-        if name not in known:
-            raise InputError(f"method {method}: expected settings among {', '.join(known)}, got {name!r}")
-    deformer: Deformer = chosen(mesh, **settings)
-    return IslandDeformer(mesh, deformer) if mesh.tied and mesh.component.any() else deformer

@@ -70,7 +70,7 @@ class _Islands:
         return to_points(result)
 
 
-class IslandDeformer:
+class IslandDeformer(Deformer):
     """A `Deformer` that bends the parts with pins by another one, and takes the other parts along.
 
     mesh: the rest pose; deformer: of the same mesh, holds parts without a pin still.
@@ -79,6 +79,8 @@ class IslandDeformer:
     def __init__(self, mesh: TriMesh, deformer: Deformer) -> None:
         self._mesh = mesh
         self._bending: Any = deformer  # of a method that may have more than the contract asks for
+        self.holds_angles, self.takes_stiffness = deformer.holds_angles, deformer.takes_stiffness
+        self.has_memory, self.has_vector_fields = deformer.has_memory, deformer.has_vector_fields
         self._rest = to_complex(mesh.vertices)
         corner_areas = np.repeat(mesh.rest_areas / 3, 3)
         self._masses = np.bincount(mesh.faces.ravel(), corner_areas, len(self._rest))

@@ -1,151 +1,424 @@
-"""Names for methods with settings: what a person types, and the choices that are worth one of their own."""
+"""The table of deformation methods: class, presets, parameters and their words on the screen.
+
+A new method is one module with a `Deformer` and one row of `METHODS`; the command line, the side panel,
+comparisons and tests read the table.
+"""
 
 import inspect
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 from ..errors import InputError
-from .deformer import method_class
+from ..geometry.mesh import TriMesh
+from .akap.deformer import AkapDeformer
+from .deformer import Deformer
+from .islands import IslandDeformer
+from .rivals.arap import ArapDeformer
+from .rivals.cauchy_green import CauchyGreenDeformer
+from .rivals.igarashi import IgarashiDeformer
+from .rivals.moving_least_squares import MovingLeastSquaresDeformer
 
-Parameters = dict[str, Any]
+Parameters = dict[str, Any]  # values by the names of a constructor's arguments
+
+
+@dataclass(frozen=True)
+class Switch:
+    """A parameter that is on or off."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A parameter with a few values, each with its label on the screen."""
+
+    labels: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class NumberRange:
+    """A number from ``low`` to ``high``. If the default is None, the method chooses the value itself.
+
+    format: printf format on the screen; is_logarithmic: sliders show equal ratios as equal distances;
+    is_whole: the value is an int.
+    """
+
+    low: float
+    high: float
+    format: str = "%.2f"
+    is_logarithmic: bool = False
+    is_whole: bool = False
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One argument of a deformer's constructor, and how the side panel shows it.
+
+    name: of the argument; tooltip: one or two sentences; kind: which values it may have.
+    """
+
+    name: str
+    label: str
+    tooltip: str
+    kind: Switch | Choice | NumberRange
 
 
 @dataclass(frozen=True)
 class MethodPreset:
-    """One way of bending that has a name.
+    """A method with parameters that has a name of its own.
 
-    spec: as `parse_method` reads it; label: a few words; short: for tables; note: a sentence or two; source:
-    who published it.
+    spec: in the notation of `parse_method`; label: for menus; short: for tables; note: one or two sentences;
+    source: the publication.
     """
 
     spec: str
     label: str
     short: str
-    note: str
-    source: str
+    note: str = ""
+    source: str = ""
 
     @property
     def method(self) -> str:
-        """The method's name for `make_deformer`."""
+        """The method's name in `METHODS`."""
         return self.spec.partition(":")[0]
 
     @property
-    def settings(self) -> Parameters:
-        """What differs from the method's defaults."""
+    def parameters(self) -> Parameters:
+        """The parameters that differ from the method's defaults."""
         return parse_method(self.spec)[1]
 
-
-_PAPER = "Solomon, Ben-Chen, Butscher and Guibas 2011"
-PRESETS = (
-    MethodPreset(
-        "akap",
-        "As Killing as possible",
-        "AKAP",
-        "The drawing flows along a vector field that is as near to a rigid motion as it can be.",
-        _PAPER,
-    ),
-    MethodPreset(
-        "akap:no-dirichlet",
-        "As Killing, without second solve",
-        "AKAP, one solve",
-        "Spirals along the first field alone, Fig. 8 (c): dents stay around pins.",
-        _PAPER,
-    ),
-    MethodPreset(
-        "akap:trajectory=linear",
-        "As Killing, straight steps",
-        "AKAP, straight",
-        "Both solves, but straight steps, Fig. 8 (b): what turns also grows.",
-        _PAPER,
-    ),
-    MethodPreset(
-        "akap:no-dirichlet,trajectory=linear",
-        "As Killing, straight, one solve",
-        "AKAP, straight, one solve",
-        "Straight steps along the first field, Fig. 8 (a): dents around pins, and what turns grows.",
-        _PAPER,
-    ),
-    MethodPreset(
-        "arap",
-        "As rigid as possible",
-        "ARAP",
-        "Each triangle keeps its shape as well as it can; found by repeated local and global steps.",
-        "Liu, Zhang, Xu, Gotsman and Gortler 2008",
-    ),
-    MethodPreset(
-        "arap:rotations=spokes-and-rims",
-        "As rigid, spokes and rims",
-        "ARAP, spokes and rims",
-        "One rotation for each vertex and all faces around it, which makes bends smoother.",
-        "Chao, Pinkall, Sanan and Schröder 2010",
-    ),
-    MethodPreset(
-        "igarashi",
-        "As rigid, in two steps",
-        "Igarashi",
-        "First every triangle may scale, then it gets its size back: two linear solves, no iteration.",
-        "Igarashi, Moscovich and Hughes 2005",
-    ),
-    MethodPreset(
-        "cauchy-green",
-        "Cauchy-Green",
-        "Cauchy–Green",
-        "A conformal map: angles stay, areas may swell or shrink a lot. Holes are bent as if filled.",
-        "Weber, Ben-Chen and Gotsman 2009",
-    ),
-    MethodPreset(
-        "mls",
-        "Moving least squares",
-        "MLS",
-        "Bends the plane around the pins; near limbs pull on one another, because outlines do not count.",
-        "Schaefer, McPhail and Warren 2006",
-    ),
-)
+    @property
+    def description(self) -> str:
+        """Note and source in one line, empty if there are none."""
+        return f"{self.note} {self.source and self.source + '.'}".strip()
 
 
-def default_settings(method: str) -> Parameters:
-    """All settings of a method with their defaults. Raises InputError on an unknown one."""
-    parameters = list(inspect.signature(method_class(method)).parameters.items())[1:]
-    return {key: parameter.default for key, parameter in parameters}
+@dataclass(frozen=True)
+class Method:
+    """One row of the table.
 
-
-def parse_method(text: str) -> tuple[str, Parameters]:
-    """A method and its settings written as ``name``, or ``name:setting=value,switch,no-switch``.
-
-    E.g. "akap:memory=1,no-dirichlet" or "arap:converge". Raises InputError where there is no such method or
-    setting, or a value is of another kind than the setting's default.
+    deformer: called with the rest mesh and, by keyword, with parameters; its defaults are the method's.
+    presets: the plain method first; if there are none, it is listed under its name.
+    parameters: those that the side panel shows, in its order.
+    document_defaults: parameters of new documents where they differ from the constructor's defaults.
+    compared: specs that a comparison of all methods runs; if there are none, the plain method.
     """
-    name, _, rest = text.strip().partition(":")
-    defaults = default_settings(name)
-    settings: Parameters = {}
-    for part in filter(None, (part.strip() for part in rest.split(","))):
-        key, given, value = part.partition("=")
-        if not given:
-            key, value = (key.removeprefix("no-"), "no") if key.startswith("no-") else (key, "yes")
-        if key not in defaults:
-            raise InputError(f"method {name}: expected settings among {', '.join(defaults)}, got {key!r}")
-        settings[key] = _value(name, key, value, defaults[key])
-    return name, settings
+
+    deformer: type[Deformer]
+    presets: tuple[MethodPreset, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    document_defaults: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    compared: tuple[str, ...] = ()
 
 
-def preset_of(method: str, settings: Parameters) -> MethodPreset:
-    """The variant that a method with these settings is nearest to: the one that shares most of them."""
-    same = [variant for variant in PRESETS if variant.method == method]
+_SOLOMON = "Solomon, Ben-Chen, Butscher and Guibas 2011"
+
+DEFAULT_METHOD = "akap"  # of new documents
+
+METHODS: dict[str, Method] = {
+    "akap": Method(
+        AkapDeformer,
+        presets=(
+            MethodPreset(
+                "akap",
+                "As-Killing-as-possible (AKAP)",
+                "AKAP",
+                "Moves the drawing along the vector field that is closest to a rigid motion.",
+                _SOLOMON,
+            ),
+            MethodPreset(
+                "akap:no-dirichlet",
+                "AKAP, first solve only",
+                "AKAP, one solve",
+                "Follows the field of the first solve, Fig. 8 (c): dents remain around pins.",
+                _SOLOMON,
+            ),
+            MethodPreset(
+                "akap:trajectory=linear",
+                "AKAP, straight steps",
+                "AKAP, straight",
+                "Both solves, but straight steps, Fig. 8 (b): parts that rotate also grow.",
+                _SOLOMON,
+            ),
+            MethodPreset(
+                "akap:no-dirichlet,trajectory=linear",
+                "AKAP, straight steps, first solve only",
+                "AKAP, straight, one solve",
+                "Straight steps along the field of the first solve, Fig. 8 (a): dents remain around pins, "
+                "and parts that rotate also grow.",
+                _SOLOMON,
+            ),
+        ),
+        parameters=(
+            Parameter(
+                "memory",
+                "Memory",
+                "How strongly each step pulls the drawing back to its rest shape. 0 is the paper's method: "
+                "the pose depends on how it was dragged there, as with clay.",
+                NumberRange(0, 1),
+            ),
+            Parameter(
+                "dirichlet",
+                "Second solve",
+                "Smooths the field inside the drawing while the outline moves as before, so that nothing "
+                "bulges around pins.",
+                Switch(),
+            ),
+            Parameter(
+                "trajectory",
+                "Trajectories",
+                "Spirals keep the size of parts that rotate. Straight lines, which make them grow, are "
+                "here for comparison.",
+                Choice({"spiral": "Spirals", "linear": "Straight lines"}),
+            ),
+            Parameter(
+                "pin_weight",
+                "Pin strength",
+                "How strongly pins pull on the field. Higher values bring them closer to the pointer in each "
+                "step.",
+                NumberRange(1, 10_000, "%.0f", is_logarithmic=True),
+            ),
+            Parameter(
+                "max_step",
+                "Maximum step",
+                "How far a pin moves along one field, as a share of the drawing's size. Shorter steps "
+                "distort less and cost more.",
+                NumberRange(0.001, 0.5, "%.3f", is_logarithmic=True),
+            ),
+            Parameter(
+                "constraints",
+                "Pin constraint",
+                "Soft pins may lag a little behind the pointer; hard pins have exactly its velocity.",
+                Choice({"soft": "Soft", "hard": "Hard"}),
+            ),
+            Parameter(
+                "exact",
+                "Exact solves",
+                "Factorizes the matrices anew in every step, as in the paper: several times slower, without "
+                "a visible difference.",
+                Switch(),
+            ),
+        ),
+        document_defaults={"memory": 1.0},
+        compared=("akap", "akap:memory=1", "akap:no-dirichlet", "akap:trajectory=linear"),
+    ),
+    "arap": Method(
+        ArapDeformer,
+        presets=(
+            MethodPreset(
+                "arap",
+                "As-rigid-as-possible (ARAP)",
+                "ARAP",
+                "Keeps the shape of each triangle as well as it can, by alternating local and global steps.",
+                "Liu, Zhang, Xu, Gotsman and Gortler 2008",
+            ),
+            MethodPreset(
+                "arap:rotations=spokes-and-rims",
+                "ARAP, spokes and rims",
+                "ARAP, spokes and rims",
+                "Fits one rotation per vertex to all triangles around it, which makes bends smoother.",
+                "Chao, Pinkall, Sanan and Schröder 2010",
+            ),
+        ),
+        parameters=(
+            Parameter(
+                "iterations",
+                "Iterations",
+                "Maximum number of local and global steps per frame. With more, the drawing settles sooner.",
+                NumberRange(1, 200, "%.0f", is_logarithmic=True, is_whole=True),
+            ),
+            Parameter(
+                "tolerance",
+                "Tolerance",
+                "A step ends once no vertex moves farther than this share of the drawing's size.",
+                NumberRange(1e-10, 1e-3, "%.1e", is_logarithmic=True),
+            ),
+            Parameter(
+                "converge",
+                "Until converged",
+                "Iterates until no vertex moves, however long that takes.",
+                Switch(),
+            ),
+            Parameter(
+                "rotations",
+                "Rotations",
+                "Whether each triangle has a rotation of its own, or each vertex one for all triangles "
+                "around it.",
+                Choice({"faces": "Per triangle", "spokes-and-rims": "Per vertex"}),
+            ),
+        ),
+    ),
+    "igarashi": Method(
+        IgarashiDeformer,
+        presets=(
+            MethodPreset(
+                "igarashi",
+                "As-rigid-as-possible, two solves",
+                "Igarashi",
+                "First every triangle may scale, then it gets its size back: two linear solves, no "
+                "iteration.",
+                "Igarashi, Moscovich and Hughes 2005",
+            ),
+        ),
+        parameters=(
+            Parameter(
+                "pin_weight",
+                "Pin strength",
+                "How strongly pins hold. Higher values bring them closer to the pointer.",
+                NumberRange(1, 100_000, "%.0f", is_logarithmic=True),
+            ),
+        ),
+    ),
+    "cauchy-green": Method(
+        CauchyGreenDeformer,
+        presets=(
+            MethodPreset(
+                "cauchy-green",
+                "Cauchy–Green coordinates",
+                "Cauchy–Green",
+                "A conformal map: it keeps angles, but areas may grow or shrink a lot. Holes bend as if "
+                "filled.",
+                "Weber, Ben-Chen and Gotsman 2009",
+            ),
+        ),
+        parameters=(
+            Parameter(
+                "cage",
+                "Cage vertices",
+                "Maximum number of vertices of the cage around the drawing. More vertices follow its outline "
+                "more closely and cost more.",
+                NumberRange(16, 1000, "%.0f", is_logarithmic=True, is_whole=True),
+            ),
+            Parameter(
+                "smoothness",
+                "Smoothness",
+                "Lower values bring pins closer to the pointer; higher values make the map smoother.",
+                NumberRange(1e-6, 1.0, "%.1e", is_logarithmic=True),
+            ),
+        ),
+    ),
+    "mls": Method(
+        MovingLeastSquaresDeformer,
+        presets=(
+            MethodPreset(
+                "mls",
+                "Moving least squares (MLS)",
+                "MLS",
+                "Warps the plane around the pins. Limbs that are close pull on one another, because the "
+                "outline plays no role.",
+                "Schaefer, McPhail and Warren 2006",
+            ),
+        ),
+        parameters=(
+            Parameter(
+                "transform",
+                "Transform",
+                "What the map may do near a pin: rotate only, also scale, or also shear.",
+                Choice({"rigid": "Rotate", "similarity": "Rotate and scale", "affine": "Affine"}),
+            ),
+            Parameter(
+                "alpha",
+                "Falloff",
+                "How fast the influence of a pin falls off with distance. Higher values make it more local.",
+                NumberRange(0.1, 10, "%.1f", is_logarithmic=True),
+            ),
+        ),
+    ),
+}
+
+
+def method_names() -> list[str]:
+    """The names of all methods, as `make_deformer` takes them."""
+    return list(METHODS)
+
+
+def get_method(name: str) -> Method:
+    """The row of the table with this name. Raises InputError if there is none."""
+    if name not in method_names():
+        raise InputError(f"method: expected one of {', '.join(METHODS)}, got {name!r}")
+    return METHODS[name]
+
+
+def make_deformer(method: str, mesh: TriMesh, /, **parameters: Any) -> Deformer:
+    """Make the deformer of a method for a mesh at rest, with parameters by keyword.
+
+    If the components of the mesh are tied, those without a pin move with the others (`IslandDeformer`).
+    Raises InputError for an unknown method or parameter, or a value out of range.
+    """
+    chosen, known = get_method(method), default_parameters(method)
+    for name in parameters:
+        _check_known(method, name, known)
+    constructor: Callable[..., Deformer] = chosen.deformer
+    deformer = constructor(mesh, **parameters)
+    return IslandDeformer(mesh, deformer) if mesh.tied and mesh.component.any() else deformer
+
+
+def default_parameters(method: str) -> Parameters:
+    """All parameters of a method with the constructor's defaults. Raises InputError for an unknown method."""
+    arguments = list(inspect.signature(get_method(method).deformer).parameters.values())[1:]
+    return {argument.name: argument.default for argument in arguments}
+
+
+def presets() -> list[MethodPreset]:
+    """The presets of all methods, at least one of each, in the order of the table."""
+    return [preset for name in METHODS for preset in presets_of(name)]
+
+
+def presets_of(method: str) -> tuple[MethodPreset, ...]:
+    """The presets of one method, at least one. Raises InputError for an unknown method."""
+    return get_method(method).presets or (MethodPreset(method, method, method),)
+
+
+def nearest_preset(method: str, parameters: Parameters) -> MethodPreset:
+    """The method's preset that shares most of its parameters with ``parameters`` and contradicts none.
+
+    If every preset contradicts them, the method's first. Raises InputError for an unknown method.
+    """
+    candidates = presets_of(method)
     return max(
-        (variant for variant in same if variant.settings.items() <= settings.items()),
-        key=lambda variant: len(variant.settings),
-        default=same[0],
+        (preset for preset in candidates if preset.parameters.items() <= parameters.items()),
+        key=lambda preset: len(preset.parameters),
+        default=candidates[0],
     )
 
 
-def _value(method: str, key: str, text: str, default: Any) -> Any:
+def compared_methods() -> list[str]:
+    """The specs that a comparison of all methods runs, in the notation of `parse_method`."""
+    return [spec for name, method in METHODS.items() for spec in method.compared or (name,)]
+
+
+def parse_method(text: str) -> tuple[str, Parameters]:
+    """Parse a method and its parameters written as ``name`` or ``name:parameter=value,switch,no-switch``.
+
+    E.g. "akap:memory=1,no-dirichlet" or "arap:converge". Returns the name and the parameters given. Raises
+    InputError for an unknown method or parameter, or a value of another type than the parameter's default.
+    """
+    name, _, rest = text.strip().partition(":")
+    defaults = default_parameters(name)
+    parameters: Parameters = {}
+    for part in filter(None, (part.strip() for part in rest.split(","))):
+        key, equals, value = part.partition("=")
+        if not equals:
+            key, value = (key.removeprefix("no-"), "no") if key.startswith("no-") else (key, "yes")
+        _check_known(name, key, defaults)
+        parameters[key] = _parse_value(name, key, value, defaults[key])
+    return name, parameters
+
+
+def _check_known(method: str, name: str, known: Parameters) -> None:
+    if name not in known:
+        expected = f"parameters among {', '.join(known)}" if known else "no parameters"
+        raise InputError(f"method {method}: expected {expected}, got {name!r}")
+
+
+def _parse_value(method: str, name: str, text: str, default: Any) -> Any:
     if isinstance(default, bool):
         if text not in ("yes", "no"):
-            raise InputError(f"method {method}: expected yes or no for {key}, got {text!r}")
+            raise InputError(f"method {method}: expected yes or no for {name}, got {text!r}")
         return text == "yes"
     if isinstance(default, str):
         return text
     try:
         return type(default)(text)
     except ValueError as error:
-        raise InputError(f"method {method}: expected a number for {key}, got {text!r}") from error
+        raise InputError(f"method {method}: expected a number for {name}, got {text!r}") from error

@@ -8,8 +8,8 @@ from html.parser import HTMLParser
 
 import pytest
 
-from akap_editor.cli import compare
 from akap_editor.compare.run import bend
+from akap_editor.deform.methods import compared_methods, method_names
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.session.session import Session
@@ -17,6 +17,7 @@ from akap_editor.geometry.distortion import distortion
 from akap_editor.io.akap.recording import write_recording
 from tests.support.command_line import assert_one_line
 from tests.support.recorded_drag import plank_drawing, plank_recording
+from tests.support.toy_method import TOY, add_toy_method
 
 
 @pytest.fixture(scope="module")
@@ -125,9 +126,17 @@ def test_figures_of_the_paper_stand_beside(call, drawing, recording, tmp_path):
     assert ["in the paper", "8.158", "2.036", "", ""] in rows
 
 
-def test_default_methods_are_all_there_are():
-    names = {spec.partition(":")[0] for spec in compare.METHODS}
-    assert names == {"akap", "arap", "igarashi", "cauchy-green", "mls"}
+def test_all_methods_of_the_table_are_compared_by_default(call, file, tmp_path, monkeypatch):
+    """Also one without presets and without parameters."""
+    add_toy_method(monkeypatch)
+    assert call(file, "-o", "report")[0] == 0
+    (model,) = json.loads((tmp_path / "report" / "comparison.json").read_text())["models"]
+    assert [method["spec"] for method in model["methods"]] == compared_methods()
+    assert {method["method"] for method in model["methods"]} == {*method_names()}
+    assert model["methods"][-1]["spec"] == TOY
+    text = (tmp_path / "report" / "index.html").read_text()
+    assert Page(text).open == []
+    assert f"<dt>{TOY} <code>{TOY}</code></dt><dd>{TOY}.<br>" in text
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 
 from akap_editor.compare.report import PAPER
 from akap_editor.compare.run import bend, run
-from akap_editor.deform.deformer import make_deformer
+from akap_editor.deform.methods import make_deformer
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.geometry.distortion import distortion
 from akap_editor.io.akap.recording import read_recording, recorded_drawing

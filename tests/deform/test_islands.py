@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from akap_editor.deform.deformer import StepReport, StepResult, make_deformer, method_names
+from akap_editor.deform.deformer import Deformer, StepReport, StepResult
 from akap_editor.deform.islands import IslandDeformer
+from akap_editor.deform.methods import make_deformer, method_names
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
 from akap_editor.io.images import read_image
 from akap_editor.meshing.outline import outlines
@@ -15,7 +16,7 @@ from akap_editor.meshing.triangulate import triangulate
 STEP = StepReport(0.0, 1, 0.0, 0, 0.0)
 
 
-class Puppeteer:
+class Puppeteer(Deformer):
     """A deformer that puts the parts with pins where the test says, straight along."""
 
     def __init__(self) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from akap_editor.deform.deformer import make_deformer
+from akap_editor.deform.methods import make_deformer
 from akap_editor.editor.comparison import MethodComparison
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings

@@ -3,7 +3,7 @@
 import moderngl
 from imgui_bundle import ImVec2, imgui
 
-from ...deform.methods import PRESETS, preset_of
+from ...deform.methods import nearest_preset, presets
 from ...editor.camera import Camera
 from ...editor.editor import FRAME_BUDGET
 from ...editor.events import ScrollEvent
@@ -46,7 +46,7 @@ def draw(state: AppState, canvas: Canvas, scale: float) -> Canvas:
         state.split = False
         return canvas
     settings = session.state.settings
-    name = preset_of(settings.method, dict(settings.parameters)).label
+    name = nearest_preset(settings.method, dict(settings.parameters)).label
     _caption(left, name, state.measure(), session, scale)
     _pane(state, right, scale)
     return left
@@ -61,8 +61,8 @@ def _pane(state: AppState, pane: Canvas, scale: float) -> None:
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
     imgui.begin("Comparison", None, _PANE)
     imgui.set_next_item_width(min(220 * scale, pane[2] - pane[0] - 24 * scale))
-    specs = [variant.spec for variant in PRESETS]
-    labels = [variant.label for variant in PRESETS]
+    specs = [preset.spec for preset in presets()]
+    labels = [preset.label for preset in presets()]
     changed, index = imgui.combo("##beside", specs.index(comparison.spec), labels, len(labels))
     if changed:
         comparison.spec = specs[index]

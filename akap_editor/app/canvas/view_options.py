@@ -11,6 +11,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 from numpy.typing import NDArray
 
+from ...deform.methods import get_method
 from ...editor.document.drawing import Drawing
 from ...editor.document.stiffness import MAX_STIFFNESS
 from ...editor.editor import FRAME_BUDGET, Editor
@@ -285,7 +286,7 @@ def draw_legend(view: ViewOptions, editor: Editor, scale: float) -> None:
 
 
 def _field_legend(session: Session, scale: float) -> None:
-    if session.state.settings.method != "akap":
+    if not get_method(session.state.settings.method).deformer.has_vector_fields:
         imgui.text_colored(ImVec4(*QUIET), "This method has no vector field")
         return
     for color, label in ((GREEN, "U_opt, the field followed"), (BLUE, "U°, before the second solve")):

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...deform.methods import get_method
 from ...editor import gestures
 from ...editor.editor import Editor
 from ...editor.session.edits import SetStiffness
@@ -15,7 +16,7 @@ from ..app_state import AppState
 from ..canvas.view_options import RANGES, Measure
 from ..dialogs.export_pose import ExportPoseDialog
 from ..dialogs.file_dialog import Palette
-from ..panels.method_parameters import defaults
+from ..panels.method_parameters import with_default_values
 from . import keying
 from .command import CTRL, SHIFT, Command, Key, Submenu, always, has_drawing
 from .keyboard_pointer import CROSSHAIR, MENU_HERE, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
@@ -93,7 +94,7 @@ def _remember(state: AppState) -> None:
 
 def _defaults(state: AppState) -> None:
     assert state.document is not None
-    state.change_settings(defaults(state.document.state.settings))
+    state.change_settings(with_default_values(state.document.state.settings))
 
 
 def _can_undo(state: AppState) -> bool:
@@ -102,9 +103,9 @@ def _can_undo(state: AppState) -> bool:
     return editor.busy or (editor.session is not None and editor.session.history.undo_label is not None)
 
 
-def _is_akap(state: AppState) -> bool:
+def _has_memory(state: AppState) -> bool:
     session = state.editor.session
-    return session is not None and session.state.settings.method == "akap"
+    return session is not None and get_method(session.state.settings.method).deformer.has_memory
 
 
 def remembers(state: AppState) -> bool:
@@ -241,10 +242,10 @@ DEFAULTS = Command(
     "",
     lambda state: (
         state.document is not None
-        and defaults(state.document.state.settings) != state.document.state.settings
+        and with_default_values(state.document.state.settings) != state.document.state.settings
     ),
 )
-REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _is_akap, remembers)
+REMEMBER = Command("Remember the Rest Shape", _remember, (), "", _has_memory, remembers)
 
 HOLD_ANGLE = Command(
     "Hold Angle", lambda state: gestures.toggle_held_angles(state.editor), (), "", _can_hold, _holds

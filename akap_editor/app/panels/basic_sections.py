@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ...deform.methods import PRESETS, preset_of
+from ...deform.methods import get_method, nearest_preset, presets
 from ...editor.document.settings import Settings
 from .. import widgets
 from ..app_state import AppState
@@ -64,14 +64,14 @@ def bending(state: AppState, scale: float) -> None:
     """The method and its settings."""
     assert state.document is not None
     settings = state.document.state.settings
-    variant = preset_of(settings.method, dict(settings.parameters))
+    choices, current = presets(), nearest_preset(settings.method, dict(settings.parameters))
     imgui.set_next_item_width(widgets.FULL)
-    labels = [each.label for each in PRESETS]
-    changed, index = imgui.combo("##method", PRESETS.index(variant), labels, len(labels))
-    widgets.show_tooltip(f"{variant.note} {variant.source}.")
+    labels = [preset.label for preset in choices]
+    changed, index = imgui.combo("##method", choices.index(current), labels, len(labels))
+    widgets.show_tooltip(current.description)
     if changed:
-        chosen = Settings.parse(PRESETS[index].spec)
-        if chosen.method == settings.method == Settings().method:
+        chosen = Settings.parse(choices[index].spec)
+        if chosen.method == settings.method and get_method(chosen.method).deformer.has_memory:
             chosen = chosen.with_parameter("memory", settings.get("memory", 0.0))
         widgets.change(state, chosen)
     imgui.begin_disabled(not commands.REMEMBER.enabled(state))

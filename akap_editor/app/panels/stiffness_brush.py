@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ...deform.deformer import takes_stiffness
+from ...deform.methods import get_method
 from ...editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
 from ...editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS
 from .. import widgets
@@ -33,7 +33,7 @@ def draw(state: AppState, scale: float) -> None:
     state.editor.brush_tool.brush = replace(brush, factor=factor, radius=radius)
     if widgets.switch("Erase", brush.erasing, "E, or drag with the right button.")[0]:
         widgets.run(state, commands.ERASE)
-    if not takes_stiffness(state.document.state.settings.method):
+    if not get_method(state.document.state.settings.method).deformer.takes_stiffness:
         widgets.secondary_text(
             "The method chosen under Bending bends all parts alike; stiffness is kept for others."
         )

@@ -14,7 +14,7 @@ from ...geometry.mesh import MeshPoints, TriMesh, signed_areas
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints, as_indices, as_number, as_points
 from ..cholesky import SparseCholesky
-from ..deformer import StepReport, StepResult
+from ..deformer import Deformer, StepReport, StepResult
 from .killing_field import KillingSystem
 from .log_spiral import LogSpirals, linear_flow
 from .pin_rotation import PinRotationConstraints
@@ -64,7 +64,7 @@ class _Substep:
     end: Complexes
 
 
-class AkapDeformer:
+class AkapDeformer(Deformer):
     """As-Killing-as-possible deformation (Solomon, Ben-Chen, Butscher and Guibas 2011).
 
     mesh: the rest pose.
@@ -81,6 +81,11 @@ class AkapDeformer:
     stiffness: (m,) factors from 1e-3 to 1e6 of the faces' energies, by which parts bend less or more.
     Raises InputError on settings out of range.
     """
+
+    holds_angles = True
+    takes_stiffness = True
+    has_memory = True
+    has_vector_fields = True
 
     def __init__(
         self,

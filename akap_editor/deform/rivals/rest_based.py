@@ -12,7 +12,7 @@ from ...errors import SolverError
 from ...geometry.mesh import MeshPoints, TriMesh, signed_areas
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints, as_indices, as_points
-from ..deformer import StepReport, StepResult
+from ..deformer import Deformer, StepReport, StepResult
 
 _SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
 
@@ -22,7 +22,7 @@ def product(matrix: Floats | Complexes, values: Complexes) -> Complexes:
     return np.asarray(np.einsum("nk,k->n", matrix, values))
 
 
-class RestBasedDeformer(ABC):
+class RestBasedDeformer(Deformer, ABC):
     """A `Deformer` that goes from the rest pose to the result at once, without a way there.
 
     A component without a pin holds still. A method fills in `_prepare` and `_moved`.

@@ -4,18 +4,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...deform.methods import parse_method
+from ...deform.methods import DEFAULT_METHOD, get_method, parse_method
+
+
+def _document_defaults(method: str) -> tuple[tuple[str, Any], ...]:
+    return tuple(sorted(get_method(method).document_defaults.items()))
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How the drawing deforms: a method's name and its parameters, see `deform.deformer.make_deformer`.
+    """How the drawing deforms: a method's name and its parameters, see `deform.methods.make_deformer`.
 
     Parameters that are absent have the method's own defaults.
     """
 
-    method: str = "akap"
-    parameters: tuple[tuple[str, Any], ...] = (("memory", 1.0),)
+    method: str = DEFAULT_METHOD
+    parameters: tuple[tuple[str, Any], ...] = _document_defaults(DEFAULT_METHOD)
 
     def get(self, name: str, default: Any = None) -> Any:
         """The value of a parameter, ``default`` if it is absent."""
@@ -32,7 +36,7 @@ class Settings:
         Parameters that are absent have the editor's defaults. Raises InputError.
         """
         name, parameters = parse_method(spec)
-        settings = cls() if name == cls.method else cls(name, ())
+        settings = cls(name, _document_defaults(name))
         for parameter, value in parameters.items():
             settings = settings.with_parameter(parameter, value)
         return settings

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...deform.deformer import StepResult, holds_angles
+from ...deform.deformer import StepResult
+from ...deform.methods import get_method
 from ...errors import SolverError
 from ...geometry.validation import Floats
 from ..document.document import Document, EditState
@@ -137,7 +138,7 @@ class Session:
     @property
     def supports_rotation(self) -> bool:
         """Whether pins can hold angles with the current method."""
-        return holds_angles(self.state.settings.method)
+        return get_method(self.state.settings.method).deformer.holds_angles
 
     @property
     def has_pending_step(self) -> bool:

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ...deform.deformer import StepResult, holds_angles, make_deformer, takes_stiffness
+from ...deform.deformer import StepResult
+from ...deform.methods import get_method, make_deformer
 from ...errors import SolverError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats
@@ -74,7 +75,7 @@ class Stepper:
     def set_method(self, mesh: TriMesh, state: EditState) -> None:
         """Deform ``mesh`` by the method and stiffness of a state. On InputError nothing has changed."""
         method, parameters = state.settings.method, dict(state.settings.parameters)
-        if state.stiffness is not None and takes_stiffness(method):
+        if state.stiffness is not None and get_method(method).deformer.takes_stiffness:
             parameters["stiffness"] = state.stiffness
         deformer = make_deformer(method, mesh, **parameters)
         deformer.set_pins(state.points)
@@ -134,7 +135,7 @@ class Stepper:
     def angle_errors(self, state: EditState) -> Floats:
         """(k,) radians that each pin still has to rotate, with full turns; NaN for pins without an angle."""
         wanted = state.angles
-        if not holds_angles(self._settings.method) or not np.isfinite(wanted).any():
+        if not self._deformer.holds_angles or not np.isfinite(wanted).any():
             return np.full(len(wanted), np.nan)
         angles = pin_angles(self._mesh, state.pins, state.positions)
         return wanted - self._full_turns.unwrap(state.pins, angles)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app.canvas.split_view import halves
-from akap_editor.deform.methods import PRESETS
+from akap_editor.deform.methods import presets
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Drawing
 from akap_editor.editor.session.edits import SetPose, SetSettings
@@ -51,11 +51,11 @@ def test_a_drag_bends_both_to_the_same_targets(split):
 
 
 def test_every_method_can_be_seen_beside(split):
-    for variant in PRESETS:
-        choose(split, variant.label)
+    for preset in presets():
+        choose(split, preset.label)
         session = split.state.comparison.session
-        assert session.state.settings.method == variant.method
-        assert variant.settings.items() <= dict(session.state.settings.parameters).items()
+        assert session.state.settings.method == preset.method
+        assert preset.parameters.items() <= dict(session.state.settings.parameters).items()
         assert session.pin_error() < 2.0
 
 

@@ -13,8 +13,7 @@ from akap_editor.app.commands.registry import COMMANDS, MENUS
 from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.panels import side_panel as panels
-from akap_editor.deform.deformer import method_names
-from akap_editor.deform.methods import PRESETS, preset_of
+from akap_editor.deform.methods import get_method, method_names, nearest_preset, presets
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.events import PinRequest
 from akap_editor.editor.session.edits import PaintStiffness
@@ -493,21 +492,23 @@ def test_help_opens_and_closes(pinned, label, name, title, close):
 
 
 def test_every_method_can_be_chosen():
-    assert {variant.method for variant in PRESETS} == set(method_names())
+    assert {preset.method for preset in presets()} == set(method_names())
 
 
-@pytest.mark.parametrize("variant", [each for each in PRESETS if each.settings], ids=lambda each: each.spec)
-def test_a_variant_is_chosen_and_keeps_its_memory(pinned, variant):
+@pytest.mark.parametrize(
+    "preset", [each for each in presets() if each.parameters], ids=lambda each: each.spec
+)
+def test_a_preset_is_chosen_and_keeps_its_memory(pinned, preset):
     def choose(hand):
         hand.set_ref("Panel")
-        hand.combo_click(f"##method/{variant.label}")
+        hand.combo_click(f"##method/{preset.label}")
 
     pinned.do(choose)
     settings = pinned.session.state.settings
-    assert settings.method == variant.method
-    memory = {"memory": 1.0} if variant.method == "akap" else {}
-    assert dict(settings.parameters) == {**variant.settings, **memory}
-    assert preset_of(settings.method, dict(settings.parameters)) is variant
+    assert settings.method == preset.method
+    memory = {"memory": 1.0} if get_method(preset.method).deformer.has_memory else {}
+    assert dict(settings.parameters) == {**preset.parameters, **memory}
+    assert nearest_preset(settings.method, dict(settings.parameters)) is preset
 
 
 def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):
@@ -516,7 +517,7 @@ def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):
 
     def choose(hand):
         hand.set_ref("Panel")
-        hand.combo_click("##method/As rigid as possible")
+        hand.combo_click("##method/As-rigid-as-possible (ARAP)")
 
     pinned.do(choose)
     assert pinned.session.state.settings.method == "arap"

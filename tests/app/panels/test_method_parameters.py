@@ -1,6 +1,5 @@
 """Parameters of methods in the panel, the list of steps, and what is remembered for new drawings."""
 
-import inspect
 import json
 
 import pytest
@@ -8,31 +7,23 @@ import pytest
 from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.panels import method_parameters as settings_panel
-from akap_editor.app.panels.method_parameters import PARAMETERS, default
+from akap_editor.app.panels.method_parameters import default_value
 from akap_editor.app.preferences import Preferences
-from akap_editor.deform.deformer import make_deformer, method_class, method_names
+from akap_editor.deform.methods import get_method, make_deformer, method_names
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.editor import Editor
+from tests.support.toy_method import TOY, add_toy_method
 
 TREE = "Parameters"
 
 
-def test_every_parameter_of_every_method_is_there_and_explained():
-    assert list(PARAMETERS) == method_names() or set(PARAMETERS) == set(method_names())
-    for method, parameters in PARAMETERS.items():
-        names = list(inspect.signature(method_class(method)).parameters)[1:]
-        apply_stroke = {"stiffness"}  # not a setting: it has a brush
-        assert sorted(parameter.name for parameter in parameters) == sorted(set(names) - apply_stroke)
-        assert all(parameter.label and parameter.tooltip.endswith(".") for parameter in parameters)
-
-
 @pytest.mark.parametrize("method", method_names())
 def test_defaults_are_those_of_new_drawings(drawing, method):
-    values = {each.name: default(method, each.name) for each in PARAMETERS[method]}
+    values = {each.name: default_value(method, each.name) for each in get_method(method).parameters}
     make_deformer(method, drawing.mesh, **values)
-    assert default("akap", "memory") == Settings().get("memory")
+    assert default_value("akap", "memory") == Settings().get("memory") == 1.0
 
 
 def labels_at(ui, hand):
@@ -48,7 +39,7 @@ def test_a_switch_changes_at_once_and_a_double_click_on_its_label_resets(pinned,
     def noting(text):
         from imgui_bundle import imgui
 
-        if text.startswith("Smooths the inside"):
+        if text.startswith("Smooths the field inside"):
             low = imgui.get_item_rect_min()
             places["label"] = imgui.ImVec2(low.x + 5, low.y + 5)
         explain(text)
@@ -81,6 +72,28 @@ def test_a_slider_changes_once_when_it_is_let_go(pinned):
     pinned.do(act)
     assert pinned.session.state.settings.get("memory") == pytest.approx(0.25)
     assert pinned.session.history.labels == ["Change settings"]
+
+
+def test_a_method_without_parameters_has_no_section_of_them(pinned, monkeypatch):
+    add_toy_method(monkeypatch)
+    sections = []
+
+    def choose(hand):
+        hand.set_ref("Panel")
+        sections.append(hand.item_exists(TREE))
+        hand.combo_click(f"##method/{TOY}")
+        hand.yield_(2)
+        sections.append(hand.item_exists(TREE))
+
+    pinned.do(choose)
+    assert sections == [True, False]
+    assert pinned.session.state.settings == Settings(TOY, ())
+    start = pinned.screen(pinned.pin_place(3))
+    rest = pinned.session.state.positions
+    pinned.drag(start, (start[0], start[1] - 40))
+    assert pinned.session.state.positions.tobytes() != rest.tobytes()
+    pinned.menu("Edit", "Undo")
+    assert pinned.session.state.positions.tobytes() == rest.tobytes()
 
 
 # -- history ------------------------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.deform.akap.deformer import AkapDeformer
-from akap_editor.deform.deformer import method_names
+from akap_editor.deform.methods import method_names
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import ResetPose, SetPose, SetSettings, SetTargets
