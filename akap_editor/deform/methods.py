@@ -419,6 +419,6 @@ def _parse_value(method: str, name: str, text: str, default: Any) -> Any:
     if isinstance(default, str):
         return text
     try:
-        return type(default)(text)
+        return float(text) if default is None else type(default)(text)
     except ValueError as error:
         raise InputError(f"method {method}: expected a number for {name}, got {text!r}") from error

@@ -33,6 +33,7 @@ from tests.support.toy_method import TOY, TranslationDeformer, add_toy_method
         ("akap:no-dirichlet,trajectory=linear", ("akap", {"dirichlet": False, "trajectory": "linear"})),
         ("akap:memory=1", ("akap", {"memory": 1.0})),
         ("akap:dirichlet=no, exact=yes", ("akap", {"dirichlet": False, "exact": True})),
+        ("akap:max_step=0.1", ("akap", {"max_step": 0.1})),  # by default None
         ("cauchy-green:cage=40,smoothness=1e-3", ("cauchy-green", {"cage": 40, "smoothness": 1e-3})),
     ],
 )
@@ -51,6 +52,7 @@ def test_specs_are_read(text, expected):
         ("arap:iterations=many", "method arap: expected a number for iterations, got 'many'"),
         ("arap:iterations=2.5", "method arap: expected a number for iterations, got '2.5'"),
         ("arap:iterations", "method arap: expected a number for iterations, got 'yes'"),
+        ("akap:max_step=long", "method akap: expected a number for max_step, got 'long'"),
         ("arap:converge=maybe", "method arap: expected yes or no for converge, got 'maybe'"),
     ],
 )
