@@ -10,9 +10,7 @@ from ..editor.document.framing import crop_box, output_size
 from ..errors import InputError
 from ..io.export import EXPORT_FORMATS, ExportOptions, export, format_of
 from ..io.open_document import open_document
-from .options import FILE, export_options, framing_options, make_folder_of
-
-_KINDS = "\n".join(f"{each.suffix:<12} {each.label}" for each in EXPORT_FORMATS)
+from .options import FILE, append_formats, export_options, framing_options, make_folder_of
 
 
 @dataclass(frozen=True)
@@ -84,4 +82,4 @@ def export_command(
     click.echo(json.dumps(exported.facts, indent=2) if as_json else exported.text)
 
 
-export_command.help = f"{export_command.help}\n\n\b\nFormats, by the ending of the output:\n{_KINDS}"
+append_formats(export_command, [(each.suffix, each.label) for each in EXPORT_FORMATS])

@@ -1,6 +1,7 @@
 """What the commands share: files that are named, colors, checks of what is to be written."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from inspect import cleandoc
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,13 @@ def export_options(
     """What the options of `framing_options` mean; None where one was not given. Raises InputError."""
     plain = ExportOptions()
     return ExportOptions(plain.scale if scale is None else scale, color(background), crop or plain.crop, rest)
+
+
+def append_formats(command: click.Command, formats: Sequence[tuple[str, str]]) -> None:
+    """Append a list of formats to a command's help: ending of the output and description, for each."""
+    width = max(len(ending) for ending, _ in formats)
+    lines = "\n".join(f"{ending:<{width}}  {about}" for ending, about in formats)
+    command.help = f"{cleandoc(command.help or '')}\n\n\b\nFormats, by the ending of the output:\n{lines}"
 
 
 def bundled(name: str) -> Path:

@@ -1,24 +1,26 @@
-"""Does recordings again, and plays keyframes, as animations."""
+"""Writes recordings and keyframes as animations."""
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import click
 
 from ..deform.pose_interpolation import InterpolationCache
+from ..editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
 from ..editor.animation.keyframe_playback import keyed_frame
-from ..editor.animation.motion import Frame, Motion, closed, frame_times, shorten_pauses
+from ..editor.animation.motion import Motion, shorten_pauses
 from ..editor.document.easing import EASINGS
-from ..editor.document.framing import frame_box, union_of_boxes
 from ..editor.document.settings import Settings
 from ..editor.session.replay import replay
 from ..errors import InputError, error_context
 from ..io.akap.recording import read_recording, recorded_drawing
-from ..io.animation.frames import export_frames, export_kind
+from ..io.animation.formats import ANIMATION_FORMATS, MAX_PLAYS, animation_format, write_animation
 from ..io.open_document import PROJECT_SUFFIX, open_document
-from .options import FILE, check_png, color, make_folder_of, write_picture
+from ..io.painter import paint_frames
+from .options import FILE, append_formats, check_png, color, make_folder_of, write_picture
 
-# What a word of --variant sets.
+# The parameter that each word of --variant sets.
 VARIANT_WORDS: dict[str, tuple[str, object]] = {
     "dirichlet": ("dirichlet", True),
     "no-dirichlet": ("dirichlet", False),
@@ -29,44 +31,62 @@ VARIANT_WORDS: dict[str, tuple[str, object]] = {
     "memory": ("memory", 1.0),
     "no-memory": ("memory", 0.0),
 }
-_WORDS = ", ".join(VARIANT_WORDS)
+_FORMATS = [
+    (f"{each.suffix or 'folder/'}{' --sheet' * each.is_sheet}", each.about) for each in ANIMATION_FORMATS
+]
 
 
 @click.command(
     "replay",
-    epilog="Example: akap-editor replay wave.akaprec --drawing cat.png -o wave.webp; akap-editor replay "
-    "walk.akap -o walk.gif. The output's ending "
-    "decides: .png is the last pose, .gif, .webp and .apng are animations, .mp4 and .webm videos, a folder/ "
-    "gets one PNG a frame; with --sheet, .png is a sprite sheet, and .json beside it its index.",
+    epilog="Example: akap-editor replay wave.akaprec --drawing cat.png -o wave.webp\n\n"
+    "Example: akap-editor replay walk.akap -o walk.gif",
 )
 @click.argument("recording", type=FILE)
-@click.option("-o", "--output", type=FILE, required=True, help="File or folder/ to write.")
-@click.option("--drawing", type=FILE, help="Drawing to replay it on, in place of its own.")
-@click.option("--method", metavar="METHOD", help="Bend by another: akap, arap, mls, ..., arap:converge, ...")
-@click.option("--variant", default="", metavar="WORDS", help=f"Of AKAP, divided by commas: {_WORDS}.")
+@click.option(
+    "-o", "--output", type=FILE, required=True, help="File or folder/ to write; its ending sets the format."
+)
+@click.option("--drawing", type=FILE, help="Replay on this drawing instead of the recorded one.")
+@click.option(
+    "--method", metavar="METHOD", help="Replay with another method: akap, arap, mls, ..., arap:converge, ..."
+)
+@click.option(
+    "--variant",
+    default="",
+    metavar="WORDS",
+    help=f"Change parameters of AKAP; words separated by commas: {', '.join(VARIANT_WORDS)}.",
+)
 @click.option("--pose", type=FILE, help="Also write the last pose as this PNG file, in full resolution.")
-@click.option("--sheet", is_flag=True, help="Write a sprite sheet with a JSON index for games.")
+@click.option("--sheet", is_flag=True, help="Write a sprite sheet and its JSON index, for games.")
 @click.option("--fps", default=30.0, show_default=True, help="Frames per second.")
 @click.option("--size", default=640, show_default=True, help="Longest side in pixels, at most.")
-@click.option("--background", metavar="#RRGGBB", help="Color behind the drawing; transparent without it.")
-@click.option("--from", "start", type=float, metavar="SECONDS", help="Leave out what was before.")
-@click.option("--to", "end", type=float, metavar="SECONDS", help="Leave out what comes after.")
-@click.option("--pause", type=float, metavar="SECONDS", help="Shorten longer pauses, before all else.")
+@click.option("--background", metavar="#RRGGBB", help="Background color; transparent by default.")
+@click.option("--from", "start", type=float, metavar="SECONDS", help="Skip everything before this time.")
+@click.option("--to", "end", type=float, metavar="SECONDS", help="Skip everything after this time.")
+@click.option(
+    "--pause", type=float, metavar="SECONDS", help="Shorten longer pauses, before all other options."
+)
 @click.option("--speed", default=1.0, show_default=True, help="2 is twice as fast.")
 @click.option(
-    "--ease", type=click.Choice(list(EASINGS)), default="none", show_default=True, help="Start or end slowly."
+    "--ease",
+    type=click.Choice(list(EASINGS)),
+    default="none",
+    show_default=True,
+    help="Easing of the whole animation.",
 )
-@click.option("--ping-pong", is_flag=True, help="Forwards, then backwards.")
-@click.option("--plays", default=0, show_default=True, help="How often an animation is shown; 0 for ever.")
+@click.option("--ping-pong", is_flag=True, help="Play forwards, then backwards.")
+@click.option("--plays", default=0, show_default=True, help="How often the animation plays; 0 for forever.")
 def replay_command(
     recording: Path, output: Path, drawing: Path | None, pose: Path | None, **options: object
 ) -> None:
-    """Do a recorded session again without a window and write it as an animation or a picture.
+    """Replay a recording, or the keyframes of a drawing saved as .akap, as an animation or a picture.
 
-    Between recorded moments the drawing moves along its trajectories, so any frame rate is smooth. Of a
-    drawing saved as .akap, its keyframes are played in the same way.
+    No window is needed. Between recorded steps the drawing moves along its trajectories, so that any frame
+    rate is smooth.
     """
     replay_recording(recording, drawing, output, pose, **options)  # type: ignore[arg-type]
+
+
+append_formats(replay_command, _FORMATS)
 
 
 def replay_recording(
@@ -89,42 +109,37 @@ def replay_recording(
     ping_pong: bool = False,
     plays: int = 0,
 ) -> None:
-    """As the command does. Raises InputError, and then nothing was written."""
+    """Do what the command does. Raises InputError before anything is written."""
     from ..render.offscreen import OffscreenRenderer
 
     _check_number("--fps", fps, 1, 120)
     _check_number("--size", size, 16, 8192)
     _check_number("--speed", speed, 0.01, 100)
-    _check_number("--plays", plays, 0, 65535)
-    behind = color(background)
-    kind = export_kind(output, sheet)
+    _check_number("--plays", plays, 0, MAX_PLAYS)
+    background_color = color(background)
+    chosen = animation_format(output, sheet)
     if pose is not None:
         check_png(pose)
-    duration, play = _source(path, drawing_path, method, variant, pause)
-    first, last = _range(duration, start, end)
-    times = [last] if kind == "picture" else frame_times(first, last, fps, speed, ease)
-    with error_context(path), click.progressbar(play(times), length=len(times), label="Bending") as bar:
+    source = _open_source(path, drawing_path, method, variant, pause)
+    first, last = _range(source.duration, start, end)
+    times = [last] if chosen.is_still else frame_times(first, last, fps, speed, ease)
+    with error_context(path), click.progressbar(source.play(times), len(times), "Bending") as bar:
         frames = list(bar)
-    frames = _in_turn(frames, ping_pong, kind == "animation" and plays != 1)
-    box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])
-    scale = min(1.0, size / max(box[2] - box[0], box[3] - box[1]))
+    is_loop = chosen.repeats and plays != 1 and loops_seamlessly(frames[0], frames[-1])
+    frames = playing_order(frames, ping_pong, is_loop)
     make_folder_of(output)
     with OffscreenRenderer() as renderer:
-        with click.progressbar(frames, label="Drawing") as bar:
-            pictures = (renderer.render(at.drawing, at.pose, box, scale, behind, at.order) for at in bar)
-            written = export_frames(output, pictures, fps, plays, sheet)
+        pictures = paint_frames(frames, renderer, size, background_color)
+        with click.progressbar(pictures, len(frames), "Drawing") as bar:
+            written = write_animation(output, bar, fps, plays, sheet)
         if pose is not None:
             last_frame = frames[-1]
-            write_picture(pose, renderer.render(*last_frame[:2], background=behind, order=last_frame.order))
+            picture = renderer.render(
+                last_frame.drawing, last_frame.pose, background=background_color, order=last_frame.order
+            )
+            write_picture(pose, picture)
             click.echo(f"Wrote {pose}, the last pose")
     click.echo(f"Wrote {output}, {len(frames)} frames, {written}")
-
-
-def _in_turn(frames: list[Frame], ping_pong: bool, repeated: bool) -> list[Frame]:
-    """What is shown one after the other; repeated and ending as it begins: without the end."""
-    if ping_pong:
-        return frames + frames[-2:0:-1]
-    return frames[:-1] if repeated and len(frames) > 2 and closed(frames[0], frames[-1]) else frames
 
 
 def _check_number(option: str, value: float, low: float, high: float) -> None:
@@ -133,6 +148,7 @@ def _check_number(option: str, value: float, low: float, high: float) -> None:
 
 
 def _range(duration: float, start: float | None, end: float | None) -> tuple[float, float]:
+    """First and last second that are shown. Raises InputError."""
     first = 0.0 if start is None else start
     last = duration if end is None else end
     if not 0 <= first <= duration:
@@ -142,12 +158,66 @@ def _range(duration: float, start: float | None, end: float | None) -> tuple[flo
     return first, min(last, duration)
 
 
+# -- what is played ------------------------------------------------------------------------------------------
+
+
+class _Source(NamedTuple):
+    """A recording or keyframes: seconds, and a function that gives the frames at ascending times."""
+
+    duration: float
+    play: Callable[[Sequence[float]], Iterator[Frame]]
+
+
+def _open_source(
+    path: Path, drawing_path: Path | None, method: str | None, variant: str, pause: float | None
+) -> _Source:
+    """Open a recording, or a drawing with keyframes. Raises InputError."""
+    if path.suffix.lower() == PROJECT_SUFFIX:
+        _refuse({"--drawing": drawing_path, "--method": method, "--variant": variant, "--pause": pause})
+        return _open_keyframes(path)
+    return _open_recording(path, drawing_path, settings_change(method, variant), pause)
+
+
+def _open_recording(
+    path: Path,
+    drawing_path: Path | None,
+    change: Callable[[Settings], Settings] | None,
+    pause: float | None,
+) -> _Source:
+    recording = read_recording(path)
+    if pause is not None:
+        _check_number("--pause", pause, 0, 1e9)
+        recording = shorten_pauses(recording, pause)
+    drawing = open_document(drawing_path).drawing if drawing_path is not None else recorded_drawing(recording)
+    return _Source(
+        recording.duration, lambda times: Motion(drawing, replay(recording, drawing, change)).frames(times)
+    )
+
+
+def _open_keyframes(path: Path) -> _Source:
+    document, cache = open_document(path), InterpolationCache()
+    animation = document.state.animation
+    if not animation.keyframes:
+        raise InputError(f"{path}: expected a drawing with keyframes, or a recording, got one without any")
+    return _Source(animation.duration, lambda times: (keyed_frame(document, cache, time) for time in times))
+
+
+def _refuse(options: dict[str, object]) -> None:
+    """Raise InputError if an option is given that keyframes do not have."""
+    for name, value in options.items():
+        if value not in (None, ""):
+            raise InputError(f"{name}: expected a recording, got keyframes, which no method computes")
+
+
 def settings_change(method: str | None, variant: str) -> Callable[[Settings], Settings] | None:
-    """What to make of recorded settings. Raises InputError on unknown words."""
+    """The change of recorded settings that --method and --variant ask for; None for no change.
+
+    Raises InputError on unknown words.
+    """
     words = [word.strip() for word in variant.split(",") if word.strip()]
     for word in words:
         if word not in VARIANT_WORDS:
-            raise InputError(f"--variant: expected words among {_WORDS}, got {word!r}")
+            raise InputError(f"--variant: expected words among {', '.join(VARIANT_WORDS)}, got {word!r}")
     if method is None and not words:
         return None
     chosen = None if method is None else Settings.parse(method)
@@ -159,47 +229,3 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
         return settings
 
     return change
-
-
-# What gives drawing and pose at each of some times, which do not fall.
-Play = Callable[[Sequence[float]], Iterator[Frame]]
-
-
-def _source(
-    path: Path, drawing_path: Path | None, method: str | None, variant: str, pause: float | None
-) -> tuple[float, Play]:
-    """How long keyframes or a recording are, and what plays them."""
-    if path.suffix.lower() == PROJECT_SUFFIX:
-        _refuse({"--drawing": drawing_path, "--method": method, "--variant": variant, "--pause": pause})
-        return _keyframes(path)
-    return _recorded(path, drawing_path, settings_change(method, variant), pause)
-
-
-def _recorded(
-    path: Path,
-    drawing_path: Path | None,
-    change: Callable[[Settings], Settings] | None,
-    pause: float | None,
-) -> tuple[float, Play]:
-    """How long a recording is, and what plays it."""
-    recording = read_recording(path)
-    if pause is not None:
-        _check_number("--pause", pause, 0, 1e9)
-        recording = shorten_pauses(recording, pause)
-    drawing = open_document(drawing_path).drawing if drawing_path is not None else recorded_drawing(recording)
-    return recording.duration, lambda times: Motion(drawing, replay(recording, drawing, change)).frames(times)
-
-
-def _keyframes(path: Path) -> tuple[float, Play]:
-    """How long the keyframes of a drawing are, and what plays them."""
-    document, ways = open_document(path), InterpolationCache()
-    animation = document.state.animation
-    if not animation.keyframes:
-        raise InputError(f"{path}: expected a drawing with keyframes, or a recording, got one without any")
-    return animation.duration, lambda times: (keyed_frame(document, ways, time) for time in times)
-
-
-def _refuse(options: dict[str, object]) -> None:
-    for name, value in options.items():
-        if value not in (None, ""):
-            raise InputError(f"{name}: expected a recording, which can be bent anew, got keyframes")

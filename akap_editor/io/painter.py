@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Protocol
 
-from ..editor.animation.motion import Frame
+from ..editor.animation.frames import Frame
 from ..editor.document.drawing import Drawing
 from ..editor.document.framing import Box, Color, frame_box, output_size, union_of_boxes
 from ..geometry.validation import Floats, Ints

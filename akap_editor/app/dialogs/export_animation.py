@@ -1,19 +1,21 @@
 """The dialog that exports the played range of the timeline as an animation."""
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from imgui_bundle import ImVec2, imgui
 
-from ...editor.animation.motion import Frame, closed, frame_times
-from ...editor.document.easing import EASINGS
-from ...editor.document.framing import Color, frame_box, output_size, union_of_boxes
-from ...io.animation.frames import export_frames, export_kind
+from ...editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
+from ...editor.document.easing import EASING_LABELS, EASINGS
+from ...editor.document.framing import Color
+from ...io.animation.formats import ANIMATION_FORMATS, AnimationFormat, animation_format, write_animation
+from ...io.painter import paint_frames
 from .. import widgets
 from ..app_state import AppState
-from ..jobs.frame_encoder import Encoder
+from ..jobs.frame_encoder import FrameEncoder
 from ..jobs.task import Progress, Steps, Task
 from ..preferences import Preferences
 from .export_widgets import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
@@ -21,43 +23,12 @@ from .file_dialog import FileRequest
 
 PREFERENCE = "animation"  # name of the stored options
 
-EASING_LABELS = {
-    "none": "Steady",
-    "in": "Slow start",
-    "out": "Slow end",
-    "in-out": "Slow start and end",
-    "hold": "Hold, then jump",
-}
+DIALOG_FORMATS = tuple(each for each in ANIMATION_FORMATS if not each.is_still)
+FRAME_RATES = (12, 24, 30, 60)
+LIMITS = {"fps": (1.0, 120.0), "size": (16, 8192), "speed": (0.01, 100.0)}
 _WIDTH, _HEIGHT, _LIST_WIDTH = 600, 292, 190  # design points
 
-
-@dataclass(frozen=True)
-class AnimationFormat:
-    """label, suffix: what it is called and how its names end, nothing for a folder; about: for people;
-    transparent: whether it can be; repeats: whether it says how often it is shown; sheet: of sprites.
-    """
-
-    label: str
-    suffix: str
-    about: str
-    transparent: bool = True
-    repeats: bool = False
-    sheet: bool = False
-
-
-FORMATS = (
-    AnimationFormat("WebP", ".webp", "An animation for the web: all colors, soft rims, small.", repeats=True),
-    AnimationFormat("GIF", ".gif", "An animation for everywhere: 255 colors, hard rims.", repeats=True),
-    AnimationFormat("APNG", ".apng", "An animation: all colors, soft rims, large.", repeats=True),
-    AnimationFormat("MP4", ".mp4", "A video (H.264), without transparency.", transparent=False),
-    AnimationFormat("WebM", ".webm", "A video (VP9) that keeps transparency."),
-    AnimationFormat("Pictures", "", "A folder with one PNG a frame."),
-    AnimationFormat(
-        "Sprite sheet", ".png", "One PNG with all frames, and a JSON index, for games.", sheet=True
-    ),
-)
-RATES = (12, 24, 30, 60)
-LIMITS = {"fps": (1.0, 120.0), "size": (16, 8192), "speed": (0.01, 100.0)}
+T = TypeVar("T")
 
 
 @dataclass
@@ -69,7 +40,7 @@ class AnimationExportOptions:
     backwards; opaque: whether ``background`` is used.
     """
 
-    format: str = FORMATS[0].label
+    format: str = DIALOG_FORMATS[0].label
     fps: float = 30.0
     size: int = 640
     speed: float = 1.0
@@ -80,19 +51,28 @@ class AnimationExportOptions:
     background: Color = (1.0, 1.0, 1.0)
 
     @property
-    def kind(self) -> AnimationFormat:
-        """The chosen format."""
-        return next(each for each in FORMATS if each.label == self.format)
+    def chosen_format(self) -> AnimationFormat:
+        """The row of the table of formats."""
+        return next(each for each in DIALOG_FORMATS if each.label == self.format)
 
     @property
-    def behind(self) -> Color | None:
-        """The color behind the drawing; None if it is transparent."""
-        return self.background if self.opaque or not self.kind.transparent else None
+    def plays(self) -> int:
+        """How often the animation plays; 0 for forever."""
+        return 0 if self.loop else 1
 
-    def times(self, start: float, end: float) -> list[float]:
-        """Seconds on the timeline, for each frame."""
-        times = frame_times(start, end, self.fps, self.speed, self.ease)
-        return times + times[-2:0:-1] if self.ping_pong else times
+    @property
+    def visible_background(self) -> Color | None:
+        """The color behind the drawing; None for transparent."""
+        return self.background if self.opaque or not self.chosen_format.has_transparency else None
+
+    def frame_times(self, start: float, end: float) -> list[float]:
+        """Times on the timeline in seconds, one per frame, in ascending order."""
+        return frame_times(start, end, self.fps, self.speed, self.ease)
+
+    def playing_order(self, frames: Sequence[T], first: Frame, last: Frame) -> list[T]:
+        """Frames, or their times, in the order in which they are shown. first, last: ends of the motion."""
+        is_loop = self.chosen_format.repeats and self.loop and loops_seamlessly(first, last)
+        return playing_order(frames, self.ping_pong, is_loop)
 
     def remember(self, preferences: Preferences) -> None:
         """Store the options for the next time."""
@@ -112,8 +92,8 @@ class AnimationExportOptions:
             if type(value) is type(default):
                 setattr(options, name, value)
         options.ease = options.ease if options.ease in EASINGS else "none"
-        if options.format not in [each.label for each in FORMATS]:
-            options.format = FORMATS[0].label
+        if options.format not in [each.label for each in DIALOG_FORMATS]:
+            options.format = DIALOG_FORMATS[0].label
         return options
 
 
@@ -140,9 +120,10 @@ class ExportAnimationDialog:
         if not widgets.begin_dialog("Export animation"):
             return
         options = AnimationExportOptions.remembered(state.preferences)
-        options.format = format_list(FORMATS, options.kind, _LIST_WIDTH * scale, _HEIGHT * scale).label
+        width, height = _LIST_WIDTH * scale, _HEIGHT * scale
+        options.format = format_list(DIALOG_FORMATS, options.chosen_format, width, height).label
         imgui.same_line(0, 18 * scale)
-        size = ImVec2((_WIDTH - _LIST_WIDTH - 18) * scale, _HEIGHT * scale)
+        size = ImVec2((_WIDTH - _LIST_WIDTH - 18) * scale, height)
         imgui.begin_child("##options", size, widgets.NAV_FLATTENED)
         _draw_options(options, scale)
         _draw_result(state, options, scale)
@@ -171,22 +152,21 @@ def frame_at(state: AppState, time: float) -> Frame:
     )
 
 
-def exported_times(state: AppState, options: AnimationExportOptions) -> list[float]:
-    """Seconds on the timeline, for each frame. In a seamless loop the last frame is dropped."""
+def frame_count(state: AppState, options: AnimationExportOptions) -> int:
+    """The number of frames of an export with these options."""
     start, end = state.timeline.playback.range
-    times = options.times(start, end)
-    over = options.kind.repeats and options.loop and not options.ping_pong and len(times) > 2
-    return times[:-1] if over and closed(frame_at(state, start), frame_at(state, end)) else times
+    times = options.frame_times(start, end)
+    return len(options.playing_order(times, frame_at(state, start), frame_at(state, end)))
 
 
 def request_file(state: AppState, options: AnimationExportOptions) -> None:
     """Ask for the file or folder to write, then write it."""
     assert state.document is not None
-    name = state.document.drawing.name + (options.kind.suffix or "-frames")
-    if options.kind.sheet:
+    name = state.document.drawing.name + (options.chosen_format.suffix or "-frames")
+    if options.chosen_format.is_sheet:
         name = f"{state.document.drawing.name}-sheet.png"
     use = partial(export_animation, state, options)
-    suffixes = (options.kind.suffix,)
+    suffixes = (options.chosen_format.suffix,)
     state.request = FileRequest("Export animation", suffixes, state.folder, use, name, saving=True)
 
 
@@ -194,34 +174,30 @@ def export_animation(state: AppState, options: AnimationExportOptions, path: Pat
     """Write the played range of the timeline; the file name's ending decides on the format."""
 
     def begin() -> None:
-        sheet = options.kind.sheet and path.suffix.lower() == ".png"
-        export_kind(path, sheet)
-        state.task = Task(f"Exporting {path.name}", _steps(state, options, path, sheet))
+        sheet = options.chosen_format.is_sheet and path.suffix.lower() == ".png"
+        animation_format(path, sheet)  # raises InputError
+        state.task = Task(f"Exporting {path.name}", _export_steps(state, options, path, sheet))
 
     state.run_after_frame(begin)
 
 
-def _steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: bool) -> Steps:
+def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: bool) -> Steps:
     """Compute the poses, then draw the pictures, which another thread encodes."""
-    times = exported_times(state, options)
+    times = options.frame_times(*state.timeline.playback.range)
     frames = []
     for number, time in enumerate(times):
         frames.append(frame_at(state, time))
-        yield Progress(0.3 * number / len(times), f"Moving, frame {number + 1} of {len(times)}")
-    box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])
-    scale = min(1.0, options.size / max(box[2] - box[0], box[3] - box[1]))
-    output_size(box, scale)
-    encoder = Encoder(
-        partial(export_frames, path, fps=options.fps, plays=0 if options.loop else 1, sheet=sheet)
-    )
+        yield Progress(0.3 * number / len(times), f"Posing frame {number + 1} of {len(times)}")
+    frames = options.playing_order(frames, frames[0], frames[-1])
+    pictures = paint_frames(frames, state.exporter, options.size, options.visible_background)
+    encoder = FrameEncoder(partial(write_animation, path, fps=options.fps, plays=options.plays, sheet=sheet))
     try:
-        for number, frame in enumerate(frames):
-            picture = state.exporter.render(*frame[:2], box, scale, options.behind, frame.order)
+        for number, picture in enumerate(pictures):
             share = 0.3 + 0.6 * number / len(frames)
-            done = Progress(share, f"Drawing, frame {number + 1} of {len(frames)}")
-            yield done
+            progress = Progress(share, f"Drawing frame {number + 1} of {len(frames)}")
+            yield progress
             for _ in encoder.take(picture):
-                yield done
+                yield progress
         for _ in encoder.finish():
             yield Progress(0.95, f"Writing {path.name}")
     finally:
@@ -232,12 +208,12 @@ def _steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: 
 def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     """Draw what can be chosen about the format."""
     below = imgui.get_cursor_pos_y() + 2 * imgui.get_text_line_height()
-    widgets.secondary_text(options.kind.about)
+    widgets.secondary_text(options.chosen_format.about)
     imgui.set_cursor_pos_y(below + imgui.get_style().item_spacing.y)
     options.fps = number_field("Frame rate", options.fps, LIMITS["fps"], "%.4g fps", 0.2, 96, scale)
-    preset = preset_buttons([f"{rate}" for rate in RATES], scale)
+    preset = preset_buttons([f"{rate}" for rate in FRAME_RATES], scale)
     if preset is not None:
-        options.fps = float(RATES[preset])
+        options.fps = float(FRAME_RATES[preset])
     options.size = round(number_field("Size", options.size, LIMITS["size"], "%.0f px", 2.0, 96, scale))
     widgets.show_tooltip("Of the longest side, at most; a drawing is not enlarged.")
     low, high = LIMITS["speed"]
@@ -251,14 +227,14 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     widgets.show_tooltip("Of the whole, on top of what keyframes do.")
     widgets.switch_label("Repeat", LABEL_WIDTH * scale)
     _, options.ping_pong = widgets.switch("Ping-pong", options.ping_pong, "Forwards, then backwards.")
-    if options.kind.repeats:
+    if options.chosen_format.repeats:
         imgui.same_line(0, 16 * scale)
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
         _, options.loop = widgets.switch("For ever", options.loop, "Off: it is shown once, and stops.")
     options.opaque, options.background = background_field(
         options.opaque,
         options.background,
-        not options.kind.transparent,
+        not options.chosen_format.has_transparency,
         "Without it, it is transparent.",
         scale,
     )
@@ -266,7 +242,7 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
 
 def _draw_result(state: AppState, options: AnimationExportOptions, scale: float) -> None:
     """Draw the number of frames and seconds."""
-    count = len(exported_times(state, options))
+    count = frame_count(state, options)
     seconds = f"{count / options.fps:.1f}".removesuffix(".0")
     widgets.label("Makes", LABEL_WIDTH * scale)
     imgui.text(f"{count} frame{'s' * (count != 1)}, {seconds} s")

@@ -20,7 +20,7 @@ class Export(Protocol):
     def __call__(self, *, frames: Iterable[Picture], write: Write) -> str: ...
 
 
-class Encoder:
+class FrameEncoder:
     """An export at work, which waits for its pictures. One that is closed too early writes no file."""
 
     def __init__(self, export: Export) -> None:

@@ -9,11 +9,10 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...editor.animation.keyframe_playback import MOST_SKINS, STEP, KeyframePlayback, stretched
 from ...editor.animation.time_view import VisibleRange
 from ...editor.camera import ZOOM_STEP
-from ...editor.document.easing import KEYFRAME_EASINGS
+from ...editor.document.easing import EASING_LABELS, KEYFRAME_EASINGS
 from .. import widgets
 from ..app_state import AppState
 from ..commands import keying
-from ..dialogs.export_animation import EASING_LABELS
 from ..theme import ACCENT, DARK, FRAME, QUIET, STRONG_LINE, TEXT, packed
 
 RED = (0.93, 0.33, 0.31, 1.0)

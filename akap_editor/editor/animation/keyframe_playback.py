@@ -16,7 +16,7 @@ from ..editor import Editor
 from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
 from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
-from .motion import Frame
+from .frames import Frame
 from .playback import Playback
 from .time_view import VisibleRange
 

@@ -4,32 +4,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import groupby
 from operator import attrgetter
-from typing import NamedTuple
 
 import numpy as np
 
 from ...deform.deformer import StepResult
 from ...deform.pose_interpolation import InterpolationCache
-from ...geometry.validation import Floats, Ints, as_number
+from ...geometry.validation import Floats, as_number
 from ..document.depth import face_order
 from ..document.drawing import Drawing
-from ..document.easing import easing_function
 from ..session.recording import MAX_TIME, Recording
 from ..session.replay import ReplayedEvent
+from .frames import Frame
 
-
-class Frame(NamedTuple):
-    """What is seen at one moment: a drawing, its pose (n, 2), and the order (m,) in which faces are drawn.
-
-    None is the order of the mesh.
-    """
-
-    drawing: Drawing
-    pose: Floats
-    order: Ints | None = None
-
-
-SAME = 0.01  # pixels: poses that differ by less look alike
 LONGEST_MOVE = 0.25  # seconds: what moved after a longer pause moved in the last of it
 
 
@@ -42,26 +28,6 @@ def shorten_pauses(recording: Recording, longest: float) -> Recording:
         before = event["t"]
         events.append({**event, "t": now})
     return replace(recording, events=events)
-
-
-def frame_times(start: float, end: float, fps: float, speed: float = 1.0, ease: str = "none") -> list[float]:
-    """When to look at a motion from ``start`` to ``end``, in seconds, for each frame of an animation.
-
-    fps: frames per second, 1 to 240; speed: 2 is twice as fast, 0.01 to 100; ease: see
-    `easing_function`. The last frame is the end. Raises InputError.
-    """
-    as_number(fps, "fps", 1, 240)
-    as_number(speed, "speed", 0.01, 100)
-    as_number(start, "start", 0, MAX_TIME)
-    as_number(end, "end", start, MAX_TIME)
-    eased, span = easing_function(ease), end - start
-    count = int(span / speed * fps + 1e-6)
-    return [*(start + span * eased(k * speed / fps / span) for k in range(count)), end]
-
-
-def closed(first: Frame, last: Frame) -> bool:
-    """Whether an animation ends as it begins, so that one of the two is enough where it repeats."""
-    return first.drawing is last.drawing and np.allclose(first.pose, last.pose, rtol=0.0, atol=SAME)
 
 
 @dataclass(frozen=True, eq=False)

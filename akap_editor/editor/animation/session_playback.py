@@ -10,7 +10,8 @@ from ..document.depth import face_order
 from ..document.document import EditState
 from ..document.drawing import Drawing
 from ..session.session import Session
-from .motion import LONGEST_MOVE, Frame
+from .frames import Frame
+from .motion import LONGEST_MOVE
 from .playback import Playback
 from .time_view import VisibleRange
 

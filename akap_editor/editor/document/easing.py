@@ -11,6 +11,13 @@ EASINGS: dict[str, Callable[[float], float]] = {
     "in-out": lambda t: t * t * (3 - 2 * t),
 }
 KEYFRAME_EASINGS: dict[str, Callable[[float], float]] = {**EASINGS, "hold": lambda t: float(t >= 1)}
+EASING_LABELS = {
+    "none": "Linear",
+    "in": "Ease In",
+    "out": "Ease Out",
+    "in-out": "Ease In and Out",
+    "hold": "Hold",
+}  # on the screen
 
 
 def easing_function(name: str) -> Callable[[float], float]:

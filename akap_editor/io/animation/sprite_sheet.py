@@ -1,4 +1,4 @@
-"""Frames as pictures: numbered files in a folder, or one sheet with an index for games."""
+"""Writes frames as PNG pictures: one file per frame, or one sheet with an index for games."""
 
 import json
 import math
@@ -10,16 +10,17 @@ import numpy as np
 
 from ...errors import InputError
 from ..atomic import Write, write_atomic
-from ..images import Picture, check_picture, encode_png, write_png
+from ..images import Picture, encode_png, write_png
+from .frames import checked_frames
 
 MAX_SHEET_SIDE = 16384
 _FRAME_NAME = re.compile(r"frame-(\d{4,})\.png")
 
 
 def write_frames(folder: str | Path, frames: Iterable[Picture]) -> int:
-    """Write frames, (h, w, 4) uint8 each, as frame-0000.png, frame-0001.png, ...; how many there were.
+    """Write frames, (h, w, 4) uint8 each, as frame-0000.png, frame-0001.png, ...; return their number.
 
-    The folder is made if need be; frames that an older, longer animation left in it are removed.
+    The folder is made if necessary. Frames that an older, longer animation left in it are deleted.
     Raises InputError.
     """
     folder = Path(folder)
@@ -40,23 +41,17 @@ def write_frames(folder: str | Path, frames: Iterable[Picture]) -> int:
 def write_sheet(
     path: str | Path, frames: Iterable[Picture], fps: float, write: Write = write_atomic
 ) -> tuple[int, int]:
-    """Write frames as one PNG, row by row, and an index beside it, ``path`` with the ending .json.
+    """Write a sprite sheet, one PNG, and its index with the ending .json; return columns and rows.
 
-    frames: (h, w, 4) uint8 each, all of one size. Margins that are empty in all of them are left out.
-    The index is in the widespread form of texture packers: for each frame its rectangle in the sheet, its
-    place in the whole picture, and its duration in milliseconds. Returns columns and rows.
+    frames: (h, w, 4) uint8 each, all of one size; placed row by row. Margins that are empty in all frames are
+    cropped. The index has the common form of texture packers: for each frame its rectangle in the sheet, its
+    position in the uncropped picture, and its duration in milliseconds.
     Raises InputError, also for a sheet of more than `MAX_SHEET_SIDE` pixels a side.
     """
     path = Path(path)
-    images = [image.copy() for image in frames]
-    if not images:
-        raise InputError("frames: expected at least one frame, got none")
-    for number, image in enumerate(images):
-        check_picture(image, f"frame {number}")
-        if image.shape != images[0].shape:
-            raise InputError(f"frame {number}: expected the size of frame 0, got another")
+    images = [image.copy() for image in checked_frames(frames)]
     height, width = images[0].shape[:2]
-    left, top, right, bottom = _seen(images)
+    left, top, right, bottom = _visible_box(images)
     w, h = right - left, bottom - top
     columns = min(len(images), max(1, round(math.sqrt(len(images) * h / w))))
     rows = math.ceil(len(images) / columns)
@@ -94,13 +89,13 @@ def write_sheet(
     return columns, rows
 
 
-def _seen(images: list[Picture]) -> tuple[int, int, int, int]:
-    """(left, top, right, bottom) of what is visible in any of the images; all where nothing is."""
+def _visible_box(images: list[Picture]) -> tuple[int, int, int, int]:
+    """(left, top, right, bottom) of the pixels visible in any of the images; the whole frame if none is."""
     height, width = images[0].shape[:2]
-    seen = np.zeros((height, width), dtype=bool)
+    visible = np.zeros((height, width), dtype=bool)
     for image in images:
-        seen |= image[..., 3] > 0
-    rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+        visible |= image[..., 3] > 0
+    rows, columns = np.flatnonzero(visible.any(axis=1)), np.flatnonzero(visible.any(axis=0))
     if not len(rows):
         return 0, 0, width, height
     return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1

@@ -1,6 +1,13 @@
-"""Videos as files: MP4 and WebM, by FFmpeg inside the package av."""
+"""Writes videos: MP4 and WebM, with FFmpeg inside the package av.
+
+Both writers take frames (h, w, 4) uint8, straight alpha, all of one size, which are read once, in order; only
+the compressed video is held in memory. Frames of odd size get one more column or row. fps: frames per second;
+write: writes the encoded file. They return a few words on the result, and raise InputError for bad frames, if
+the file cannot be written, or if av is not installed.
+"""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from fractions import Fraction
 from io import BytesIO
 from itertools import chain
@@ -11,42 +18,42 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from ...errors import InputError
-from ..atomic import Write, write_atomic
-from ..images import Picture, check_picture
+from ..atomic import Write
+from ..images import Picture
+from .frames import checked_frames
 
-# By ending: container, codec, pixel format, options. Quality is high, for flat areas and sharp rims.
-_KINDS: dict[str, tuple[str, str, str, dict[str, str]]] = {
-    ".mp4": ("mp4", "libx264", "yuv420p", {"crf": "16", "preset": "medium"}),
-    ".webm": ("webm", "libvpx-vp9", "yuva420p", {"crf": "18", "b": "0", "deadline": "good", "cpu-used": "4"}),
-}
-VIDEO_SUFFIXES = tuple(_KINDS)
-_PAPER = 255  # grey value behind what is transparent where the format has no transparency
+
+@dataclass(frozen=True)
+class _Codec:
+    """How FFmpeg encodes a kind of video."""
+
+    container: str
+    codec: str
+    pixel_format: str
+    options: dict[str, str]
+    has_transparency: bool
+
+
+# Quality is high, for flat areas and sharp edges.
+_MP4 = _Codec("mp4", "libx264", "yuv420p", {"crf": "16", "preset": "medium"}, False)
+_VP9_OPTIONS = {"crf": "18", "b": "0", "deadline": "good", "cpu-used": "4"}
+_WEBM = _Codec("webm", "libvpx-vp9", "yuva420p", _VP9_OPTIONS, True)
+_WHITE = 255  # behind transparent areas if the format has no transparency
 _BT709 = 1
 
 
-def write_video(path: str | Path, frames: Iterable[Picture], fps: float, write: Write = write_atomic) -> None:
-    """Write frames, each (h, w, 4) uint8, straight alpha, all of one size, to a .mp4 or .webm file.
+def write_mp4(path: Path, frames: Iterable[Picture], fps: float, _: int, write: Write) -> str:
+    """Write an MP4 (H.264), in which transparent areas are white."""
+    return _write(path, frames, fps, write, _MP4)
 
-    WebM (VP9) keeps transparency; in MP4 (H.264) transparent areas become white. Frames get one more column
-    or row where their size is odd. Read once, in order; only the compressed video is held in memory.
-    write: does it when all is encoded.
-    Raises InputError on bad frames or names, where the file cannot be written, or where av is not installed.
-    """
-    suffix = Path(path).suffix.lower()
-    if suffix not in _KINDS:
-        raise InputError(
-            f"{path}: expected a name that ends in {' or '.join(_KINDS)}, got {suffix or 'none'}"
-        )
-    av = require_av()
-    try:
-        data = _encode(av, suffix, frames, fps)
-    except (av.error.FFmpegError, OSError) as error:
-        raise InputError(f"cannot write {path}: the encoder says {str(error)!r}") from error
-    write(path, data)
+
+def write_webm(path: Path, frames: Iterable[Picture], fps: float, _: int, write: Write) -> str:
+    """Write a WebM (VP9), which keeps transparency."""
+    return _write(path, frames, fps, write, _WEBM)
 
 
 def require_av() -> Any:
-    """The package av. Raises InputError where it is not installed."""
+    """The package av. Raises InputError if it is not installed."""
     try:
         import av
     except ImportError as error:
@@ -56,48 +63,49 @@ def require_av() -> Any:
     return av
 
 
-def _encode(av: Any, suffix: str, frames: Iterable[Picture], fps: float) -> bytes:
-    container_name, codec, pixel_format, options = _KINDS[suffix]
-    every = iter(frames)
-    first = next(every, None)
-    if first is None:
-        raise InputError("frames: expected at least one frame, got none")
-    check_picture(first, "frame 0")
+def _write(path: Path, frames: Iterable[Picture], fps: float, write: Write, codec: _Codec) -> str:
+    av = require_av()
+    try:
+        data = _encode(av, codec, frames, fps)
+    except (av.error.FFmpegError, OSError) as error:
+        raise InputError(f"cannot write {path}: the encoder says {str(error)!r}") from error
+    write(path, data)
+    return f"at {fps:g} frames per second"
+
+
+def _encode(av: Any, codec: _Codec, frames: Iterable[Picture], fps: float) -> bytes:
+    images = checked_frames(frames)
+    first = next(images)
     buffer = BytesIO()
-    with av.open(buffer, "w", format=container_name) as container:
+    with av.open(buffer, "w", format=codec.container) as container:
         rate = Fraction(fps).limit_denominator(1001)
-        stream = container.add_stream(codec, rate=rate, options=options)
+        stream = container.add_stream(codec.codec, rate=rate, options=codec.options)
         height, width = first.shape[:2]
-        stream.width, stream.height, stream.pix_fmt = width + width % 2, height + height % 2, pixel_format
+        stream.width, stream.height = width + width % 2, height + height % 2
+        stream.pix_fmt = codec.pixel_format
         context = stream.codec_context
         context.colorspace = context.color_primaries = context.color_trc = _BT709
-        if suffix == ".webm":
+        if codec.has_transparency:
             stream.metadata["alpha_mode"] = "1"
-        for number, image in enumerate(chain([first], every)):
-            check_picture(image, f"frame {number}")
-            if image.shape != first.shape:
-                came = f"{image.shape[1]} x {image.shape[0]}"
-                raise InputError(
-                    f"frame {number}: expected {width} x {height} pixels as in frame 0, got {came}"
-                )
-            frame = av.VideoFrame.from_ndarray(_prepared(image, suffix), format="rgba")
+        for number, image in enumerate(chain([first], images)):
+            frame = av.VideoFrame.from_ndarray(_prepared(image, codec.has_transparency), format="rgba")
             frame.pts = number
             frame.time_base = 1 / rate
-            frame = frame.reformat(format=pixel_format, dst_colorspace="ITU709")
+            frame = frame.reformat(format=codec.pixel_format, dst_colorspace="ITU709")
             container.mux(stream.encode(frame))
         container.mux(stream.encode())
     return buffer.getvalue()
 
 
-def _prepared(image: Picture, suffix: str) -> Picture:
-    """A frame of even size, without colours that would bleed into what is seen."""
+def _prepared(image: Picture, has_transparency: bool) -> Picture:
+    """A frame of even size, without invisible colors that would bleed into visible pixels."""
     image = np.pad(image, ((0, image.shape[0] % 2), (0, image.shape[1] % 2), (0, 0)))
-    if suffix == ".mp4":
+    if not has_transparency:
         alpha = image[..., 3:].astype(np.uint16)
-        image[..., :3] = (image[..., :3] * alpha + _PAPER * (255 - alpha) + 127) // 255
+        image[..., :3] = (image[..., :3] * alpha + _WHITE * (255 - alpha) + 127) // 255
         image[..., 3] = 255
     elif image[..., 3].any():
-        # compression mixes colours of neighbours, so what is invisible takes those of the nearest visible
+        # compression mixes the colors of neighbors, so invisible pixels take the color of the nearest visible
         nearest = distance_transform_edt(image[..., 3] == 0, return_distances=False, return_indices=True)
         image[..., :3] = image[..., :3][tuple(nearest)]
     return image

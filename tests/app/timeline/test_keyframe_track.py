@@ -146,7 +146,7 @@ def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
     def choose(hand):
         hand.mouse_move_to_pos(imgui.ImVec2(*place))
         hand.mouse_click(1)
-        hand.item_click("//$FOCUSED/Hold, then jump")
+        hand.item_click("//$FOCUSED/Hold")
 
     place = on_track(keyed, 0.0)
     keyed.do(choose)

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from akap_editor.editor.animation.motion import LONGEST_MOVE, Motion, frame_times, shorten_pauses
+from akap_editor.editor.animation.motion import LONGEST_MOVE, Motion, shorten_pauses
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import SetPins, SetPose
@@ -11,7 +11,6 @@ from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import Recording
 from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
-from akap_editor.errors import InputError
 
 END = (105.0, 40.0)
 
@@ -95,32 +94,6 @@ def test_pauses_are_shortened_and_nothing_else():
     short = shorten_pauses(Recording({}, events), 1.0)
     assert [event["t"] for event in short.events] == [0.0, 0.5, 1.5, 2.0, 3.0]
     assert events[-1]["t"] == 100.0
-
-
-def test_frame_times():
-    assert frame_times(1.0, 2.0, fps=4) == [1.0, 1.25, 1.5, 1.75, 2.0]
-    assert frame_times(1.0, 2.0, fps=4, speed=2) == [1.0, 1.5, 2.0]
-    assert frame_times(0.0, 0.0, fps=30) == [0.0]
-    eased = frame_times(0.0, 1.0, fps=10, ease="in-out")
-    assert eased[-1] == 1.0
-    assert len(eased) == 11
-    assert eased[1] < 0.05
-    assert (np.diff(eased) > 0).all()
-
-
-@pytest.mark.parametrize(
-    ("options", "name"),
-    [
-        ({"fps": 0}, "fps"),
-        ({"fps": float("nan")}, "fps"),
-        ({"fps": 30, "speed": 0}, "speed"),
-        ({"fps": 30, "ease": "bounce"}, "ease"),
-        ({"fps": 30, "end": -1.0}, "end"),
-    ],
-)
-def test_bad_frame_times_are_named(options, name):
-    with pytest.raises(InputError, match=f"^{name}: expected"):
-        frame_times(**{"start": 0.0, "end": 1.0, **options})
 
 
 def test_frames_are_drawn_in_the_order_that_depths_ask_for(drawing):

@@ -3,8 +3,9 @@ import pytest
 from PIL import Image
 
 from akap_editor.errors import InputError
-from akap_editor.io.animation import animated_images as animation
-from akap_editor.io.animation.animated_images import write_animation
+from akap_editor.io.animation import animated_images
+from akap_editor.io.animation.animated_images import frame_durations
+from akap_editor.io.animation.formats import write_animation
 from akap_editor.io.images import read_image
 
 
@@ -42,7 +43,7 @@ def assert_same_looks(came: np.ndarray, expected: np.ndarray) -> None:
     assert (came[visible] == expected[visible]).all()
 
 
-@pytest.mark.parametrize("suffix", [".webp", ".WebP", ".png", ".apng", ".gif"])
+@pytest.mark.parametrize("suffix", [".webp", ".WebP", ".apng", ".APNG", ".gif"])
 def test_animation_shows_the_frames(tmp_path, suffix):
     frames = [disc(step) for step in range(6)]
     write_animation(tmp_path / f"a{suffix}", iter(frames), fps=25)
@@ -64,7 +65,7 @@ def test_frames_may_share_one_array(tmp_path):
         assert_same_looks(came, disc(step))
 
 
-@pytest.mark.parametrize("suffix", [".webp", ".png", ".gif"])
+@pytest.mark.parametrize("suffix", [".webp", ".apng", ".gif"])
 def test_one_frame_is_a_picture(tmp_path, suffix):
     write_animation(tmp_path / f"a{suffix}", [disc(0)], fps=25)
     assert_same_looks(
@@ -73,10 +74,10 @@ def test_one_frame_is_a_picture(tmp_path, suffix):
 
 
 def test_frame_rates():
-    assert animation._durations(4, 60, unit=1) == [17, 16, 17, 17]
-    assert animation._durations(6, 30, unit=10) == [30, 40, 30, 30, 40, 30]
+    assert frame_durations(4, 60, unit=1) == [17, 16, 17, 17]
+    assert frame_durations(6, 30, unit=10) == [30, 40, 30, 30, 40, 30]
     for fps in (0.1, 7, 23.976, 29.97, 47, 50):
-        durations = animation._durations(300, fps, unit=10)
+        durations = frame_durations(300, fps, unit=10)
         assert min(durations) >= 20
         assert abs(sum(durations) - 300_000 / fps) <= 5
 
@@ -124,7 +125,7 @@ def test_gif_of_nothing_is_transparent(tmp_path):
 
 
 def test_still_frames_keep_their_time(tmp_path):
-    for suffix in (".gif", ".webp", ".png"):
+    for suffix in (".gif", ".webp", ".apng"):
         write_animation(tmp_path / f"a{suffix}", [disc(0), disc(0), disc(3)], fps=10)
         durations = [duration for _, duration in played(tmp_path / f"a{suffix}")]
         assert durations in ([200, 100], [100, 100, 100])
@@ -133,19 +134,9 @@ def test_still_frames_keep_their_time(tmp_path):
 @pytest.mark.parametrize(
     ("name", "frames", "fps", "message"),
     [
-        (
-            "a.avi",
-            [disc(0)],
-            10,
-            r"a\.avi: expected a name that ends in \.gif, .* or \.webm, got \.avi",
-        ),
-        ("a", [disc(0)], 10, "expected a name that ends in .*, got none"),
         ("a.gif", [], 10, "frames: expected at least one frame, got none"),
         ("a.gif", [disc(0), disc(0, 25)], 10, "frame 1: expected 24 x 24 pixels as in frame 0, got 25 x 25"),
         ("a.gif", [disc(0)[..., :3]], 10, r"frame 0: expected shape \(h, w, 4\) uint8, got \(24, 24, 3\)"),
-        ("a.gif", [disc(0)], 0, "fps: expected a number from 0.1 to 1000, got 0"),
-        ("a.gif", [disc(0)], float("nan"), "fps: expected a number from 0.1 to 1000, got nan"),
-        ("a.gif", [disc(0)], 1001, "fps: expected"),
         (
             "a.webp",
             [np.zeros((1, 16384, 4), np.uint8)],
@@ -162,7 +153,7 @@ def test_bad_animations_give_one_sentence(tmp_path, name, frames, fps, message):
 
 
 def test_animation_too_large_for_memory_is_refused_while_it_comes(tmp_path, monkeypatch):
-    monkeypatch.setattr(animation, "MAX_ANIMATION_PIXELS", 3 * 24 * 24)
+    monkeypatch.setattr(animated_images, "MAX_ANIMATION_PIXELS", 3 * 24 * 24)
     drawn = []
 
     def endless():
@@ -195,12 +186,7 @@ def test_still_for_longer_than_a_gif_can_say(tmp_path):
 @pytest.mark.parametrize(("plays", "gif"), [(0, 0), (1, None), (2, 1), (5, 4)])
 def test_how_often_it_is_shown(tmp_path, plays, gif):
     """A GIF counts how often it is shown again, the others how often it is shown."""
-    for suffix, count in ((".gif", gif), (".webp", plays), (".png", plays)):
+    for suffix, count in ((".gif", gif), (".webp", plays), (".apng", plays)):
         write_animation(tmp_path / f"a{suffix}", [disc(0), disc(5)], 10, plays)
         with Image.open(tmp_path / f"a{suffix}") as opened:
             assert opened.info.get("loop") == count
-
-
-def test_a_number_of_plays_out_of_range_is_refused(tmp_path):
-    with pytest.raises(InputError, match="plays: expected a number from 0 to 65535, got -1"):
-        write_animation(tmp_path / "a.gif", [disc(0)], 10, plays=-1)

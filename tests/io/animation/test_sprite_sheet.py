@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from akap_editor.errors import InputError
-from akap_editor.io.animation.frames import export_frames, export_kind
 from akap_editor.io.animation.sprite_sheet import MAX_SHEET_SIDE, write_frames, write_sheet
 from akap_editor.io.images import read_image
 
@@ -44,7 +43,7 @@ def test_a_sheet_of_nothing_is_a_sheet(tmp_path):
     ("frames", "message"),
     [
         ([], "at least one frame"),
-        ([dot(0), dot(0, 21)], "frame 1: expected the size of frame 0"),
+        ([dot(0), dot(0, 21)], "frame 1: expected 30 x 20 pixels as in frame 0, got 30 x 21"),
         ([dot(0)[..., :3]], "frame 0: expected shape"),
         ([np.full((1, MAX_SHEET_SIDE + 1, 4), 9, dtype=np.uint8)], "choose a smaller size or rate"),
     ],
@@ -68,28 +67,3 @@ def test_a_file_in_the_way_of_a_folder_is_told(tmp_path):
     (tmp_path / "frames").write_text("a file")
     with pytest.raises(InputError, match=r"cannot write .*frames"):
         write_frames(tmp_path / "frames", [dot(0)])
-
-
-@pytest.mark.parametrize(
-    ("name", "sheet", "kind"),
-    [
-        ("a.png", False, "picture"),
-        ("a.PNG", True, "sheet"),
-        ("a.gif", False, "animation"),
-        ("a.apng", False, "animation"),
-        ("a.mp4", False, "video"),
-        ("frames", False, "frames"),
-    ],
-)
-def test_the_name_decides(name, sheet, kind):
-    assert export_kind(name, sheet) == kind
-
-
-def test_a_sheet_is_a_png():
-    with pytest.raises(InputError, match=r"a sheet's name to end in \.png, got \.gif"):
-        export_kind("a.gif", sheet=True)
-
-
-def test_a_picture_is_the_last_frame(tmp_path):
-    assert export_frames(tmp_path / "a.png", iter([dot(0), dot(3)]), 10) == "30 x 20 pixels"
-    np.testing.assert_array_equal(read_image(tmp_path / "a.png"), dot(3))

@@ -1,0 +1,128 @@
+"""The table of animation formats, and the export of frames by it."""
+
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...errors import InputError
+from ..atomic import Write, write_atomic
+from ..images import Picture, join_with_or, write_png
+from .animated_images import write_apng, write_gif, write_webp
+from .sprite_sheet import write_frames, write_sheet
+from .video import require_av, write_mp4, write_webm
+
+MAX_PLAYS = 65535
+
+Writer = Callable[[Path, Iterable[Picture], float, int, Write], str]
+
+
+@dataclass(frozen=True)
+class AnimationFormat:
+    """A row of the table of formats.
+
+    label: name on the screen; suffix: ending of file names, "" for a folder; about: description for the user;
+    has_transparency: whether the background can be transparent; repeats: whether the file says how often it
+    plays; is_video: whether the package av is needed; is_sheet: whether all frames are in one picture;
+    is_still: whether only the last frame is written. writer: see `write_animation`.
+    """
+
+    label: str
+    suffix: str
+    about: str
+    writer: Writer = field(repr=False)
+    has_transparency: bool = True
+    repeats: bool = False
+    is_video: bool = False
+    is_sheet: bool = False
+    is_still: bool = False
+
+
+def _write_pictures(path: Path, frames: Iterable[Picture], *_: object) -> str:
+    return f"{write_frames(path, frames)} pictures"
+
+
+def _write_sheet(path: Path, frames: Iterable[Picture], fps: float, _: int, write: Write) -> str:
+    columns, rows = write_sheet(path, frames, fps, write)
+    return f"a sheet of {columns} x {rows} sprites, and its index {path.with_suffix('.json').name}"
+
+
+def _write_last(path: Path, frames: Iterable[Picture], *_: object) -> str:
+    last = deque(frames, maxlen=1)[0]
+    write_png(path, last)
+    return f"{last.shape[1]} x {last.shape[0]} pixels"
+
+
+ANIMATION_FORMATS = (
+    AnimationFormat(
+        "WebP", ".webp", "An animation for the web: all colors, soft edges, small.", write_webp, repeats=True
+    ),
+    AnimationFormat(
+        "GIF", ".gif", "An animation that plays everywhere: 255 colors, hard edges.", write_gif, repeats=True
+    ),
+    AnimationFormat(
+        "APNG", ".apng", "An animation: all colors, soft edges, large.", write_apng, repeats=True
+    ),
+    AnimationFormat(
+        "MP4",
+        ".mp4",
+        "A video (H.264) without transparency.",
+        write_mp4,
+        has_transparency=False,
+        is_video=True,
+    ),
+    AnimationFormat("WebM", ".webm", "A video (VP9) with transparency.", write_webm, is_video=True),
+    AnimationFormat("Pictures", "", "A folder with one PNG per frame.", _write_pictures),
+    AnimationFormat(
+        "Sprite sheet",
+        ".png",
+        "One PNG with all frames, and a JSON index, for games.",
+        _write_sheet,
+        is_sheet=True,
+    ),
+    AnimationFormat("Picture", ".png", "The last frame as a PNG.", _write_last, is_still=True),
+)
+
+
+def animation_format(path: str | Path, sheet: bool = False) -> AnimationFormat:
+    """The format for a file name's ending; for .png the last frame, or a sprite sheet if ``sheet``.
+
+    Raises InputError for an unknown ending, or if the package for videos is missing.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if sheet and suffix != ".png":
+        raise InputError(f"{path}: expected a sheet's name to end in .png, got {suffix or 'none'}")
+    if path.is_dir() and not sheet:
+        suffix = ""
+    for each in ANIMATION_FORMATS:
+        if each.suffix == suffix and each.is_sheet == sheet:
+            if each.is_video:
+                require_av()
+            return each
+    endings = join_with_or(sorted({each.suffix for each in ANIMATION_FORMATS if each.suffix}))
+    raise InputError(f"{path}: expected a name that ends in {endings}, got {suffix or 'none'}")
+
+
+def write_animation(
+    path: str | Path,
+    frames: Iterable[Picture],
+    fps: float,
+    plays: int = 0,
+    sheet: bool = False,
+    write: Write = write_atomic,
+) -> str:
+    """Write frames, (h, w, 4) uint8 each, straight alpha, all of one size; return a few words on the result.
+
+    The ending of ``path`` decides on the format, see `animation_format`. frames: read once, in order; plays:
+    how often the animation is shown, 0 for forever; formats that do not repeat ignore it; write: writes a
+    file when all of it is encoded. Raises InputError for bad frames or arguments, and if the file cannot be
+    written.
+    """
+    path = Path(path)
+    chosen = animation_format(path, sheet)
+    if not 0.1 <= fps <= 1000:
+        raise InputError(f"fps: expected a number from 0.1 to 1000, got {fps}")
+    if not 0 <= plays <= MAX_PLAYS:
+        raise InputError(f"plays: expected a number from 0 to {MAX_PLAYS}, got {plays}")
+    return chosen.writer(path, frames, fps, plays, write)
