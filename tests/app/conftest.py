@@ -10,20 +10,14 @@ from akap_editor.editor import gestures
 from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import Drawing, make_drawing
 from akap_editor.editor.editor import Editor
+from tests.support.pictures import figure_picture
 from tests.support.window_driver import Window, WindowDriver, render_unlocked
 
 
 @pytest.fixture(scope="session")
 def image() -> NDArray[np.uint8]:
-    """(160, 240, 4): a head with a long neck, soft at the rim; the corners are empty."""
-    y, x = np.mgrid[0:160, 0:240] + 0.5
-    head = 1 - np.hypot((x - 70) / 50, (y - 80) / 60)
-    neck = np.minimum(28 - abs(y - 80), np.minimum(x - 60, 224 - x)) / 30
-    alpha = np.clip(30 * np.maximum(head, neck), 0, 1)
-    rgba = np.zeros((160, 240, 4), dtype=np.uint8)
-    rgba[..., 3] = np.rint(255 * alpha)
-    rgba[alpha > 0, :3] = (90, 140, 200)
-    return rgba
+    """A head with a long neck and soft edges, (160, 240, 4)."""
+    return figure_picture(2, soft=True)
 
 
 @pytest.fixture(scope="session")

@@ -18,6 +18,7 @@ from akap_editor.editor.camera import ZOOM_STEP
 from akap_editor.editor.tools.keyboard_pointer import BIG_STEP
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
+from tests.support.cartoons import SHARED_DATA
 from tests.support.x11 import X11Client
 
 pytestmark = pytest.mark.window
@@ -67,8 +68,8 @@ def start(display, tmp_path):
 
 @pytest.fixture
 def picture():
-    """The gecko of the real cartoons; a bundled drawing where they are absent."""
-    gecko = Path(akap_editor.__file__).parents[2] / "shared" / "data" / "noto" / "gecko.png"
+    """The gecko of the real cartoons, or a bundled drawing if they are absent."""
+    gecko = SHARED_DATA / "noto" / "gecko.png"
     return gecko if gecko.is_file() else resource("assets", "drawings", "gingerbread.png")
 
 

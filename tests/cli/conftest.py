@@ -14,6 +14,7 @@ from akap_editor.io.akap.project import save
 from akap_editor.io.images import write_png
 from akap_editor.io.open_document import open_document
 from tests.support.command_line import Result
+from tests.support.pictures import bar_picture
 
 
 @pytest.fixture
@@ -37,13 +38,8 @@ def run(monkeypatch, capfd, tmp_path) -> Callable[..., Result]:
 
 @pytest.fixture
 def image() -> NDArray[np.uint8]:
-    """(60, 90, 4): an orange bar with soft edges."""
-    y, x = np.mgrid[0:60, 0:90] + 0.5
-    alpha = np.clip(np.minimum(20 - abs(y - 30), 36 - abs(x - 45)), 0, 1)
-    rgba = np.zeros((60, 90, 4), dtype=np.uint8)
-    rgba[..., 3] = np.rint(255 * alpha)
-    rgba[alpha > 0, :3] = (250, 130, 20)
-    return rgba
+    """An orange bar with soft edges, (60, 90, 4)."""
+    return bar_picture()
 
 
 @pytest.fixture

@@ -46,8 +46,8 @@ def arap() -> ModuleType:
 
 
 @pytest.fixture(scope="session")
-def cartoon(request: pytest.FixtureRequest):
-    """Meshes of cartoons by name and number of vertices: "cat" is a bundled one, "noto/cat" a shared one."""
+def cartoon_mesh(request: pytest.FixtureRequest):
+    """Makes meshes of cartoons by name: "cat" is a bundled one, "noto/cat" a real one."""
     meshes: dict[tuple[str, int], TriMesh] = {}
 
     def mesh_of(name: str, vertices: int = 800) -> TriMesh:

@@ -91,12 +91,12 @@ def beyond_isometry(mesh, pose):
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
 @pytest.mark.parametrize(("name", "pins"), [("bar", 3), ("elephant", 5), ("cat", 5), ("gingerbread", 5)])
-def test_one_event_comes_to_the_same_as_sixty(cartoon, name, pins, memory):
+def test_one_event_comes_to_the_same_as_sixty(cartoon_mesh, name, pins, memory):
     """A mouse that is asked seldom bends the drawing as one that is asked often.
 
     The bar is held in the middle and at one end: between more pins it would buckle, one way or the other.
     """
-    mesh = cartoon(name)
+    mesh = cartoon_mesh(name)
     found = []
     for events in (1, 60):
         drag = Drag(mesh, pins, memory=memory)
@@ -111,9 +111,9 @@ def test_one_event_comes_to_the_same_as_sixty(cartoon, name, pins, memory):
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_pins_that_hold_do_not_creep(cartoon, memory):
+def test_pins_that_hold_do_not_creep(cartoon_mesh, memory):
     """One pin of the gingerbread man is deep inside, where the second solve is blind to it."""
-    drag = Drag(cartoon("gingerbread", 600), memory=memory)
+    drag = Drag(cartoon_mesh("gingerbread", 600), memory=memory)
     worst = np.zeros(len(drag.points))
     for turn in np.linspace(0, 8 * np.pi, 1001)[1:]:
         drag.to(drag.rest[-1] + 150 * np.array([np.sin(turn), np.sin(2 * turn) / 2]))
@@ -123,10 +123,10 @@ def test_pins_that_hold_do_not_creep(cartoon, memory):
     assert worst[-1] < ARRIVED
 
 
-def test_without_corrections_the_inner_pin_would_creep(cartoon, monkeypatch):
+def test_without_corrections_the_inner_pin_would_creep(cartoon_mesh, monkeypatch):
     """What the law above is worth."""
     monkeypatch.setattr(akap, "_CORRECTIONS", 0)
-    drag = Drag(cartoon("gingerbread", 600))
+    drag = Drag(cartoon_mesh("gingerbread", 600))
     worst = 0.0
     for far in range(0, 150, 5):
         drag.to(drag.inward(far))
@@ -141,8 +141,8 @@ def test_without_corrections_the_inner_pin_would_creep(cartoon, monkeypatch):
     ("name", "direction"),
     [(name, "inward") for name in BUNDLED + SHARED] + [("bar", "aside"), ("raptor", "aside")],
 )
-def test_memory_comes_back_to_rest(cartoon, name, direction):
-    drag = Drag(cartoon(name), memory=1.0)
+def test_memory_comes_back_to_rest(cartoon_mesh, name, direction):
+    drag = Drag(cartoon_mesh(name), memory=1.0)
     there = np.linspace(0, 150, 61)
     for far in np.concatenate([there[1:], there[-2::-1]]):
         drag.to(getattr(drag, direction)(far))
@@ -152,8 +152,8 @@ def test_memory_comes_back_to_rest(cartoon, name, direction):
 
 @pytest.mark.parametrize(("degrees", "share"), [(40, 0.9), (80, 0.85)])
 @pytest.mark.parametrize("name", BUNDLED + SHARED)
-def test_memory_distorts_no_more_than_converged_arap(cartoon, arap, name, degrees, share):
-    drag = Drag(largest_part(cartoon(name)), memory=1.0)
+def test_memory_distorts_no_more_than_converged_arap(cartoon_mesh, arap, name, degrees, share):
+    drag = Drag(largest_part(cartoon_mesh(name)), memory=1.0)
     for t in np.linspace(0, 1, 61)[1:]:
         drag.to(drag.turned(degrees * t, 1 + (share - 1) * t))
     drag.settle()
@@ -165,10 +165,10 @@ def test_memory_distorts_no_more_than_converged_arap(cartoon, arap, name, degree
 
 
 @pytest.mark.parametrize("name", ["raptor", "elephant"])
-def test_pose_with_memory_does_not_depend_on_the_way(cartoon, name):
+def test_pose_with_memory_does_not_depend_on_the_way(cartoon_mesh, name):
     poses = []
     for frames in (12, 120):
-        drag = Drag(cartoon(name), memory=1.0)
+        drag = Drag(cartoon_mesh(name), memory=1.0)
         for t in np.linspace(0, 1, frames + 1)[1:]:
             drag.to(drag.turned(60 * t, 1.0))
         drag.settle()
@@ -200,8 +200,8 @@ def factorizations(monkeypatch):
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
 @pytest.mark.parametrize("name", ["gingerbread", "elephant"])
-def test_reuse_of_factorizations_is_not_seen(cartoon, factorizations, name, memory):
-    mesh, counts, ends = cartoon(name), [], []
+def test_reuse_of_factorizations_is_not_seen(cartoon_mesh, factorizations, name, memory):
+    mesh, counts, ends = cartoon_mesh(name), [], []
     exact = Drag(mesh, memory=memory, exact=True)
     for drag in (exact, Drag(mesh, memory=memory)):
         factorizations[0] = 0
@@ -215,9 +215,9 @@ def test_reuse_of_factorizations_is_not_seen(cartoon, factorizations, name, memo
 
 
 @pytest.mark.parametrize("name", ["gingerbread", "elephant"])
-def test_each_step_with_reuse_is_the_exact_one(cartoon, name):
+def test_each_step_with_reuse_is_the_exact_one(cartoon_mesh, name):
     """Without memory, whose descent depends on the preconditioner and is the same only where it ends."""
-    mesh = cartoon(name)
+    mesh = cartoon_mesh(name)
     drag, exact = Drag(mesh), Drag(mesh, exact=True)
     for t in np.linspace(0, 1, 101)[1:]:
         exact.pose = drag.pose

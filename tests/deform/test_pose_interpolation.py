@@ -1,7 +1,5 @@
 """In-betweens: arcs in place of chords, nothing shrinks, and the ends are exact."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -17,7 +15,6 @@ from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io.images import read_image
 
-SHARED = Path(__file__).resolve().parents[3] / "shared" / "data" / "noto"
 TIMES = np.linspace(0, 1, 17)
 
 
@@ -169,11 +166,9 @@ def test_bad_arguments_are_named(mesh, bad, message):
 
 
 @pytest.mark.parametrize("name", ["cat", "elephant", "t-rex", "gecko", "dancer"])
-def test_real_cartoons_are_distorted_no_more_than_at_the_worse_end(name):
+def test_real_cartoons_are_distorted_no_more_than_at_the_worse_end(shared_data, name):
     """Two random poses by hand; the distortion of areas on the way, against the larger end plus 1 %."""
-    if not SHARED.is_dir():
-        pytest.skip(f"the real cartoons are not at {SHARED}")
-    drawing = make_drawing(read_image(SHARED / f"{name}.png"), vertices=600, name=name)
+    drawing = make_drawing(read_image(shared_data / "noto" / f"{name}.png"), vertices=600, name=name)
     mesh = drawing.mesh
     session = Session(new_document(drawing))
     body = np.flatnonzero(mesh.component == np.bincount(mesh.component).argmax())

@@ -9,17 +9,13 @@ from numpy.typing import NDArray
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Drawing, make_drawing
 from tests.support.editor_driver import Driver
+from tests.support.pictures import figure_picture
 
 
 @pytest.fixture(scope="session")
 def image() -> NDArray[np.uint8]:
-    """A head with a long neck, (80, 120, 4); the corners are empty."""
-    y, x = np.mgrid[0:80, 0:120] + 0.5
-    head = ((x - 35) / 25) ** 2 + ((y - 40) / 30) ** 2 < 1
-    neck = (abs(y - 40) < 14) & (x > 30) & (x < 112)
-    rgba = np.zeros((80, 120, 4), dtype=np.uint8)
-    rgba[head | neck] = (90, 140, 200, 255)
-    return rgba
+    """A head with a long neck, (80, 120, 4)."""
+    return figure_picture()
 
 
 @pytest.fixture(scope="session")

@@ -11,8 +11,7 @@ from akap_editor.editor.document.drawing import Drawing
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.document.settings import Settings
 from akap_editor.geometry.mesh import TriMesh
-
-SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
+from tests.support.cartoons import cartoon_paths
 
 
 @pytest.fixture
@@ -49,13 +48,7 @@ def document(make_document, picture) -> Document:
     return make_document(picture)
 
 
-def _cartoons() -> list[Path]:
-    return sorted([*SHARED.glob("noto/*.png"), *SHARED.glob("gophers/*.png")])
-
-
-@pytest.fixture(params=_cartoons() or [None], ids=lambda path: path.stem if path else "absent")
-def cartoon(request) -> Path:
-    """A real cartoon, each in turn."""
-    if request.param is None:
-        pytest.skip(f"the real cartoons are not at {SHARED}")
+@pytest.fixture(params=cartoon_paths("noto/*.png", "gophers/*.png"))
+def cartoon_path(request) -> Path:
+    """The file of each real cartoon in turn."""
     return request.param

@@ -1,7 +1,6 @@
 """One OpenGL context for all tests of this folder, and small drawings."""
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import moderngl
 import numpy as np
@@ -13,13 +12,12 @@ from akap_editor.editor.document.drawing import Drawing
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.render.offscreen import OffscreenRenderer, standalone_context
 from akap_editor.render.renderer import Renderer
-
-CARTOONS = ("noto/cat.png", "noto/gecko.png", "noto/dancer.png")
+from tests.support.cartoons import cartoon_paths
 
 
 @pytest.fixture(scope="session")
 def session_context() -> Iterator[moderngl.Context]:
-    """Without OpenGL this fails, and so do the tests: they are not skipped."""
+    """Tests fail without OpenGL; they are not skipped."""
     context = standalone_context()
     yield context
     context.release()
@@ -49,7 +47,7 @@ def offscreen(ctx: moderngl.Context) -> Iterator[OffscreenRenderer]:
 
 @pytest.fixture
 def sheet() -> Callable[..., Drawing]:
-    """Makes a drawing whose mesh is a grid of ``cells`` by ``cells`` squares over the whole picture."""
+    """Makes a drawing whose mesh is a grid of ``cells`` × ``cells`` squares over the whole picture."""
 
     def make(image: NDArray[np.uint8], cells: int = 4) -> Drawing:
         height, width = image.shape[:2]
@@ -75,7 +73,7 @@ def plain() -> Callable[..., NDArray[np.uint8]]:
 
 @pytest.fixture
 def noise() -> NDArray[np.uint8]:
-    """(48, 64, 4): every pixel another color and alpha, a fifth of them opaque, a fifth transparent."""
+    """(48, 64, 4): random colors and alpha; a fifth of the pixels is opaque, a fifth transparent."""
     rng = np.random.default_rng(7)
     image = rng.integers(0, 256, (48, 64, 4), dtype=np.uint8)
     kind = rng.integers(0, 5, image.shape[:2])
@@ -86,7 +84,7 @@ def noise() -> NDArray[np.uint8]:
 
 @pytest.fixture
 def disc() -> NDArray[np.uint8]:
-    """(64, 64, 4): an orange disc with a soft rim, transparent black around it."""
+    """(64, 64, 4): an orange disc with a soft edge on transparent black."""
     y, x = np.mgrid[:64, :64] + 0.5
     alpha = np.clip(24.5 - np.hypot(x - 32, y - 32), 0, 1)
     image = np.zeros((64, 64, 4), dtype=np.uint8)
@@ -95,6 +93,7 @@ def disc() -> NDArray[np.uint8]:
     return image
 
 
-@pytest.fixture(params=CARTOONS)
-def cartoon(request: pytest.FixtureRequest, shared_data: Path) -> NDArray[np.uint8]:
-    return np.asarray(Image.open(shared_data / request.param).convert("RGBA"))
+@pytest.fixture(params=cartoon_paths("noto/cat.png", "noto/gecko.png", "noto/dancer.png"))
+def cartoon_image(request: pytest.FixtureRequest) -> NDArray[np.uint8]:
+    """The picture of each of three real cartoons in turn."""
+    return np.asarray(Image.open(request.param).convert("RGBA"))

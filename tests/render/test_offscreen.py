@@ -46,8 +46,8 @@ def test_at_rest_a_bundled_drawing_comes_back(offscreen, path):
     assert_comes_back(offscreen, np.asarray(Image.open(path).convert("RGBA")))
 
 
-def test_at_rest_a_cartoon_comes_back(offscreen, cartoon):
-    assert_comes_back(offscreen, cartoon)
+def test_at_rest_a_cartoon_comes_back(offscreen, cartoon_image):
+    assert_comes_back(offscreen, cartoon_image)
 
 
 def assert_comes_back(offscreen, image):

@@ -222,8 +222,8 @@ def test_least_energy_is_that_of_libigl(mesh, shapes, rotations, kind):
 
 
 @pytest.mark.parametrize("name", ["elephant", "cat", "noto/dancer"])
-def test_bent_cartoon_keeps_its_shape(cartoon, shapes, name):
-    mesh = cartoon(name)
+def test_bent_cartoon_keeps_its_shape(cartoon_mesh, shapes, name):
+    mesh = cartoon_mesh(name)
     points = shapes.random_pins(mesh, 1, 4)
     size = mesh.length
     targets = mesh.evaluate(points, mesh.vertices)

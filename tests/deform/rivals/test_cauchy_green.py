@@ -190,8 +190,8 @@ def test_the_pose_so_far_does_not_matter(mesh, shapes):
 
 
 @pytest.mark.parametrize("name", ["elephant", "cat", "noto/gecko"])
-def test_pins_of_a_cartoon_arrive(cartoon, shapes, name):
-    mesh = cartoon(name)
+def test_pins_of_a_cartoon_arrive(cartoon_mesh, shapes, name):
+    mesh = cartoon_mesh(name)
     points = shapes.random_pins(mesh, 1, 5)
     size = mesh.length
     targets = mesh.evaluate(points, mesh.vertices)

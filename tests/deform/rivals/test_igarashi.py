@@ -122,9 +122,9 @@ def test_the_pose_so_far_does_not_matter(mesh, shapes):
 
 
 @pytest.mark.parametrize("name", ["elephant", "cat", "noto/dancer"])
-def test_cartoon_is_bent_nearly_as_by_iterations(cartoon, shapes, name):
+def test_cartoon_is_bent_nearly_as_by_iterations(cartoon_mesh, shapes, name):
     """Comparable if somewhat less desirable than iterative methods, says the paper of 2011."""
-    mesh = cartoon(name)
+    mesh = cartoon_mesh(name)
     points = shapes.random_pins(mesh, 1, 4)
     size = mesh.length
     targets = some_targets(mesh, points, 0.05 * size)

@@ -156,8 +156,8 @@ def test_hardly_separated_pins_and_vertices_stay_finite(shapes, transform, alpha
 
 
 @pytest.mark.parametrize("name", ["elephant", "cat", "noto/gecko"])
-def test_pins_of_a_cartoon_nearly_arrive(cartoon, shapes, name, transform):
-    mesh = cartoon(name)
+def test_pins_of_a_cartoon_nearly_arrive(cartoon_mesh, shapes, name, transform):
+    mesh = cartoon_mesh(name)
     points = shapes.random_pins(mesh, 1, 4)
     size = mesh.length
     targets = mesh.evaluate(points, mesh.vertices)

@@ -121,8 +121,8 @@ def test_saving_again_replaces_the_file(document, tmp_path):
     assert os.listdir(tmp_path) == ["a.akap"]
 
 
-def test_round_trip_of_cartoons(cartoon, tmp_path):
-    drawing = make_drawing(read_image(cartoon), vertices=300, name=cartoon.stem)
+def test_round_trip_of_cartoons(cartoon_path, tmp_path):
+    drawing = make_drawing(read_image(cartoon_path), vertices=300, name=cartoon_path.stem)
     rng = np.random.default_rng(0)
     faces = rng.integers(0, len(drawing.mesh.faces), 9)
     pins = tuple(

@@ -74,10 +74,10 @@ def test_a_drawing_that_is_neither_inside_nor_bundled_is_told(session, name):
         recorded_drawing(session.recording)
 
 
-def test_every_cartoon_travels_inside_its_recording(cartoon, tmp_path):
-    if cartoon.parent.name == "gophers":
+def test_every_cartoon_travels_inside_its_recording(cartoon_path, tmp_path):
+    if cartoon_path.parent.name == "gophers":
         pytest.skip("takes seconds to mesh, and is no other case")
-    session = Session(open_document(cartoon))
+    session = Session(open_document(cartoon_path))
     write_recording(session.recording, tmp_path / "a.akaprec", session.drawing)
     drawing = recorded_drawing(read_recording(tmp_path / "a.akaprec"))
     assert drawing_header(drawing) == drawing_header(session.drawing)
