@@ -5,12 +5,16 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from graphlib import TopologicalSorter
 from pathlib import Path
 
+import grimp
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "akap_editor"
+
+# -- imports -------------------------------------------------------------------------------------------------
 
 OPENGL = frozenset({"glfw", "imgui_bundle", "moderngl"})
 
@@ -100,6 +104,15 @@ def test_forbidden_import_breaks_the_contract(
     assert "Contracts: 0 kept, 1 broken." in process.stdout
 
 
+def test_no_circle_of_imports() -> None:
+    """Modules can be sorted so that each imports only earlier ones; imports for type checking count."""
+    graph = grimp.build_graph("akap_editor", cache_dir=None)
+    imports = {module: graph.find_modules_directly_imported_by(module) for module in graph.modules}
+    TopologicalSorter(imports).prepare()
+
+
+# -- OpenGL --------------------------------------------------------------------------------------------------
+
 # Run with module names as arguments: blocks OpenGL and windows, then imports the modules one by one.
 LOADER = f"""
 import importlib, sys, traceback
@@ -141,6 +154,9 @@ def test_loader_does_block_opengl(module: str) -> None:
     process = load_without_opengl([module])
     assert process.returncode == 1
     assert f"{module} is blocked" in process.stderr
+
+
+# -- wheels --------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
