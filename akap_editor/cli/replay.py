@@ -126,16 +126,15 @@ def replay_recording(
     with error_context(path), click.progressbar(source.play(times), len(times), "Bending") as bar:
         frames = list(bar)
     is_loop = chosen.repeats and plays != 1 and loops_seamlessly(frames[0], frames[-1])
-    frames = playing_order(frames, ping_pong, is_loop)
+    end_frame, frames = frames[-1], playing_order(frames, ping_pong, is_loop)
     make_folder_of(output)
     with OffscreenRenderer() as renderer:
         pictures = paint_frames(frames, renderer, size, background_color)
         with click.progressbar(pictures, len(frames), "Drawing") as bar:
             written = write_animation(output, bar, fps, plays, sheet)
         if pose is not None:
-            last_frame = frames[-1]
             picture = renderer.render(
-                last_frame.drawing, last_frame.pose, background=background_color, order=last_frame.order
+                end_frame.drawing, end_frame.pose, background=background_color, order=end_frame.order
             )
             write_picture(pose, picture)
             click.echo(f"Wrote {pose}, the last pose")

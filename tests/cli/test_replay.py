@@ -306,6 +306,24 @@ def test_what_plays_for_ever_and_ends_as_it_begins_shows_its_end_once(replay_bar
         assert f"{count} frames" in out
 
 
+@pytest.mark.parametrize(
+    ("keyframes", "options"),
+    [("posed", ["--ping-pong"]), ("round", []), ("round", ["--ping-pong"])],
+    ids=["ping-pong", "seamless loop", "ping-pong loop"],
+)
+def test_the_last_pose_is_the_end_of_the_motion(replay_bar, posed, tmp_path, keyframes, options):
+    document = open_document(tmp_path / "posed.akap")
+    first, last = document.state.animation.keyframes
+    keys = first, last, Keyframe(1.0, first.positions)
+    save(document.with_state(replace(document.state, animation=Animation(keys))), tmp_path / "round.akap")
+    options = ("--fps", 10, "--size", 60, *options)
+    assert replay_bar("-o", "out.gif", "--pose", "pose.png", *options, recording=f"{keyframes}.akap")[0] == 0
+    end = posed.drawing.mesh.vertices if keyframes == "round" else posed.state.positions
+    with OffscreenRenderer() as renderer:
+        expected = renderer.render(posed.drawing, end)
+    np.testing.assert_array_equal(read_image(tmp_path / "pose.png"), expected)
+
+
 def test_the_last_frame_of_keyframes_is_the_last_pose(replay_bar, posed, tmp_path):
     assert replay_bar("-o", "out.png", "--pose", "pose.png", "--size", 8000, recording="posed.akap")[0] == 0
     with OffscreenRenderer() as renderer:
