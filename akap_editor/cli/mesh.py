@@ -15,7 +15,7 @@ from ..editor.document.drawing import Meshing, apply_mask
 from ..errors import InputError
 from ..geometry.validation import as_number
 from ..io.images import has_transparency, read_image, read_mask
-from ..io.mesh_files.reader import write_obj
+from ..io.mesh_files.obj_off import write_obj
 from ..io.open_document import PICTURE_SUFFIXES
 from ..meshing.picture_mesh import mesh_picture
 from ..meshing.quality import mesh_quality

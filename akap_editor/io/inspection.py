@@ -15,7 +15,7 @@ from .akap.project import decode_document
 from .akap.state_records import read_pins
 from .atomic import read_file
 from .images import decode_image, has_transparency
-from .mesh_files.inspect import count_parts, decode_mesh, mesh_problems
+from .mesh_files.soundness import count_parts, decode_mesh, mesh_defects
 
 Facts = dict[str, Any]
 
@@ -158,7 +158,7 @@ def _inspect_mesh(data: bytes) -> tuple[Facts, list[str]]:
         "low": mesh.vertices.min(axis=0).tolist(),
         "high": mesh.vertices.max(axis=0).tolist(),
     }
-    return facts, mesh_problems(mesh)
+    return facts, mesh_defects(mesh)
 
 
 _INSPECTORS: dict[str, Callable[[bytes], tuple[Facts, list[str]]]] = {

@@ -9,11 +9,12 @@ from ..errors import InputError, error_context
 from .akap.project import load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
 from .images import read_image, read_mask
-from .mesh_files import reader as mesh_files
+from .mesh_files.mesh_drawing import read_mesh
+from .mesh_files.obj_off import PARSERS
 
 PROJECT_SUFFIX = ".akap"
 PICTURE_SUFFIXES = (".png", ".webp", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff")
-MESH_SUFFIXES = tuple(mesh_files.READERS)
+MESH_SUFFIXES = tuple(PARSERS)
 
 
 def open_document(path: str | Path, mask: str | Path | None = None) -> Document:
@@ -33,7 +34,7 @@ def open_document(path: str | Path, mask: str | Path | None = None) -> Document:
     if suffix == RECORDING_SUFFIX:
         return _end_of(path)
     if suffix in MESH_SUFFIXES:
-        return new_document(mesh_files.read_mesh(path))
+        return new_document(read_mesh(path))
     image = read_image(path)
     shown = read_mask(mask) if mask is not None else None
     try:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from akap_editor.io.images import write_png
-from akap_editor.io.mesh_files.reader import read_mesh
+from akap_editor.io.mesh_files.mesh_drawing import read_mesh
 
 
 @pytest.fixture

@@ -1,1 +1,1 @@
-"""Meshes of other programs: OBJ, OFF, glTF and JSON."""
+"""Meshes of other programs: OBJ and OFF are opened and written; these, glTF and JSON are inspected."""

@@ -7,7 +7,7 @@ from PIL import Image
 from akap_editor.app import files
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing, make_drawing
-from akap_editor.io.mesh_files.reader import read_mesh
+from akap_editor.io.mesh_files.mesh_drawing import read_mesh
 from tests.support.window_driver import WindowDriver
 
 

@@ -1,4 +1,4 @@
-"""Meshes in files of all kinds that are written here or opened, to tell whether they are sound."""
+"""Reads meshes of all kinds that the program opens or exports, and finds their defects."""
 
 import json
 import struct
@@ -15,43 +15,46 @@ from scipy.sparse.csgraph import connected_components
 
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints, as_indices, as_points
-from .reader import READERS
+from .obj_off import PARSERS
 
 _COMPONENTS = {5121: "<u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
-# What malformed JSON raises where it is used.
-_MALFORMED = (AttributeError, IndexError, KeyError, TypeError, ValueError, struct.error)
+# Raised by code that uses a malformed JSON record.
+_MALFORMED_ERRORS = (AttributeError, IndexError, KeyError, TypeError, ValueError, struct.error)
 
 
 @dataclass(frozen=True, eq=False)
-class MeshData:
-    """kind: of the file; vertices: (n, 2) or (n, 3) float64; faces: (m, 3), indices of vertices."""
+class TriangleSoup:
+    """Triangles as in a file of some kind, perhaps with defects.
+
+    kind: of the file; vertices: (n, 2) or (n, 3) float64; faces: (m, 3), indices of vertices.
+    """
 
     kind: str
     vertices: Floats
     faces: Ints
 
 
-def decode_mesh(data: bytes) -> MeshData:
-    """The mesh in the bytes of an OBJ, OFF or .glb file, or of a JSON export, for Spine or of mesh and pins.
+def decode_mesh(data: bytes) -> TriangleSoup:
+    """The mesh in the bytes of an OBJ, OFF or .glb file, or of a JSON export (Spine, or mesh and pins).
 
-    Several meshes of one file become one. Raises InputError, and nothing else.
+    Several meshes of one file are joined. Raises InputError, and nothing else.
     """
     kind, read = _reader(data)
     try:
         vertices, faces = read(data)
     except InputError:
         raise
-    except (*_MALFORMED, RecursionError) as error:
+    except (*_MALFORMED_ERRORS, RecursionError) as error:
         raise InputError(f"expected a whole {kind} file, got a damaged one ({error})") from error
     if np.ndim(vertices) != 2:
         raise InputError(f"expected vertices in the {kind} file, got none")
     points = as_points(vertices, "vertices", columns=np.shape(vertices)[1])
-    return MeshData(kind, points, as_indices(faces, "faces", 3, len(points)))
+    return TriangleSoup(kind, points, as_indices(faces, "faces", 3, len(points)))
 
 
-def mesh_problems(mesh: MeshData) -> list[str]:
-    """What keeps a mesh from being one surface with a front and a back, in sentences; none if it is sound."""
+def mesh_defects(mesh: TriangleSoup) -> list[str]:
+    """The defects that keep a mesh from being an oriented surface, one phrase each; none if it is sound."""
     if not len(mesh.faces):
         return ["it has no faces"]
     corners = mesh.vertices[mesh.faces]
@@ -60,17 +63,17 @@ def mesh_problems(mesh: MeshData) -> list[str]:
     half_edges = mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2) @ np.array([len(mesh.vertices), 1])
     _, counts = np.unique(half_edges, return_counts=True)
     unused = len(mesh.vertices) - len(np.unique(mesh.faces))
-    found = (
+    defects = (
         (int((areas == 0).sum()), "without area", "face"),
         (int((counts > 1).sum()), "with two faces on one side", "edge"),
         (unused, "in no face", "vertex"),
     )
     plural = {"face": "faces", "edge": "edges", "vertex": "vertices"}
-    return [f"{n} {name if n == 1 else plural[name]} {what}" for n, what, name in found if n]
+    return [f"{n} {name if n == 1 else plural[name]} {what}" for n, what, name in defects if n]
 
 
-def count_parts(mesh: MeshData) -> int:
-    """The number of connected parts."""
+def count_parts(mesh: TriangleSoup) -> int:
+    """The number of connected parts that have faces."""
     n = len(mesh.vertices)
     i, j = mesh.faces[:, [0, 1, 1, 2]].reshape(-1, 2).T
     graph = coo_array((np.ones(len(i)), (i, j)), shape=(n, n))
@@ -79,6 +82,7 @@ def count_parts(mesh: MeshData) -> int:
 
 
 def _reader(data: bytes) -> tuple[str, Callable[[bytes], tuple[Any, Any]]]:
+    """The kind of a file, by its first bytes, and the function that reads its vertices and faces."""
     if data[:4] == b"glTF":
         return "glTF", _read_glb
     if data.lstrip()[:1] == b"{":
@@ -88,9 +92,9 @@ def _reader(data: bytes) -> tuple[str, Callable[[bytes], tuple[Any, Any]]]:
 
 
 def _read_polygons(suffix: str, data: bytes) -> tuple[Any, Any]:
-    content = READERS[suffix](data.decode("utf-8", "replace"))
-    fans = [[loop[0], a, b] for loop in content.faces for a, b in pairwise(loop[1:])]
-    return content.vertices, fans
+    mesh = PARSERS[suffix](data.decode("utf-8", "replace"))
+    fans = [[face[0], a, b] for face in mesh.faces for a, b in pairwise(face[1:])]
+    return mesh.vertices, fans
 
 
 def _read_json(data: bytes) -> tuple[Any, Any]:
@@ -126,6 +130,7 @@ def _read_glb(data: bytes) -> tuple[Any, Any]:
 
 
 def _accessor(record: dict[str, Any], binary: bytes, number: int) -> NDArray[Any]:
+    """The array (count, columns) of a glTF accessor. Raises InputError, or one of `_MALFORMED_ERRORS`."""
     accessor = record["accessors"][number]
     view = record["bufferViews"][accessor["bufferView"]]
     columns = _COLUMNS[accessor["type"]]

@@ -11,7 +11,8 @@ from PIL import Image
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.errors import InputError
 from akap_editor.io.export.obj import encode_obj
-from akap_editor.io.mesh_files.reader import READERS, read_mesh
+from akap_editor.io.mesh_files.mesh_drawing import read_mesh
+from akap_editor.io.mesh_files.obj_off import PARSERS
 from akap_editor.io.open_document import open_document
 
 SQUARE = "v 0 0 0\nv 200 0 0\nv 200 100 0\nv 0 100 0\n"
@@ -182,7 +183,7 @@ def test_textures_that_do_not_fit(tmp_path):
     with pytest.raises(InputError, match="expected texture coordinates, as the material has a texture"):
         read_mesh(written(tmp_path, "a.obj", "mtllib a.mtl\n" + SQUARE + "f 1 2 3 4\n"))
     mirrored = TEXTURED.replace("vt 0", "vt _").replace("vt 1", "vt 0").replace("vt _", "vt 1")
-    with pytest.raises(InputError, match="the right way round, got a mirrored or turned one"):
+    with pytest.raises(InputError, match="the right way round, got a mirrored or rotated one"):
         read_mesh(written(tmp_path, "a.obj", mirrored.replace("v 200", "v 90").replace("vt 0 1", "vt -4 1")))
 
 
@@ -207,5 +208,5 @@ def test_any_text_gives_a_mesh_or_a_sentence(tmp_path_factory, text, is_off):
         assert np.isfinite(read_mesh(path).mesh.vertices).all()
 
 
-def test_readers_by_suffix():
-    assert set(READERS) == {".obj", ".off"}
+def test_parsers_by_suffix():
+    assert set(PARSERS) == {".obj", ".off"}
