@@ -7,8 +7,11 @@ from typing import Any
 import numpy as np
 
 from akap_editor.editor.document.document import Document, EditState
+from akap_editor.editor.document.drawing import Drawing
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import Button, KeyEvent, PointerEvent, ScrollEvent
+from akap_editor.editor.session.recording import Recording, parse_recording
+from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
 from akap_editor.editor.session.stepper import INLINE
 from akap_editor.geometry.mesh import signed_areas
@@ -29,16 +32,24 @@ class Ticks:
 
 
 def bits(state: EditState) -> tuple[Any, ...]:
-    """A state as a value to compare, equal only if equal to the last bit."""
-    pins = [
+    """A state as a value to compare; two are equal only if the states are equal to the last bit."""
+    pins = tuple(
         (pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes(), pin.depth, pin.angle)
         for pin in state.pins
-    ]
+    )
+    mesh = None if state.drawing is None else state.drawing.mesh
+    mesh_bits = None if mesh is None else (mesh.vertices.tobytes(), mesh.faces.tobytes())
     stiffness = None if state.stiffness is None else state.stiffness.tobytes()
-    poses = [(pose.name, pose.positions.tobytes()) for pose in state.poses]
-    keys = [(key.time, key.positions.tobytes(), key.ease) for key in state.animation.keyframes]
-    lists = tuple(poses), state.animation.ease, state.animation.loop, tuple(keys)
-    return state.positions.tobytes(), tuple(pins), state.settings, stiffness, lists
+    poses = tuple((pose.name, pose.positions.tobytes()) for pose in state.poses)
+    keyframes = tuple((key.time, key.positions.tobytes(), key.ease) for key in state.animation.keyframes)
+    animation = keyframes, state.animation.ease, state.animation.loop
+    return state.positions.tobytes(), pins, state.settings, mesh_bits, stiffness, poses, animation
+
+
+def replayed_state(recording: Recording, drawing: Drawing) -> EditState:
+    """The state after the last event of a recording, which is written as text, read and replayed."""
+    *_, last = replay(parse_recording(recording.to_text()), drawing)
+    return last.state
 
 
 class Driver:

@@ -1,213 +1,81 @@
-"""Keyframes: what edits make of them, their recording, another mesh, and the poses between them."""
-
-from dataclasses import replace
+"""Keyframes and the animations made of them: adding, moving, deleting, easing, and what lies between."""
 
 import numpy as np
 import pytest
 
-from akap_editor.deform.pose_interpolation import InterpolationCache
-from akap_editor.editor import gestures
-from akap_editor.editor.animation.keyframe_playback import KeyframePlayback, keyed_frame, pose_at, stretched
-from akap_editor.editor.document.document import new_document
-from akap_editor.editor.document.drawing import Meshing
-from akap_editor.editor.document.keyframes import Animation, Keyframe
-from akap_editor.editor.document.remesh import remesh_drawing
-from akap_editor.editor.document.rest_pose import with_pose_as_rest
-from akap_editor.editor.session.edits import Remesh, RenamePose, ReorderPoses
-from akap_editor.editor.session.pin_edits import add_pin
-from akap_editor.editor.session.recording import parse_recording
-from akap_editor.editor.session.replay import Replay, replay
-from akap_editor.editor.session.session import Session
+from akap_editor.editor.document.keyframes import Animation, Keyframe, as_keyframe_time
 from akap_editor.errors import InputError
-from tests.support.editor_driver import bits
 
-END = (105.0, 40.0)
+
+def pose(x):
+    """A pose of three vertices that can be told by its x."""
+    return np.full((3, 2), float(x))
 
 
 @pytest.fixture
-def player(pinned, clock):
-    """Keyframes of the rest pose at 0, and of a bent one at 1 second."""
-    player = KeyframePlayback(pinned.editor, clock)
-    player.watch()
-    player.put(0.0)
-    pinned.drag(END, (90.0, 60.0))
-    pinned.settle()
-    player.watch()
-    player.put(1.0)
-    player.at = 0.0
-    return player
+def animation():
+    """Keyframes at 0, 1 and 3 seconds; the second one holds."""
+    return Animation((Keyframe(0.0, pose(0)), Keyframe(1.0, pose(1), "hold"), Keyframe(3.0, pose(3))), "none")
 
 
-def recorded(session, drawing):
-    *_, last = replay(parse_recording(session.recording.to_text()), drawing)
-    return last.state
-
-
-def times(pinned):
-    return pinned.session.present.animation.times
-
-
-def test_the_pose_between_keyframes_is_the_eased_in_between(player, pinned, drawing):
-    start, end = pinned.session.present.animation.keyframes
-    ways = InterpolationCache()
-    for moment, share in ((0.0, 0.0), (0.25, 0.15625), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)):
-        expected = ways.pose(drawing.mesh, start.positions, end.positions, share)
-        np.testing.assert_array_equal(player.pose(moment), expected)
-    player.ease("none", general=True)
-    np.testing.assert_array_equal(
-        player.pose(0.25), ways.pose(drawing.mesh, start.positions, end.positions, 0.25)
-    )
-    player.chosen = frozenset({0.0})
-    player.ease("hold")
-    assert player.pose(0.999) is start.positions
-    assert player.pose(1.0) is end.positions
-    document = pinned.session.present_document
-    assert keyed_frame(document, ways, 1.0).pose is end.positions
-    assert pose_at(ways, drawing.mesh, document.state.animation, 0.5) is start.positions
-
-
-def test_every_edit_is_undone_redone_and_recorded(player, pinned, drawing):
-    session, states = pinned.session, []
-    player.chosen = frozenset({1.0})
-    for edit in (
-        lambda: player.put(0.5),
-        lambda: player.nudge(0.05),
-        player.duplicate,
-        lambda: player.ease("out"),
-        lambda: setattr(player, "loop", False),
-        lambda: player.ease("in", general=True),
-        lambda: player.set_time(1.0, 2.0),
-        player.remove,
-    ):
-        states.append(bits(session.present))
-        edit()
-        assert bits(session.present) != states[-1]
-    states.append(bits(session.present))
-    assert bits(recorded(session, drawing)) == states[-1]
-    for state in reversed(states[:-1]):
-        session.undo()
-        assert bits(session.present) == state
-    for state in states[1:]:
-        session.redo()
-        assert bits(session.present) == state
-
-
-def test_a_pose_that_is_seen_between_becomes_a_keyframe_and_is_recorded(player, pinned, drawing):
-    player.scrub(0.5)
-    seen = pinned.session.state.positions
-    player.put()
-    assert times(pinned) == (0.0, 0.5, 1.0)
-    np.testing.assert_array_equal(pinned.session.present.animation.keyframes[1].positions, seen)
-    assert bits(recorded(pinned.session, drawing)) == bits(pinned.session.present)
-
-
-def test_looking_changes_nothing_and_edits_of_keyframes_leave_the_pose(player, pinned):
-    session, before = pinned.session, bits(pinned.session.present)
-    events = len(session.recording.events)
-    for moment in (0.0, 0.3, 1.0, 5.0):
-        player.scrub(moment)
-        player.watch()
-        assert session.is_previewing
-    assert bits(session.present) == before
-    assert bits(session.present_document.state) == before
-    assert len(session.recording.events) == events
-    positions = session.present.positions
-    player.nudge(0.1)
-    player.watch()
-    assert session.is_previewing, "it goes on being looked at"
-    assert session.present.positions is positions
-    player.leave()
-    assert not session.is_previewing
-
-
-def test_undo_of_a_pose_shows_the_present(player, pinned):
-    player.scrub(0.5)
-    pinned.undo()  # the keyframe
-    player.watch()
-    assert player.following
-    pinned.undo()  # the drag
-    player.watch()
-    assert not player.following
-    assert not pinned.session.is_previewing
-
-
-def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(player, pinned):
-    player.put(0.5)
-    player.chosen = frozenset({1.0})
-    depth = pinned.session.history.depth
-    for to in (0.7, 0.5, 0.2):
-        player.drag({1.0: to})
-    assert times(pinned) == (0.0, 0.5, 1.0)
-    assert player.animation.times == (0.0, 0.2, 0.5)
-    player.drop()
-    assert times(pinned) == (0.0, 0.2, 0.5)
-    assert player.chosen == {0.2}
-    assert pinned.session.history.depth == depth + 1
-    player.drag({0.2: 0.5})
-    player.drop(keep=False)
-    assert times(pinned) == (0.0, 0.2, 0.5)
+def listed(animation):
+    """Time, x of the pose and easing of each keyframe."""
+    return [(key.time, key.positions[0, 0], key.ease) for key in animation.keyframes]
 
 
 @pytest.mark.parametrize(
-    ("dragged", "to", "expected"),
-    [(2.0, 4.0, (0, 2, 4)), (0.0, 1.0, (1, 1.5, 2)), (1.0, 2.0, (0, 2, 4)), (2.0, -9.0, (0, 0.025, 0.05))],
+    ("time", "start", "end", "share"),
+    [
+        (-1.0, 0, 0, 0.0),
+        (0.0, 0, 1, 0.0),
+        (0.25, 0, 1, 0.25),
+        (1.0, 1, 3, 0.0),
+        (2.9, 1, 3, 0.0),
+        (3.0, 3, 3, 0.0),
+        (9.0, 3, 3, 0.0),
+    ],
 )
-def test_stretching_keeps_the_other_end(dragged, to, expected):
-    assert tuple(stretched((0.0, 1.0, 2.0), dragged, to).values()) == pytest.approx(expected)
+def test_the_keyframes_around_a_time(animation, time, start, end, share):
+    before, after, eased_share = animation.keyframes_around(time)
+    assert (before.time, after.time) == (start, end)
+    assert eased_share == pytest.approx(share)
 
 
-def test_playing_goes_on_and_starts_over(player, pinned, clock):
-    player.play()
-    clock.now += 0.5
-    player.advance()
-    assert player.at == pytest.approx(0.5)
-    clock.now += 0.75
-    player.advance()
-    assert player.at == pytest.approx(0.25)
-    player.loop = False
-    clock.now += 9
-    player.advance()
-    assert player.at == 1.0
-    assert not player.playing
+def test_a_keyframe_replaces_one_at_its_time_and_keeps_its_easing(animation):
+    assert listed(animation.with_keyframe(Keyframe(2.0, pose(9)))) == [
+        (0.0, 0, None),
+        (1.0, 1, "hold"),
+        (2.0, 9, None),
+        (3.0, 3, None),
+    ]
+    assert listed(animation.with_keyframe(Keyframe(1.0, pose(9))))[1] == (1.0, 9, "hold")
+    assert listed(animation.with_keyframe(Keyframe(1.0, pose(9), "in")))[1] == (1.0, 9, "in")
+    assert len(animation.keyframes) == 3
 
 
-def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, drawing):
-    session = pinned.session
-    session.begin("Mesh")
-    session.apply(Remesh.to(remesh_drawing(drawing, replace(drawing.meshing or Meshing(), vertices=300))))
-    session.commit()
-    keys = session.state.animation.keyframes
-    assert [len(key.positions) for key in keys] == [len(session.drawing.mesh.vertices)] * 2
-    np.testing.assert_allclose(keys[0].positions, session.drawing.mesh.vertices, atol=1e-6)
-    assert bits(recorded(session, drawing)) == bits(session.state)
-    assert with_pose_as_rest(session.state, session.drawing).animation is session.state.animation
+def test_deleting_ignores_times_without_a_keyframe(animation):
+    assert animation.without_keyframes([1.0, 2.0]).times == (0.0, 3.0)
+    assert animation.without_keyframes(animation.times).duration == 0.0
 
 
-def test_a_document_with_poses_and_keyframes_is_recorded_from_its_start(player, pinned, drawing):
-    gestures.add_pose(pinned.editor, "Bent")
-    player.ease("out", general=True)
-    opened = Session(new_document(drawing).with_state(pinned.session.present))
-    assert bits(recorded(opened, drawing)) == bits(opened.state)
+def test_moving_replaces_keyframes_that_are_there_and_copying_leaves_the_originals(animation):
+    assert listed(animation.with_moved_keyframes({0.0: 3.0, 7.0: 8.0})) == [(1.0, 1, "hold"), (3.0, 0, None)]
+    assert animation.with_moved_keyframes({0.0: 1.0, 1.0: 0.0}).keyframes[0].ease == "hold", "they may swap"
+    copied = animation.with_moved_keyframes({1.0: 2.0}, copy=True)
+    assert listed(copied)[1:3] == [(1.0, 1, "hold"), (2.0, 1, "hold")]
 
 
-def test_poses_are_renamed_and_ordered_and_recorded(pinned, drawing):
-    session = pinned.session
-    for name in ("a", "b", "c"):
-        gestures.add_pose(pinned.editor, name)
-    pinned.editor.apply("Rename", RenamePose("b", "Wave"))
-    pinned.editor.apply("Order", ReorderPoses(["c", "a", "Wave"]))
-    assert [pose.name for pose in session.state.poses] == ["c", "a", "Wave"]
-    assert bits(recorded(session, drawing)) == bits(session.state)
-    before = bits(session.state)
-    for edit in (
-        RenamePose("a", "c"),
-        RenamePose("no", "d"),
-        RenamePose("a", " "),
-        ReorderPoses(["a", "c"]),
-    ):
-        with pytest.raises(InputError):
-            pinned.editor.apply("Bad", edit)
-        assert bits(session.state) == before
+def test_easing_of_keyframes_or_of_the_animation(animation):
+    assert [key.ease for key in animation.with_easing([0.0, 1.0], "in").keyframes] == ["in", "in", None]
+    general = animation.with_easing(None, "out")
+    assert (general.ease, listed(general)) == ("out", listed(animation))
+    with pytest.raises(InputError, match="ease: expected one of"):
+        animation.with_easing(None, None)
+
+
+def test_times_are_whole_milliseconds():
+    assert as_keyframe_time(0.12345) == 0.123
+    assert Keyframe(1 / 3, pose(0)).time == 0.333
 
 
 @pytest.mark.parametrize(
@@ -218,55 +86,10 @@ def test_poses_are_renamed_and_ordered_and_recorded(pinned, drawing):
         (lambda pose: Keyframe(0, pose, "up"), "ease: expected one of"),
         (lambda pose: Keyframe(0, pose[:, :1]), "keyframe: expected"),
         (lambda pose: Animation((Keyframe(1, pose), Keyframe(0, pose))), "times that grow"),
+        (lambda pose: Animation((Keyframe(1, pose), Keyframe(1, pose))), "times that grow"),
         (lambda pose: Animation(ease="up"), "ease: expected one of"),
     ],
 )
-def test_bad_keyframes_are_named(drawing, make, message):
+def test_bad_keyframes_are_refused(drawing, make, message):
     with pytest.raises(InputError, match=message):
         make(drawing.mesh.vertices)
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        '{"t": 99, "do": "key", "time": -1}',
-        '{"t": 99, "do": "key", "time": 0, "ease": "up"}',
-        '{"t": 99, "do": "key", "time": 0, "positions": [[0, 0]]}',
-        '{"t": 99, "do": "unkey", "times": 5}',
-        '{"t": 99, "do": "loop", "loop": 1}',
-        '{"t": 99, "do": "rekey", "from": [0], "to": []}',
-        '{"t": 99, "do": "ease", "times": null, "ease": null}',
-        '{"t": 99, "do": "rename", "name": "a", "to": "b"}',
-        '{"t": 99, "do": "order", "names": ["a"]}',
-    ],
-)
-def test_bad_events_are_told_with_their_line(pinned, drawing, line):
-    text = pinned.session.recording.to_text()
-    number = text.count("\n") + 1
-    with pytest.raises(InputError, match=f"recording line {number}: cannot be replayed"):
-        list(replay(parse_recording(text + line + "\n"), drawing))
-
-
-def test_a_replay_leaves_a_session_to_go_on_with(pinned, drawing):
-    pinned.drag(END, (90.0, 60.0))
-    pinned.drag((40.0, 40.0), (45.0, 45.0))
-    assert "Add pin and bend" in pinned.session.history.labels
-    text = pinned.session.recording.to_text()
-    whole = Replay(parse_recording(text), drawing)
-    assert sum(1 for _ in whole.events()) == text.count("\n") - 1
-    assert whole.end().history.labels == pinned.session.history.labels
-    recording = parse_recording(pinned.session.recording.to_text())
-    half = len(recording.events) // 2
-    again = Replay(replace(recording, events=recording.events[:half]), drawing)
-    for _ in again.events():
-        pass
-    session = again.end()
-    assert not session.history.is_open
-    assert not session.is_moving
-    assert list(session.recording.events)[:half] == recording.events[:half]
-    session.begin("Add pin")
-    assert add_pin(session, (20.0, 40.0)) is not None
-    session.commit()
-    stamps = [event["t"] for event in session.recording.events]
-    assert stamps == sorted(stamps)
-    assert bits(recorded(session, drawing)) == bits(session.state)

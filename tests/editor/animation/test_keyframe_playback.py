@@ -1,0 +1,180 @@
+"""Playing and editing keyframes: the poses between them, scrubbing, dragging, and what is recorded."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from akap_editor.deform.pose_interpolation import InterpolationCache
+from akap_editor.editor import gestures
+from akap_editor.editor.animation.keyframe_playback import KeyframePlayback, keyed_frame, pose_at, stretched
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.drawing import Meshing
+from akap_editor.editor.document.remesh import remesh_drawing
+from akap_editor.editor.document.rest_pose import with_pose_as_rest
+from akap_editor.editor.session.edits import Remesh
+from akap_editor.editor.session.session import Session
+from tests.support.editor_driver import bits, replayed_state
+
+END = (105.0, 40.0)
+
+
+@pytest.fixture
+def player(pinned, clock):
+    """Keyframes of the rest pose at 0, and of a bent one at 1 second."""
+    player = KeyframePlayback(pinned.editor, clock)
+    player.watch()
+    player.put(0.0)
+    pinned.drag(END, (90.0, 60.0))
+    pinned.settle()
+    player.watch()
+    player.put(1.0)
+    player.at = 0.0
+    return player
+
+
+def times(pinned):
+    return pinned.session.present.animation.times
+
+
+def test_the_pose_between_keyframes_is_the_eased_in_between(player, pinned, drawing):
+    start, end = pinned.session.present.animation.keyframes
+    ways = InterpolationCache()
+    for moment, share in ((0.0, 0.0), (0.25, 0.15625), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)):
+        expected = ways.pose(drawing.mesh, start.positions, end.positions, share)
+        np.testing.assert_array_equal(player.pose(moment), expected)
+    player.ease("none", general=True)
+    np.testing.assert_array_equal(
+        player.pose(0.25), ways.pose(drawing.mesh, start.positions, end.positions, 0.25)
+    )
+    player.chosen = frozenset({0.0})
+    player.ease("hold")
+    assert player.pose(0.999) is start.positions
+    assert player.pose(1.0) is end.positions
+    document = pinned.session.present_document
+    assert keyed_frame(document, ways, 1.0).pose is end.positions
+    assert pose_at(ways, drawing.mesh, document.state.animation, 0.5) is start.positions
+
+
+def test_every_edit_is_undone_redone_and_recorded(player, pinned, drawing):
+    session, states = pinned.session, []
+    player.chosen = frozenset({1.0})
+    for edit in (
+        lambda: player.put(0.5),
+        lambda: player.nudge(0.05),
+        player.duplicate,
+        lambda: player.ease("out"),
+        lambda: setattr(player, "loop", False),
+        lambda: player.ease("in", general=True),
+        lambda: player.set_time(1.0, 2.0),
+        player.remove,
+    ):
+        states.append(bits(session.present))
+        edit()
+        assert bits(session.present) != states[-1]
+    states.append(bits(session.present))
+    assert bits(replayed_state(session.recording, drawing)) == states[-1]
+    for state in reversed(states[:-1]):
+        session.undo()
+        assert bits(session.present) == state
+    for state in states[1:]:
+        session.redo()
+        assert bits(session.present) == state
+
+
+def test_a_pose_that_is_seen_between_becomes_a_keyframe_and_is_recorded(player, pinned, drawing):
+    player.scrub(0.5)
+    seen = pinned.session.state.positions
+    player.put()
+    assert times(pinned) == (0.0, 0.5, 1.0)
+    np.testing.assert_array_equal(pinned.session.present.animation.keyframes[1].positions, seen)
+    assert bits(replayed_state(pinned.session.recording, drawing)) == bits(pinned.session.present)
+
+
+def test_looking_changes_nothing_and_edits_of_keyframes_leave_the_pose(player, pinned):
+    session, before = pinned.session, bits(pinned.session.present)
+    events = len(session.recording.events)
+    for moment in (0.0, 0.3, 1.0, 5.0):
+        player.scrub(moment)
+        player.watch()
+        assert session.is_previewing
+    assert bits(session.present) == before
+    assert bits(session.present_document.state) == before
+    assert len(session.recording.events) == events
+    positions = session.present.positions
+    player.nudge(0.1)
+    player.watch()
+    assert session.is_previewing, "it goes on being looked at"
+    assert session.present.positions is positions
+    player.leave()
+    assert not session.is_previewing
+
+
+def test_undo_of_a_pose_shows_the_present(player, pinned):
+    player.scrub(0.5)
+    pinned.undo()  # the keyframe
+    player.watch()
+    assert player.following
+    pinned.undo()  # the drag
+    player.watch()
+    assert not player.following
+    assert not pinned.session.is_previewing
+
+
+def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(player, pinned):
+    player.put(0.5)
+    player.chosen = frozenset({1.0})
+    depth = pinned.session.history.depth
+    for to in (0.7, 0.5, 0.2):
+        player.drag({1.0: to})
+    assert times(pinned) == (0.0, 0.5, 1.0)
+    assert player.animation.times == (0.0, 0.2, 0.5)
+    player.drop()
+    assert times(pinned) == (0.0, 0.2, 0.5)
+    assert player.chosen == {0.2}
+    assert pinned.session.history.depth == depth + 1
+    player.drag({0.2: 0.5})
+    player.drop(keep=False)
+    assert times(pinned) == (0.0, 0.2, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("dragged", "to", "expected"),
+    [(2.0, 4.0, (0, 2, 4)), (0.0, 1.0, (1, 1.5, 2)), (1.0, 2.0, (0, 2, 4)), (2.0, -9.0, (0, 0.025, 0.05))],
+)
+def test_stretching_keeps_the_other_end(dragged, to, expected):
+    assert tuple(stretched((0.0, 1.0, 2.0), dragged, to).values()) == pytest.approx(expected)
+
+
+def test_playing_goes_on_and_starts_over(player, pinned, clock):
+    player.play()
+    clock.now += 0.5
+    player.advance()
+    assert player.at == pytest.approx(0.5)
+    clock.now += 0.75
+    player.advance()
+    assert player.at == pytest.approx(0.25)
+    player.loop = False
+    clock.now += 9
+    player.advance()
+    assert player.at == 1.0
+    assert not player.playing
+
+
+def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, drawing):
+    session = pinned.session
+    session.begin("Mesh")
+    session.apply(Remesh.to(remesh_drawing(drawing, replace(drawing.meshing or Meshing(), vertices=300))))
+    session.commit()
+    keys = session.state.animation.keyframes
+    assert [len(key.positions) for key in keys] == [len(session.drawing.mesh.vertices)] * 2
+    np.testing.assert_allclose(keys[0].positions, session.drawing.mesh.vertices, atol=1e-6)
+    assert bits(replayed_state(session.recording, drawing)) == bits(session.state)
+    assert with_pose_as_rest(session.state, session.drawing).animation is session.state.animation
+
+
+def test_a_document_with_poses_and_keyframes_is_recorded_from_its_start(player, pinned, drawing):
+    gestures.add_pose(pinned.editor, "Bent")
+    player.ease("out", general=True)
+    opened = Session(new_document(drawing).with_state(pinned.session.present))
+    assert bits(replayed_state(opened.recording, drawing)) == bits(opened.state)

@@ -1,0 +1,68 @@
+"""One example of each edit; a new edit in the table needs one here, and is then in all tests of edits."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from akap_editor.editor.document.drawing import Meshing
+from akap_editor.editor.document.pin import Pin
+from akap_editor.editor.document.settings import Settings
+from akap_editor.editor.session.edits import (
+    AddPose,
+    DeleteKeyframes,
+    DeletePose,
+    Edit,
+    MoveKeyframes,
+    PaintStiffness,
+    Remesh,
+    RenamePose,
+    ReorderPoses,
+    ResetPose,
+    SetAngles,
+    SetEasing,
+    SetKeyframe,
+    SetLoop,
+    SetPins,
+    SetPose,
+    SetRestPose,
+    SetSettings,
+    SetStiffness,
+    SetTargets,
+)
+from akap_editor.editor.session.session import Session
+
+
+def _pins(session: Session) -> Edit:
+    """The first pin in front of the others, and a new one."""
+    first = [replace(pin, depth=2) for pin in session.state.pins[:1]]
+    new_id = 1 + max((pin.id for pin in session.state.pins), default=0)
+    return SetPins((*first, Pin(new_id, 5, np.array([0.2, 0.3, 0.5]), np.array([60.0, 50.0]), angle=0.5)))
+
+
+def _first_pose(session: Session) -> str:
+    return next((pose.name for pose in session.state.poses), "no pose")
+
+
+# An edit for the current state of a session. It may be refused by InputError, for example without poses.
+EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
+    "pins": _pins,
+    "targets": lambda session: SetTargets({pin.id: (90.0, 65.0) for pin in session.state.pins[-1:]}),
+    "angles": lambda session: SetAngles({pin.id: 0.25 for pin in session.state.pins[:1]}),
+    "settings": lambda session: SetSettings(Settings.parse("akap:memory=0.5,no-dirichlet")),
+    "stiffness": lambda session: SetStiffness(np.linspace(1, 1000, len(session.drawing.mesh.faces))),
+    "paint": lambda session: PaintStiffness([(45.0, 40.0), (50.0, 41.0)], 12.0, 50.0),
+    "pose": lambda session: SetPose(session.state.positions + np.array([3.0, -2.0])),
+    "reset": lambda session: ResetPose(),
+    "bake": lambda session: SetRestPose(),
+    "mesh": lambda session: Remesh(replace(session.drawing.meshing or Meshing(), vertices=200)),
+    "keep": lambda session: AddPose("wave"),
+    "forget": lambda session: DeletePose(_first_pose(session)),
+    "rename": lambda session: RenamePose(_first_pose(session), "nod"),
+    "order": lambda session: ReorderPoses([pose.name for pose in reversed(session.state.poses)]),
+    "key": lambda session: SetKeyframe(0.5, ease="hold"),
+    "unkey": lambda session: DeleteKeyframes([1.0]),
+    "rekey": lambda session: MoveKeyframes({1.0: 2.0}, copy=True),
+    "ease": lambda session: SetEasing([1.0], "out"),
+    "loop": lambda session: SetLoop(not session.state.animation.loop),
+}
