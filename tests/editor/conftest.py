@@ -1,4 +1,4 @@
-"""A small picture, its drawing, and an editor to drive."""
+"""A small picture, its drawing, and drivers of an editor that shows it."""
 
 from collections.abc import Callable
 
@@ -30,7 +30,7 @@ def finer_drawing(image: NDArray[np.uint8]) -> Drawing:
 
 @pytest.fixture
 def new_driver(drawing: Drawing) -> Callable[[], Driver]:
-    """Makes drivers with the drawing at rest, without pins."""
+    """A function that makes drivers with the drawing in its rest pose, without pins."""
     return lambda: Driver(new_document(drawing))
 
 
@@ -41,8 +41,8 @@ def driver(new_driver: Callable[[], Driver]) -> Driver:
 
 @pytest.fixture
 def pinned(driver: Driver) -> Driver:
-    """Three pins, numbered 1 to 3: in the head, in the neck and at its end; none selected."""
-    for at in ((20.0, 40.0), (62.0, 40.0), (105.0, 40.0)):
-        driver.click(at)
+    """A driver with three pins, ids 1 to 3: in the head, in the neck and at its end; none selected."""
+    for place in ((20.0, 40.0), (62.0, 40.0), (105.0, 40.0)):
+        driver.click(place)
     driver.editor.select(())
     return driver

@@ -1,4 +1,4 @@
-"""Whatever a hand does, in any order: what must always hold does, and all of it can be undone."""
+"""Random sequences of events and edits: invariants hold, and all of it is undone, redone and replayed."""
 
 from concurrent.futures import ThreadPoolExecutor
 
@@ -10,9 +10,11 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_sta
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import KeyEvent, PointerEvent
-from akap_editor.editor.session.replay import replay
+from akap_editor.editor.session.edits import EDITS
 from akap_editor.editor.session.stepper import INLINE
-from tests.support.editor_driver import BESIDE, Driver, bits
+from akap_editor.errors import InputError
+from tests.support.edit_examples import EDIT_EXAMPLES
+from tests.support.editor_driver import BESIDE, Driver, bits, replayed_state
 
 HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
 
@@ -23,9 +25,11 @@ places = st.one_of(
 buttons = st.sampled_from(["left", "left", "left", "middle", "right"])
 
 
-def machine(drawing, worker):
-    class Editing(RuleBasedStateMachine):
-        """A hand that does anything; the driver checks after each event what must always hold."""
+def random_editing(drawing, worker):
+    """A state machine that edits a drawing in an editor with this executor for steps."""
+
+    class RandomEditing(RuleBasedStateMachine):
+        """Random events and edits; the driver checks its invariants after each one."""
 
         @initialize()
         def begin(self):
@@ -66,21 +70,21 @@ def machine(drawing, worker):
                 self.driver.check()
 
         @rule(at=places)
-        def cut(self, at):
+        def alt_click(self, at):
             for kind in ("press", "release"):
                 self.driver.handle(PointerEvent(kind, self.editor.camera.to_screen(at), alt=True))
 
         @rule(pin=st.integers(0, 5), to=places, shift=st.booleans())
-        def grab_a_pin(self, pin, to, shift):
+        def start_drag(self, pin, to, shift):
             self.driver.key("escape")
             if self.driver.ids:
                 self.driver.press(self.driver.where(self.driver.ids[pin % len(self.driver.ids)]), shift=shift)
                 self.driver.move(to)
                 self.driver.advance()
 
-        @rule(end=st.booleans())
-        def end_gesture(self, end):
-            if end:
+        @rule(complete=st.booleans())
+        def end_gesture(self, complete):
+            if complete:
                 self.driver.release(NECK)
             else:
                 self.driver.key("escape")
@@ -91,7 +95,7 @@ def machine(drawing, worker):
                 self.driver.advance()
 
         @rule(at=places, amount=st.integers(-3, 3))
-        def look_elsewhere(self, at, amount):
+        def zoom_and_pan(self, at, amount):
             self.driver.scroll(at, amount)
             self.driver.drag(at, NECK, steps=1, button="middle")
 
@@ -102,29 +106,35 @@ def machine(drawing, worker):
             else:
                 self.driver.redo()
 
-        @rule(everything=st.booleans())
-        def remove_selected(self, everything):
-            if everything:
+        @rule(all_pins=st.booleans())
+        def remove_selected(self, all_pins):
+            if all_pins:
                 self.editor.select_all()
             gestures.remove_selected_pins(self.editor)
             self.driver.check()
 
-        @rule(memory=st.sampled_from([0.0, 1.0, None]))
-        def change_memory_or_reset_pose(self, memory):
-            if memory is None:
-                gestures.reset_pose(self.editor)
-            else:
-                gestures.set_settings(
-                    self.editor, self.driver.state.settings.with_parameter("memory", memory)
-                )
+        @rule(memory=st.sampled_from([0.0, 1.0]))
+        def change_memory(self, memory):
+            settings = self.driver.state.settings.with_parameter("memory", memory)
+            gestures.set_settings(self.editor, settings)
             self.driver.check()
+
+        @rule(names=st.permutations(list(EDITS)), count=st.integers(1, 8))
+        def apply_edits(self, names, count):
+            self.driver.key("escape")
+            for name in names[:count]:
+                depth = self.driver.depth
+                try:
+                    self.editor.apply("Edit", EDIT_EXAMPLES[name](self.driver.session))
+                except InputError:
+                    assert self.driver.depth == depth
+                self.driver.check()
 
         def teardown(self):
             self.editor.cancel()
             if self.driver.session.has_pending_step:
                 self.driver.session.step()
-            *_, moment = replay(self.driver.session.recording, drawing)
-            assert bits(moment.state) == bits(self.driver.state)
+            assert bits(replayed_state(self.driver.session.recording, drawing)) == bits(self.driver.state)
             states = [bits(self.driver.state)]
             while self.driver.depth:
                 self.driver.undo()
@@ -134,11 +144,11 @@ def machine(drawing, worker):
                 self.driver.redo()
                 assert bits(self.driver.state) == state
 
-    return Editing
+    return RandomEditing
 
 
 @pytest.mark.parametrize("in_thread", [False, True], ids=["at once", "in a thread"])
 def test_whatever_is_done_can_be_undone_and_redone_and_replayed(drawing, in_thread):
     with ThreadPoolExecutor(1) as thread:
-        kind = machine(drawing, thread if in_thread else INLINE)
-        run_state_machine_as_test(kind, settings=settings(max_examples=20, stateful_step_count=30))
+        machine = random_editing(drawing, thread if in_thread else INLINE)
+        run_state_machine_as_test(machine, settings=settings(max_examples=20, stateful_step_count=30))

@@ -1,4 +1,4 @@
-"""Where dragged pins go, and that the others hold."""
+"""Dragging pins: where they arrive, and that the others hold."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def test_the_dragged_pin_arrives_and_the_others_hold(pinned):
         assert np.hypot(*np.subtract(pinned.where(pin), at)) < 0.25
 
 
-def test_all_selected_pins_follow_by_the_same_way(pinned):
+def test_all_selected_pins_move_by_the_same_offset(pinned):
     pinned.editor.select({2, 3})
     pinned.drag(END, (101.0, 52.0))
     pinned.settle()
@@ -40,18 +40,16 @@ def test_shift_drag_takes_what_was_selected_along(pinned):
 
 
 def test_a_pin_keeps_its_distance_from_the_pointer(pinned):
-    """Grabbed beside its center, a pin does not jump to the pointer, however often it is dragged."""
-    off = 0.7 * PICK_RADIUS / pinned.editor.camera.zoom
-    at = END
+    """A pin pressed off its center does not jump to the pointer, however often it is dragged."""
+    offset = 0.7 * PICK_RADIUS / pinned.editor.camera.zoom
     for _ in range(4):
-        grab = pinned.where(3)
-        pinned.drag((grab[0] + off, grab[1]), (grab[0] + off, grab[1] + 4.0))
+        x, y = pinned.where(3)
+        pinned.drag((x + offset, y), (x + offset, y + 4.0))
         pinned.settle()
-        at = at[0], at[1] + 4.0
-    assert np.hypot(*np.subtract(pinned.where(3), at)) < 0.25
+    assert np.hypot(*np.subtract(pinned.where(3), (END[0], END[1] + 16.0))) < 0.25
 
 
-def test_a_pin_grabbed_on_its_way_starts_from_where_it_is_seen(pinned):
+def test_a_pin_dragged_while_it_moves_starts_from_where_it_is(pinned):
     pinned.drag(END, (88.0, 66.0), steps=2)
     assert pinned.editor.moving
     x, y = pinned.where(3)
@@ -60,14 +58,14 @@ def test_a_pin_grabbed_on_its_way_starts_from_where_it_is_seen(pinned):
     np.testing.assert_allclose(pinned.state.pin(3).target, (x + 4.0, y + 1.0), rtol=0, atol=1e-9)
 
 
-def test_a_drag_back_to_where_it_began_asks_for_the_old_place(pinned):
+def test_a_drag_back_to_its_start_restores_the_target(pinned):
     pinned.press(END)
     pinned.move((80.0, 70.0))
     pinned.move(END)
     np.testing.assert_allclose(pinned.state.pin(3).target, END, rtol=0, atol=1e-9)
 
 
-def test_the_wheel_during_a_drag_does_not_lose_the_grip(pinned):
+def test_a_zoom_during_a_drag_keeps_the_pin_under_the_pointer(pinned):
     pinned.press(END)
     pinned.move((100.0, 50.0))
     pinned.scroll((100.0, 50.0), 3)
@@ -85,15 +83,15 @@ def test_a_huge_jump_stays_finite_and_unflipped(pinned):
     assert pinned.where(3) == pytest.approx(END)
 
 
-def test_pins_that_were_stopped_on_their_way_hold_while_another_is_dragged(pinned):
+def test_pins_stopped_before_their_targets_hold_while_another_is_dragged(pinned):
     first, second = pinned.ids[:2]
     x, y = pinned.where(first)
     pinned.drag((x, y), (x + 25, y - 20), steps=1)
     pinned.undo()
     pinned.redo()
-    pins_fixed_at_pose = pinned.where(first)
-    assert np.hypot(x + 25 - pins_fixed_at_pose[0], y - 20 - pins_fixed_at_pose[1]) > 1
+    stopped_at = pinned.where(first)
+    assert np.hypot(x + 25 - stopped_at[0], y - 20 - stopped_at[1]) > 1
     x, y = pinned.where(second)
     pinned.drag((x, y), (x + 4, y + 4))
     pinned.settle()
-    assert np.allclose(pinned.where(first), pins_fixed_at_pose, atol=0.25)
+    assert np.allclose(pinned.where(first), stopped_at, atol=0.25)
