@@ -110,7 +110,7 @@ class Animation:
     def map_poses(self, change: Callable[[Floats], Floats]) -> "Animation":
         """Replace each pose by ``change(pose)``; keyframes that share a pose share the new one."""
         old_poses = {id(keyframe.positions): keyframe.positions for keyframe in self.keyframes}
-        new_poses = {identity: change(pose) for identity, pose in old_poses.items()}
+        new_poses = {identity: as_pose(change(pose), "keyframe") for identity, pose in old_poses.items()}
         keyframes = (replace(each, positions=new_poses[id(each.positions)]) for each in self.keyframes)
         return replace(self, keyframes=tuple(keyframes))
 

@@ -73,6 +73,14 @@ def test_easing_of_keyframes_or_of_the_animation(animation):
         animation.with_easing(None, None)
 
 
+def test_keyframes_that_share_a_pose_share_the_changed_one():
+    shared = Keyframe(0.0, pose(0)).positions
+    animation = Animation((Keyframe(0.0, shared), Keyframe(1.0, shared), Keyframe(2.0, pose(2))))
+    first, second, third = animation.map_poses(lambda positions: positions + 5).keyframes
+    assert first.positions is second.positions
+    assert (first.positions[0, 0], third.positions[0, 0]) == (5.0, 7.0)
+
+
 def test_times_are_whole_milliseconds():
     assert as_keyframe_time(0.12345) == 0.123
     assert Keyframe(1 / 3, pose(0)).time == 0.333
