@@ -68,9 +68,9 @@ class Hand:
         self._editor.handle_event(PointerEvent("move", self._to_screen(at)))
         return True
 
-    def sleep(self, seconds: float) -> None:
-        """As the window sleeps: until then, or until the hand moves."""
-        time.sleep(max(min(seconds, (self._moves + 1) / RATE - self.passed), 0.0))
+    def until_next_move(self) -> float:
+        """Seconds until the hand moves again."""
+        return max((self._moves + 1) / RATE - self.passed, 0.0)
 
 
 def instrument(timer: FunctionTimer, window: Window) -> list[float]:
@@ -107,13 +107,14 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
             window.frame()
         steps = instrument(timer, window)
         hand = Hand(window, seconds)
-        window_module.glfw.wait_events_timeout = hand.sleep  # type: ignore[assignment]
+        wait_for_wake = window.wait_for_events
+        window.wait_for_events = lambda seconds: wait_for_wake(min(seconds, hand.until_next_move()))
         rows: list[dict[str, float]] = []
         before = window.frames, time.perf_counter()
         while hand.passed < seconds:
             if hand.move():
                 window.wake()
-            window._turn()
+            window.loop_once()
             now = window.frames, time.perf_counter()
             if now[0] > before[0]:
                 rows.append({**timer.take(), "interval": now[1] - before[1]})

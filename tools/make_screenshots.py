@@ -225,7 +225,7 @@ def keyframes(window: Window) -> None:
 def timeline(window: Window) -> None:
     """An opened recording at a time in its middle."""
     files.open_path(window.state, resource("assets", "recordings", "elephant.akaprec"))
-    while window.state.waiting:
+    while window.state.is_busy:
         window.frame()
     window.state.timeline.session_playback.cut_to(1.5, 6.0)
     window.state.timeline.session_playback.scrub(4.0)

@@ -1,7 +1,6 @@
 """What the window holds besides the drawing's own state: view switches, files, messages, questions."""
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, TypeVar
@@ -22,6 +21,7 @@ from ..render.offscreen import OffscreenRenderer
 from ..render.overlays import Overlays
 from .canvas.view_options import ViewOptions, skins
 from .dialogs.file_dialog import FileRequest, Palette, UnsavedChangesQuestion
+from .jobs.background_thread import BackgroundThread, Wake, no_window
 from .jobs.pose_export import PoseExportQueue
 from .jobs.task import Task
 from .panels.measurements import Measurements
@@ -41,7 +41,8 @@ class AppState:
     notice: a sentence for the status bar that goes with the next edit; error: one that must be read first.
     """
 
-    editor: Editor = field(default_factory=lambda: Editor(worker=ThreadPoolExecutor(1, "engine")))
+    editor: Editor = field(default_factory=Editor)
+    wake: Wake = no_window  # lets the window draw a frame; threads call it when they are done
     show_mesh: bool = False
     show_pins: bool = True
     timeline: Timeline = field(init=False)
@@ -64,7 +65,7 @@ class AppState:
     palette: Palette | None = None
     folder: Path = field(default_factory=Path.cwd)
     exporter: OffscreenRenderer = field(default_factory=OffscreenRenderer)
-    writer: PoseExportQueue = field(default_factory=PoseExportQueue)
+    writer: PoseExportQueue = field(init=False)
     preferences: Preferences = field(default_factory=Preferences)
     autosave: Autosave | None = None
     lost: list[RecoveryCopy] = field(default_factory=list)  # unsaved work of programs that crashed
@@ -80,7 +81,8 @@ class AppState:
     _dialogs: dict[type, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.remesher = BackgroundRemesh(self.editor)
+        self.remesher = BackgroundRemesh(self.editor, BackgroundThread("mesh", self.wake))
+        self.writer = PoseExportQueue(self.wake)
         self.timeline = Timeline(self.editor)
 
     def dialog(self, kind: type[D]) -> D:
@@ -93,9 +95,10 @@ class AppState:
     # -- between runs ----------------------------------------------------------------------------------------
 
     @classmethod
-    def remembering(cls, preferences: Preferences) -> "AppState":
-        """As it was left the last time."""
-        state = cls(preferences=preferences, notice=preferences.problem)
+    def remembering(cls, preferences: Preferences, wake: Wake = no_window) -> "AppState":
+        """The state that the preferences remember; steps are computed in a thread."""
+        editor = Editor(worker=BackgroundThread("engine", wake))
+        state = cls(editor, wake, preferences=preferences, notice=preferences.problem)
         state.first_steps = preferences.is_kept and not preferences.get("first steps done", False)
         for name in SWITCHES:
             setattr(state, name, preferences.get(name, getattr(state, name)))
@@ -130,25 +133,34 @@ class AppState:
         self._jobs.append(job)
 
     @property
-    def waiting(self) -> bool:
-        """Whether there is work left."""
-        return bool(self._jobs or self._due) or self.remesher.busy or self.task is not None
+    def needs_frame(self) -> bool:
+        """Whether the next frame changes something without an event: deferred jobs, a task, playback."""
+        task_can_go_on = self.task is not None and not self.task.progress.is_blocked
+        return bool(self._jobs or self._due) or task_can_go_on or self.timeline.playback.playing
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether anything moves or is computed, be it in a thread; when it ends, the window is idle."""
+        moves = self.editor.moving or self.comparison.is_moving or self.timeline.playback.playing
+        computes = self.view.is_computing or self.remesher.is_busy or self.writer.is_busy
+        return moves or computes or self.needs_frame or self.task is not None
 
     def run_pending(self) -> bool:
         """After a frame: do what was put off before it began; whether there was anything."""
+        messages = self.notice, self.error
         jobs, self._due, self._jobs = self._due, self._jobs, []
         for job in jobs:
             self.run_reporting_errors(job)
-        if self.writer.moving and not self.writer.waiting:
-            self.run_reporting_errors(self._go_on_writing)
+        self.run_reporting_errors(self._go_on_writing)
         if self.task is not None:
             self.run_reporting_errors(self._go_on)
-            return True
+            return self.task is None or not self.task.progress.is_blocked
+        has_changed = bool(jobs)
         try:
-            return self.remesher.advance() or bool(jobs)
+            has_changed |= self.remesher.advance()
         except InputError as error:  # no dialog in the middle of a drag
             self.notice = str(error)
-            return True
+        return has_changed or (self.notice, self.error) != messages
 
     def _go_on_writing(self) -> None:
         self.notice = self.writer.advance(self.exporter) or self.notice
@@ -190,26 +202,10 @@ class AppState:
                 return Settings(method, tuple(sorted(parameters.items())))
         return None
 
-    @property
-    def _motions(self) -> tuple[tuple[bool, bool], ...]:
-        """Of all that may move: whether it does, and whether it only waits for its thread."""
-        parts = (self.editor, self.comparison, self.view, self.writer)
-        return *((part.moving, part.waiting) for part in parts), (self.timeline.playback.playing, False)
-
-    @property
-    def moving(self) -> bool:
-        """Whether anything that is seen has not come to rest."""
-        return any(moves for moves, _ in self._motions)
-
-    @property
-    def stalled(self) -> bool:
-        """Whether nothing new can be seen before a thread is done with what it computes or writes."""
-        return self.moving and all(waits for moves, waits in self._motions if moves)
-
     def overlays(self, scale: float) -> Overlays:
         """What the renderer shows besides the drawing. scale: framebuffer pixels per point of the design."""
         distortion = self.measure() if self.view.heat is not None else None
-        mesh = self.show_mesh or self.remesher.active
+        mesh = self.show_mesh or self.remesher.is_active
         overlays = self.view.overlays(self.editor, distortion, mesh, scale)
         if not self.timeline.shows_keyframes:
             return overlays

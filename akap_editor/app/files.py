@@ -17,7 +17,7 @@ from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, PROJECT_SUFFIX, 
 from ..resources import bundled_drawings
 from .app_state import AppState
 from .dialogs.file_dialog import FileRequest, UnsavedChangesQuestion
-from .jobs.open_recording import reenacting
+from .jobs.open_recording import open_recording
 
 # -- opening ------------------------------------------------------------------------------------------------
 
@@ -61,7 +61,7 @@ def open_path(state: AppState, path: Path, notice: str = "") -> None:
     def read() -> None:
         try:
             if path.suffix.lower() == RECORDING_SUFFIX:
-                state.task = reenacting(path, partial(_show_recording, state, path))
+                state.task = open_recording(path, partial(_show_recording, state, path))
                 return
             document = open_document(path)
         except InputError:

@@ -7,7 +7,7 @@ import time
 import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from threading import Thread
+from threading import Event, Lock, Thread
 from typing import Any
 
 import glfw
@@ -39,13 +39,14 @@ from .start_page import Welcome
 SIZE = (1280, 800)
 SMALLEST = (640, 400)
 GRASP = 64  # screen coordinates of a window's corner that must be on a screen for a hand to move it
-SETTLE_FRAMES = 3  # ImGui needs so many frames after an event until everything stands where it belongs
-IDLE_SECONDS, BLINK_SECONDS = 1.0, 0.4
-STEP_SECONDS = 0.004  # between two looks whether a thread is done
+SETTLE_FRAMES = 3  # ImGui needs this many frames after an event until every widget has its final place
+IDLE_SECONDS, BLINK_SECONDS = 1.0, 0.4  # the longest sleep; half the period of a text caret
+MINIMIZED_SECONDS = 0.25  # between two looks whether a minimized window can be drawn again
+NATIVE_DIALOG_SECONDS = 0.1  # between two looks at a dialog of the system, see `Dialogs.native_is_open`
 
 
-def _warm_up() -> None:
-    """Load the engine, in a thread of its own: the window is there before."""
+def _precompile() -> None:
+    """Load and compile the engine; in a thread, so that the window appears first."""
     from ..deform.precompile import precompile
 
     precompile()
@@ -75,38 +76,43 @@ class Window:
         preferences: Preferences | None = None,
         autosave: Autosave | None = None,
     ) -> None:
-        self.state = AppState.remembering(preferences or Preferences())
+        self._woken, self._open_lock, self._is_open = Event(), Lock(), False
+        self.state = AppState.remembering(preferences or Preferences(), self.wake)
         self.state.autosave = autosave
         if autosave is not None:
             self.state.lost = autosave.lost()
         self.frames = 0
         self.after_draw: list[Callable[[], None]] = []
         self._scale_wanted, self._in_frame, self._focused = scale, False, False
-        self._awake = SETTLE_FRAMES
+        self._frames_due = SETTLE_FRAMES
         self._dropped: list[list[Path]] = []
         self._title = ""
-        self._handle = _create_window(null, hidden, size or _remembered_size(self.state.preferences))
+        # GLFW's null platform has no events to wait for and would return at once
+        wait_for_wake: Callable[[float], object] = self._woken.wait
+        self.wait_for_events = wait_for_wake if null else glfw.wait_events_timeout
+        self.handle = _create_window(null, hidden, size or _remembered_size(self.state.preferences))
+        self._is_open = True
         place = _remembered_place(self.state.preferences, _screens())
         if place is not None:
-            glfw.set_window_pos(self._handle, *place)
+            glfw.set_window_pos(self.handle, *place)
         if self.state.preferences.get("maximized", False):
-            glfw.maximize_window(self._handle)
+            glfw.maximize_window(self.handle)
         self.ctx = moderngl.create_context(require=330)
         self._picture = Scene(self.ctx)
         self.state.exporter = OffscreenRenderer(self.ctx)
         # Callbacks only queue: an exception in one would come out of poll_events. ImGui calls those it needs.
-        glfw.set_key_callback(self._handle, key_order.on_key)
-        glfw.set_drop_callback(self._handle, self._on_drop)  # type: ignore[arg-type]  # its stub is wrong
-        glfw.set_window_refresh_callback(self._handle, lambda _: self._refresh())
-        glfw.set_window_content_scale_callback(self._handle, lambda *_: self._apply_scale())
-        glfw.set_window_close_callback(self._handle, self._on_close)
+        glfw.set_key_callback(self.handle, key_order.on_key)
+        glfw.set_drop_callback(self.handle, self._on_drop)  # type: ignore[arg-type]  # its stub is wrong
+        glfw.set_window_refresh_callback(self.handle, lambda _: self._refresh())
+        glfw.set_window_content_scale_callback(self.handle, lambda *_: self._apply_scale())
+        glfw.set_window_close_callback(self.handle, self._on_close)
         imgui.create_context()
         io = imgui.get_io()
         io.set_ini_filename("")
         io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard
         theme.load_fonts()
         self._apply_scale()
-        address = ctypes.cast(self._handle, ctypes.c_void_p).value
+        address = ctypes.cast(self.handle, ctypes.c_void_p).value
         assert address is not None
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
@@ -122,8 +128,10 @@ class Window:
         self.close()
 
     def close(self) -> None:
-        """Free everything; what is remembered is written."""
-        self._remember()
+        """Write the preferences and free everything."""
+        with self._open_lock:  # a thread that is done later must not call GLFW
+            self._is_open = False
+        self.remember()
         self.state.writer.close()
         self.state.exporter.__exit__()
         self._welcome.release()
@@ -133,19 +141,19 @@ class Window:
         imgui.backends.glfw_shutdown()
         imgui.destroy_context()
         self.ctx.release()
-        glfw.destroy_window(self._handle)
+        glfw.destroy_window(self.handle)
         glfw.terminate()
 
     # -- the loop --------------------------------------------------------------------------------------------
 
     def run(self, document: Document | None = None) -> None:
         """Show a document and stay until the window is closed."""
-        Thread(target=_warm_up, name="warm-up", daemon=True).start()
+        Thread(target=_precompile, name="precompile", daemon=True).start()
         if document is not None:
             files.show_document(self.state, document)
         try:
             while not self.state.closing:
-                self._turn()
+                self.loop_once()
         except BaseException:
             files.rescue(self.state)
             raise
@@ -153,76 +161,80 @@ class Window:
             self.state.autosave.close()
         self.state.writer.finish(self.state.exporter)
 
-    def _turn(self) -> None:
-        """Once around the loop: sleep or draw a frame."""
+    def loop_once(self) -> None:
+        """Sleep if there is nothing to draw; otherwise, or after that, draw a frame."""
         files.autosave(self.state)
-        if self._due:
+        if self.needs_frame:
             glfw.poll_events()
-        elif self._busy:
-            self._sleep(STEP_SECONDS)
         else:
-            self._remember()
-            self._rest()
-        # ImGui takes some events one per frame and fades, and panels show the pose of the frame before
+            self.remember()
+            self._wait_until_needed()
+        if self._is_animated:
+            self._frames_due = SETTLE_FRAMES
+        if self.needs_frame and not self.frame():
+            self.wait_for_events(MINIMIZED_SECONDS)
+
+    @property
+    def needs_frame(self) -> bool:
+        """Whether there may be something new to draw. All other changes come with an event or a `wake`."""
+        return self._frames_due > 0 or self._woken.is_set() or self.state.needs_frame or bool(self._dropped)
+
+    @property
+    def _is_animated(self) -> bool:
+        """Whether the next frame differs from the last one, although nothing new has happened."""
         context = imgui.get_current_context()
-        fading = 0 < context.dim_bg_ratio < 1
-        if context.input_events_queue.size() or fading or (self.state.moving and not self.state.stalled):
-            self.wake()
-        if self._due:
-            self._awake -= 1
-            if not self.frame():
-                glfw.wait_events_timeout(0.25)  # minimised
-
-    @property
-    def _due(self) -> bool:
-        """Whether there may be something new to be seen."""
-        state = self.state
-        moves = state.moving and not state.stalled
-        return self._awake > 0 or moves or state.waiting or self._dialogs.waiting or bool(self._dropped)
-
-    @property
-    def _busy(self) -> bool:
-        """Whether there is, or soon will be."""
-        return self._due or self.state.stalled
+        is_dimming = 0 < context.dim_bg_ratio < 1  # behind a dialog that has just opened or closed
+        has_queued_events = context.input_events_queue.size() > 0  # ImGui takes some only one per frame
+        return is_dimming or has_queued_events or self.state.needs_frame
 
     def wake(self) -> None:
-        """Draw the next few frames, whatever happens."""
-        self._awake = SETTLE_FRAMES
+        """Draw the next few frames; end the sleep of the loop. May be called from any thread."""
+        self._woken.set()
+        with self._open_lock:
+            if self._is_open:
+                glfw.post_empty_event()
 
-    def _remember(self) -> None:
-        """Write the preferences where something has changed; a moment when nothing else happens will do."""
-        maximized = bool(glfw.get_window_attrib(self._handle, glfw.MAXIMIZED))
-        width, height = glfw.get_window_size(self._handle)
+    def remember(self) -> None:
+        """Write the preferences if something has changed; called when the window is about to sleep."""
+        maximized = bool(glfw.get_window_attrib(self.handle, glfw.MAXIMIZED))
+        width, height = glfw.get_window_size(self.handle)
         preferences = self.state.preferences
         preferences.put("maximized", maximized)
-        if not maximized and not glfw.get_window_attrib(self._handle, glfw.ICONIFIED):
+        if not maximized and not glfw.get_window_attrib(self.handle, glfw.ICONIFIED):
             preferences.put("window", [round(width / self.scale), round(height / self.scale)])
-            preferences.put("place", list(glfw.get_window_pos(self._handle)))
+            preferences.put("place", list(glfw.get_window_pos(self.handle)))
         self.state.remember()
 
-    def _rest(self) -> None:
-        """Sleep until something happens, a tooltip is due or a caret blinks."""
-        typing, tooltip = imgui.get_io().want_text_input, widgets.tooltip_due()
-        happened = self._sleep(tooltip or (BLINK_SECONDS if typing else IDLE_SECONDS))
-        if tooltip:
-            self.wake()
-        elif typing and not happened:
-            self._awake = 1
+    def _wait_until_needed(self) -> None:
+        """Sleep until an event, a `wake`, a due tooltip, a blink of a caret, or the answer of a dialog."""
+        is_typing, tooltip_delay = imgui.get_io().want_text_input, widgets.tooltip_due()
+        limit = tooltip_delay or (BLINK_SECONDS if is_typing else IDLE_SECONDS)
+        if self._dialogs.native_is_open:
+            limit = min(limit, NATIVE_DIALOG_SECONDS)
+        has_happened = self._wait(limit)
+        if has_happened or tooltip_delay or self._dialogs.native_is_answered:
+            self._frames_due = SETTLE_FRAMES
+        elif is_typing:
+            self._frames_due = 1
 
-    def _sleep(self, limit: float) -> bool:
-        """Wait in the operating system for so many seconds, or until something happens; whether it did."""
-        started = time.perf_counter()
-        glfw.wait_events_timeout(limit)
-        if time.perf_counter() - started >= 0.98 * limit:
-            return False
-        self.wake()
-        return True
+    def _wait(self, limit: float) -> bool:
+        """Sleep for ``limit`` seconds at most; whether an event or a `wake` ended the sleep."""
+        start = time.perf_counter()
+        self.wait_for_events(limit)
+        return self._woken.is_set() or time.perf_counter() - start < 0.98 * limit
 
     def frame(self) -> bool:
-        """Draw one frame; False where there is nothing to draw on."""
-        framebuffer = glfw.get_framebuffer_size(self._handle)
-        hidden = 0 in framebuffer or glfw.get_window_attrib(self._handle, glfw.ICONIFIED)
-        if self._in_frame or hidden:
+        """Draw one frame; False if the window is minimized, or a frame is being drawn already."""
+        framebuffer = glfw.get_framebuffer_size(self.handle)
+        is_hidden = 0 in framebuffer or glfw.get_window_attrib(self.handle, glfw.ICONIFIED)
+        if self._in_frame:
+            return False
+        # before the frame reads any result: a thread that is done later causes another frame
+        if self._woken.is_set():
+            self._woken.clear()
+            self._frames_due = SETTLE_FRAMES
+        self._frames_due = max(self._frames_due - 1, 0)
+        if is_hidden:
             return False
         self._in_frame = True
         try:
@@ -246,15 +258,15 @@ class Window:
             self._recover(recovery, f"Something went wrong in the program ({type(error).__name__}: {error})")
             self.state.editor.cancel()
         render_imgui()
-        self._picture.draw(self.state, framebuffer, glfw.get_window_size(self._handle), self.scale)
+        self._picture.draw(self.state, framebuffer, glfw.get_window_size(self.handle), self.scale)
         imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
         self.frames += 1
         for action in self.after_draw:
             action()
-        glfw.swap_buffers(self._handle)
+        glfw.swap_buffers(self.handle)
         self._update_title()
         if self.state.run_pending():
-            self.wake()
+            self._frames_due = SETTLE_FRAMES
 
     def _interface(self) -> None:
         state = self.state
@@ -277,7 +289,8 @@ class Window:
         else:
             self._canvas.read_input(state)
             self._canvas.choose_cursor(state)
-        state.editor.advance()
+        if state.editor.advance():
+            self._frames_due = SETTLE_FRAMES
         state.timeline.session_playback.watch(state.editor.session)
         state.editor.start_next_step()
         draw_markers(state, self.scale)
@@ -290,7 +303,7 @@ class Window:
         imgui.internal.error_recovery_try_to_recover_state(recovery)
         io.config_error_recovery_enable_assert = True
         self.state.error = message
-        self.wake()
+        self._frames_due = SETTLE_FRAMES
 
     # -- the window ------------------------------------------------------------------------------------------
 
@@ -299,17 +312,17 @@ class Window:
         """Points of the window per point of the design: 2 on a 200 % monitor, 1 on a Retina display."""
         if self._scale_wanted is not None:
             return self._scale_wanted
-        return float(glfw.get_window_content_scale(self._handle)[0] / self._density) or 1.0
+        return float(glfw.get_window_content_scale(self.handle)[0] / self._density) or 1.0
 
     @property
     def _density(self) -> float:
         """Pixels per point of the window: 2 on a Retina display, else 1."""
-        points, pixels = glfw.get_window_size(self._handle)[0], glfw.get_framebuffer_size(self._handle)[0]
+        points, pixels = glfw.get_window_size(self.handle)[0], glfw.get_framebuffer_size(self.handle)[0]
         return max(pixels, 1) / max(points, 1)
 
     def screenshot(self) -> NDArray[np.uint8]:
         """(h, w, 3) of the frame being drawn; to be called from `after_draw`."""
-        width, height = glfw.get_framebuffer_size(self._handle)
+        width, height = glfw.get_framebuffer_size(self.handle)
         data = self.ctx.screen.read(viewport=(0, 0, width, height), components=3, alignment=1)
         return np.frombuffer(data, dtype=np.uint8).reshape(height, width, 3)[::-1].copy()
 
@@ -317,30 +330,37 @@ class Window:
         if imgui.get_current_context() is not None:
             theme.apply(self.scale)
             self.state.editor.ui_scale = self.scale
-            self.wake()
+            self._frames_due = SETTLE_FRAMES
 
     def _update_title(self) -> None:
         if self._title != self.state.title:
             self._title = self.state.title
-            glfw.set_window_title(self._handle, self._title)
+            glfw.set_window_title(self.handle, self._title)
 
     def _watch_focus(self) -> None:
-        focused = bool(glfw.get_window_attrib(self._handle, glfw.FOCUSED))
+        focused = bool(glfw.get_window_attrib(self.handle, glfw.FOCUSED))
         if self._focused and not focused:
             self._canvas.cancel_input(self.state)
         self._focused = focused
 
+    def drop(self, paths: list[Path]) -> None:
+        """Open files that were dropped on the window, in the next frame."""
+        self._dropped.append(paths)
+
     def _on_drop(self, _: Any, paths: list[str]) -> None:
-        self._dropped.append([Path(path) for path in paths])
-        self.wake()
+        self.drop([Path(path) for path in paths])
+
+    def request_close(self) -> None:
+        """Close the window after the next frame; ask about unsaved changes first."""
+        self.state.run_after_frame(lambda: files.quit_program(self.state))
 
     def _on_close(self, _: Any) -> None:
-        glfw.set_window_should_close(self._handle, False)
-        self.state.run_after_frame(lambda: files.quit_program(self.state))
+        glfw.set_window_should_close(self.handle, False)
+        self.request_close()
 
     def _refresh(self) -> None:
         """While a window is being resized, some systems call only this."""
-        self.wake()
+        self._frames_due = SETTLE_FRAMES
         self.frame()
 
 

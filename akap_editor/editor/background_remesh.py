@@ -1,6 +1,6 @@
-"""Gives the open drawing another mesh while the user goes on choosing what it should be like."""
+"""Remeshes the open drawing in a thread while the user moves the sliders."""
 
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 
 from .document.document import EditState
@@ -10,115 +10,127 @@ from .editor import Editor
 from .session.edits import Remesh
 from .session.history import HistoryEntry
 from .session.session import Session
+from .session.stepper import INLINE
 
-Made = tuple[Drawing, EditState]
-LABEL = "Change mesh"
+HISTORY_LABEL = "Change mesh"
 
 
 @dataclass(eq=False)
-class _SliderGesture:
-    """Choices of one drag of a slider: each is made from the state before the first, and all are one entry.
+class SliderGesture:
+    """One drag of a slider: all its values are applied to the state before it, as one entry of the history.
 
-    base, start: the drawing and the state then; entry: of the history, once there is one.
+    start_drawing, start_state: from before the gesture; entry: in the history, None before the first mesh.
     """
 
     session: Session
-    base: Drawing
-    start: EditState
+    start_drawing: Drawing
+    start_state: EditState
     entry: HistoryEntry | None = None
 
 
-class BackgroundRemesh:
-    """Meshes are made in another thread, one at a time; of choices that come meanwhile the last counts.
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """A mesh that is being made, and the state carried over to it."""
 
-    `advance`, called now and then, takes them over.
+    gesture: SliderGesture
+    meshing: Meshing
+    result: Future[tuple[Drawing, EditState]]
+
+
+class BackgroundRemesh:
+    """Makes meshes one at a time; of the requests that come meanwhile only the last one is made.
+
+    The mesh is computed by ``worker``, by default inside `advance`. `advance` takes it over and is to be
+    called after each frame.
     """
 
-    def __init__(self, editor: Editor) -> None:
+    def __init__(self, editor: Editor, worker: Executor = INLINE) -> None:
         self._editor = editor
-        self._worker = ThreadPoolExecutor(1, "mesh")
-        self._series: _SliderGesture | None = None
-        self._wanted: Meshing | None = None
-        self._job: tuple[_SliderGesture, Meshing, Future[Made]] | None = None
-        self._held = False
+        self._worker = worker
+        self._gesture: SliderGesture | None = None
+        self._requested: Meshing | None = None
+        self._job: _Job | None = None
+        self._is_dragging = False
 
     @property
     def meshing(self) -> Meshing | None:
-        """What is wanted, or else how the mesh that is there was made; None where nothing is open."""
+        """The requested options, otherwise those of the current mesh; None if nothing is open."""
         session = self._editor.session
         if session is None:
             return None
-        made = session.drawing.meshing or Meshing(vertices=len(session.drawing.mesh.vertices))
-        return self._wanted or made
+        current = session.drawing.meshing or Meshing(vertices=len(session.drawing.mesh.vertices))
+        return self._requested or current
 
     @property
-    def active(self) -> bool:
-        """Whether a choice is being made, or a mesh."""
-        return self._held or self.busy
+    def is_active(self) -> bool:
+        """Whether a slider is dragged or a mesh is being made; the window shows the mesh meanwhile."""
+        return self._is_dragging or self.is_busy
 
     @property
-    def busy(self) -> bool:
-        """Whether a mesh is being made, or waits to be."""
-        return self._wanted is not None or self._job is not None
+    def is_busy(self) -> bool:
+        """Whether a mesh is being made, or requested."""
+        return self._requested is not None or self._job is not None
 
-    def want(self, meshing: Meshing, held: bool = False) -> None:
-        """Choose how the mesh is to be made; held: more choices of the same gesture may follow."""
+    def request(self, meshing: Meshing, dragging: bool = False) -> None:
+        """Ask for another mesh. dragging: more requests of the same gesture may follow, until `end_drag`."""
         session = self._editor.session
         if session is None:
             return
-        if self._series is None or not self._held or self._series.session is not session:
-            self._series = _SliderGesture(session, session.drawing, session.state)
-        self._wanted, self._held = meshing, held
+        if self._gesture is None or not self._is_dragging or self._gesture.session is not session:
+            self._gesture = SliderGesture(session, session.drawing, session.state)
+        self._requested, self._is_dragging = meshing, dragging
 
-    def let_go(self) -> None:
-        """The gesture is over; its last choice is still made."""
-        self._held = False
+    def end_drag(self) -> None:
+        """End the gesture; its last request is still made."""
+        self._is_dragging = False
 
     def advance(self) -> bool:
-        """Begin, or take over, what is wanted; whether the drawing was changed.
+        """Start the requested mesh, or take over a finished one; whether the drawing changed.
 
-        Raises InputError where there is no such mesh; all stays as it was.
+        A finished mesh waits while a gesture of the editor is under way. Raises InputError if there is no
+        such mesh; then nothing has changed.
         """
-        if self._series is not None and self._series.session is not self._editor.session:
-            self._series = self._wanted = self._job = None
-        changed = False
-        if self._job is not None and self._job[2].done() and not self._editor.busy:
-            (series, meshing, made), self._job = self._job, None
-            if meshing == self._wanted:
-                self._wanted = None
-            changed = self._take_over(series, *made.result())
-        if self._job is None and self._wanted is not None and self._series is not None:
-            self._begin(self._series, self._wanted)
-        return changed
+        if self._gesture is not None and self._gesture.session is not self._editor.session:
+            self._gesture = self._requested = self._job = None
+        has_changed = False
+        job = self._job
+        if job is not None and job.result.done() and not self._editor.busy:
+            self._job = None
+            if job.meshing == self._requested:
+                self._requested = None
+            has_changed = self._take_over(job.gesture, *job.result.result())
+        if self._job is None and self._requested is not None and self._gesture is not None:
+            self._start(self._gesture, self._requested)
+        return has_changed
 
     def finish(self) -> None:
-        """Wait for what is wanted. Raises InputError as `advance` does."""
-        while self.busy:
+        """Wait for the requested mesh. Raises InputError as `advance` does."""
+        while self.is_busy:
             if self._job is not None:
-                self._job[2].exception()
+                self._job.result.exception()
             self.advance()
 
-    def _begin(self, series: _SliderGesture, meshing: Meshing) -> None:
-        def make() -> Made:
-            drawing = remesh_drawing(series.base, meshing)
-            return drawing, transfer_state(series.start, series.base.mesh, drawing)
+    def _start(self, gesture: SliderGesture, meshing: Meshing) -> None:
+        def make() -> tuple[Drawing, EditState]:
+            drawing = remesh_drawing(gesture.start_drawing, meshing)
+            return drawing, transfer_state(gesture.start_state, gesture.start_drawing.mesh, drawing)
 
-        self._job = series, meshing, self._worker.submit(make)
+        self._job = _Job(gesture, meshing, self._worker.submit(make))
 
-    def _take_over(self, series: _SliderGesture, drawing: Drawing, state: EditState) -> bool:
-        """As one entry for the whole series: what it has made so far is taken back first."""
-        session = series.session
-        if series is not self._series:  # the next one began without it, and includes its choice
+    def _take_over(self, gesture: SliderGesture, drawing: Drawing, state: EditState) -> bool:
+        """Replace the gesture's entry in the history, so that the whole gesture is one entry."""
+        session = gesture.session
+        if gesture is not self._gesture:  # a later gesture started before this mesh and contains its options
             return False
-        if series.entry is not None and series.entry is session.history.last:
+        if gesture.entry is not None and gesture.entry is session.history.last:
             session.undo()
-        as_begun = session.state is series.start
-        session.begin(LABEL)
+        is_at_start = session.state is gesture.start_state
+        session.begin(HISTORY_LABEL)
         try:
-            session.apply(Remesh.to(drawing, state if as_begun else None))
+            session.apply(Remesh.to(drawing, state if is_at_start else None))
         except Exception:
             session.abort()
             raise
         session.commit()
-        series.entry = session.history.last
+        gesture.entry = session.history.last
         return True

@@ -270,12 +270,6 @@ class Editor:
         """Whether `advance` has steps to make."""
         return self.session is not None and self.session.is_moving
 
-    @property
-    def waiting(self) -> bool:
-        """Whether the worker computes a step, so that nothing moves until it is done."""
-        session = self.session
-        return session is not None and session.has_pending_step and not session.step_is_ready()
-
     def advance(self, budget: float = FRAME_BUDGET) -> bool:
         """Step the pose towards the pins' targets for about ``budget`` seconds; return whether it moved.
 

@@ -5,16 +5,20 @@ import time
 from threading import Event
 from types import SimpleNamespace
 
+import glfw
 import numpy as np
 import pytest
 
 from akap_editor.app import window as window_module
 from akap_editor.app.canvas import scene as picture_module
+from akap_editor.app.window import SETTLE_FRAMES
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor import gestures
 from akap_editor.editor.editor import FRAME_BUDGET
 from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.stepper import INLINE
+from tests.support.window_driver import DEADLINE
+from tests.support.window_loop import WindowLoop
 
 
 def one_frame(ui):
@@ -92,12 +96,21 @@ def test_a_frame_stops_stepping_when_its_time_is_over(pinned, monkeypatch):
 
 
 @pytest.fixture
+def loop(pinned, monkeypatch):
+    return WindowLoop(pinned, monkeypatch)
+
+
+def is_computing_a_step(ui):
+    return ui.session.has_pending_step and not ui.session.step_is_ready()
+
+
+@pytest.fixture
 def held(pinned, monkeypatch):
     """A drag whose first step is computed until ``open`` is set."""
     gate, step = Event(), AkapDeformer.step
 
     def wait(*arguments):
-        assert gate.wait(60)
+        assert gate.wait(DEADLINE)
         return step(*arguments)
 
     monkeypatch.setattr(AkapDeformer, "step", wait)
@@ -122,7 +135,7 @@ def test_menus_view_and_drags_answer_while_a_step_is_computed(held):
         hand.mouse_wheel_y(2.0)
         hand.yield_(2)
         assert ui.editor.camera.zoom > zoom
-        assert ui.editor.waiting
+        assert is_computing_a_step(ui)
         assert ui.session.state.positions is held.pose
 
     ui.do(act, settle=False)
@@ -131,24 +144,22 @@ def test_menus_view_and_drags_answer_while_a_step_is_computed(held):
     np.testing.assert_allclose(ui.pin_place(3), held.goal, atol=0.25)
 
 
-def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, monkeypatch):
-    window = held.ui.window
-    # without the events that the screen itself sends
-    monkeypatch.setattr(window_module.glfw, "wait_events_timeout", time.sleep)
-    while window._awake or not held.ui.editor.waiting:
-        window._turn()
-    frames = window.frames
-    for _ in range(5):
-        window._turn()
-    assert window.frames == frames
-    assert window._busy
-    imgui.get_io().add_mouse_pos_event(300.0, 300.0)
-    window._turn()
-    window._turn()
-    assert window.frames > frames
+def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, loop):
+    loop.waits_for_threads = False
+    first, *later = [frames for _, frames in loop.run(6)]
+    assert later == [first] * 5
+    assert is_computing_a_step(held.ui)
+
+    loop.on_sleep = lambda count: count == 1 and imgui.get_io().add_mouse_pos_event(300.0, 300.0)
+    first, *later = [frames for _, frames in loop.run(4)]
+    assert first == SETTLE_FRAMES
+    assert later == [2 * SETTLE_FRAMES] * 3
+    assert is_computing_a_step(held.ui)
+
+    loop.waits_for_threads, loop.on_sleep = True, lambda count: False
     held.open.set()
-    while held.ui.editor.moving:
-        window._turn()
+    loop.run(1)
+    assert not held.ui.state.is_busy
     np.testing.assert_allclose(held.ui.pin_place(3), held.goal, atol=0.25)
 
 
@@ -156,9 +167,10 @@ def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, monkey
 def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkeypatch, ends):
     pinned.state.view.vectors = True
     gate, fields = Event(), AkapDeformer.vector_fields
-    monkeypatch.setattr(AkapDeformer, "vector_fields", lambda *motion: gate.wait(60) and fields(*motion))
+    patch = monkeypatch.setattr
+    patch(AkapDeformer, "vector_fields", lambda *motion: gate.wait(DEADLINE) and fields(*motion))
     gestures.move_pin(pinned.editor, 3, tuple(pinned.pin_place(3) - (0, 20)))
-    while not pinned.state.view.waiting:
+    while not pinned.state.view.is_computing:
         pinned.frame()
     if ends == "switched off":
         pinned.state.view.vectors = False
@@ -169,17 +181,19 @@ def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkey
         pinned.session.stop_motion()
     gate.set()
     pinned.settle()
-    assert not pinned.window._busy
+    assert not pinned.window.needs_frame
+    assert not pinned.state.is_busy
 
 
 def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatch):
     pinned.state.view.vectors = True
     gate, fields = Event(), AkapDeformer.vector_fields
-    monkeypatch.setattr(AkapDeformer, "vector_fields", lambda *motion: gate.wait(60) and fields(*motion))
+    patch = monkeypatch.setattr
+    patch(AkapDeformer, "vector_fields", lambda *motion: gate.wait(DEADLINE) and fields(*motion))
     x, y = pinned.pin_place(3)
     pinned.session.begin("Bend")
     pinned.session.apply(SetTargets({3: (x, y - 40)}))
-    while not pinned.state.view.waiting:
+    while not pinned.state.view.is_computing:
         pinned.frame()
     frames = pinned.window.frames
     pinned.frame()
@@ -187,7 +201,7 @@ def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatc
     assert not pinned.state.overlays(1.0).strokes
     gate.set()
     seen = []
-    while pinned.state.moving:
+    while pinned.state.is_busy:
         pinned.frame()
         seen.append(len(pinned.state.overlays(1.0).strokes))
     pinned.session.commit()
@@ -224,7 +238,7 @@ def test_the_title_tells_what_is_open_and_whether_it_is_saved(pinned, changed):
         start = pinned.screen(pinned.pin_place(3))
         pinned.drag(start, (start[0], start[1] - 60))
     pinned.settle()
-    assert pinned.window._title == f"figure{' *' if changed else ''} - akap-editor"
+    assert glfw.get_window_title(pinned.window.handle) == f"figure{' *' if changed else ''} - akap-editor"
 
 
 def test_a_kept_picture_shows_every_change(pinned, monkeypatch):

@@ -38,7 +38,7 @@ def bits(state):
 def finish(ui):
     """Let work that was put off be done."""
     ui.settle()
-    assert not ui.state.waiting
+    assert not ui.state.is_busy
 
 
 # -- saving and opening -------------------------------------------------------------------------------------
@@ -238,7 +238,7 @@ def quit_(ui, tmp_path):
 
 
 def close_window(ui, tmp_path):
-    ui.window._on_close(None)
+    ui.window.request_close()
     finish(ui)
 
 

@@ -185,7 +185,7 @@ def test_overlays_come_back(path, tmp_path):
     for name in ("vectors", "ghost", "trails", "heat", "heat_range", "show_reference", "reference_path"):
         assert getattr(again.view, name) == getattr(state.view, name), name
     assert again.view.reference is None, "a start must not wait for it"
-    while again.waiting:
+    while again.needs_frame:
         again.run_pending()
     assert again.view.reference is not None
     assert again.view.reference.image.shape == read_image(picture).shape
@@ -198,7 +198,7 @@ def test_a_reference_picture_that_is_gone_is_not_missed(path, tmp_path):
     state.view.set_reference(np.zeros((1, 1, 4), np.uint8), tmp_path / "gone.png")
     state.remember()
     again = AppState.remembering(Preferences(path))
-    while again.waiting:
+    while again.needs_frame:
         again.run_pending()
     assert (again.view.reference, again.view.reference_path, again.error) == (None, None, "")
 
@@ -240,7 +240,7 @@ def test_switches_and_folded_sections_come_back(keeping, path):
     keeping.panel("Checkerboard")
     keeping.panel("###section View")
     keeping.do(lambda hand: [] if not hand.item_exists("//Panel/Mesh") else pytest.fail("View is folded"))
-    keeping.window._remember()
+    keeping.window.remember()
     again = AppState.remembering(Preferences(path))
     assert not again.checker
     assert [getattr(again, name) for name in SWITCHES] == [getattr(keeping.state, n) for n in SWITCHES]
@@ -250,7 +250,7 @@ def test_switches_and_folded_sections_come_back(keeping, path):
 
 def test_unfolded_parameters_come_back(keeping, path):
     keeping.panel("Parameters")
-    keeping.window._remember()
+    keeping.window.remember()
     keeping.state.preferences = Preferences(path)
     keeping.settle()
     keeping.panel("Parameters/memory/##value")
@@ -278,9 +278,9 @@ def test_files_that_were_opened_and_saved_are_recent_and_bundled_ones_are_not(ke
 def test_preferences_that_cannot_be_written_are_a_notice_and_no_more(ui, tmp_path):
     (tmp_path / "file").write_text("")
     ui.state.preferences = Preferences(tmp_path / "file" / "preferences.json")
-    ui.window._remember()
+    ui.window.remember()
     assert "Not remembered" in ui.state.notice
     ui.state.notice = ""
     ui.panel("Mesh")
-    ui.window._remember()
+    ui.window.remember()
     assert not ui.state.notice

@@ -274,7 +274,7 @@ def test_put_away_they_are_gone_for_good(newcomer, tmp_path, steps):
     newcomer.do(lambda hand: hand.item_click("//First steps/###away"))
     assert not newcomer.state.first_steps
     assert newcomer.editor.canvas[3] > bottom, "the canvas has the room again"
-    newcomer.window._remember()
+    newcomer.window.remember()
     assert not AppState.remembering(Preferences(tmp_path / "preferences.json")).first_steps
 
 

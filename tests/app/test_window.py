@@ -1,7 +1,7 @@
 """The loop: when it draws and when it sleeps; sizes, scales, and windows that cannot be."""
 
 from imgui_bundle import imgui  # isort: skip
-from types import SimpleNamespace
+import threading
 
 import glfw
 import numpy as np
@@ -10,52 +10,116 @@ import pytest
 from akap_editor.app import files, widgets
 from akap_editor.app import window as window_module
 from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES, Window
+from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor.session.edits import SetTargets
-from akap_editor.errors import DisplayError, GraphicsError
-
-
-class Loop:
-    """Stands in for GLFW's waiting and for the clock; the window is closed at the last of ``waits`` waits."""
-
-    def __init__(self, ui, monkeypatch):
-        self.ui, self.now, self.waits = ui, 0.0, []
-        self.on_wait = self.on_poll = lambda count: None
-        self._polls = 0
-        monkeypatch.setattr(glfw, "wait_events_timeout", self._wait)
-        monkeypatch.setattr(glfw, "poll_events", self._poll)
-        monkeypatch.setattr(window_module, "time", SimpleNamespace(perf_counter=lambda: self.now))
-
-    def _wait(self, seconds):
-        self.waits.append((seconds, self.ui.window.frames - self._start))
-        if len(self.waits) == self._most:
-            self.ui.state.closing = True
-        interrupted = self.on_wait(len(self.waits))
-        self.now += 0.1 * seconds if interrupted else seconds
-
-    def _poll(self):
-        self._polls += 1
-        self.on_poll(self._polls)
-
-    def run(self, waits=3):
-        """The waits (seconds), each with the number of frames drawn before it."""
-        self._most, self._start = waits, self.ui.window.frames
-        self.ui.window.wake()
-        self.ui.window.run()
-        return self.waits
+from akap_editor.errors import DisplayError, GraphicsError, SolverError
+from tests.support.window_loop import WindowLoop
 
 
 @pytest.fixture
 def loop(pinned, monkeypatch):
-    return Loop(pinned, monkeypatch)
+    return WindowLoop(pinned, monkeypatch)
 
 
 def test_a_window_with_nothing_to_do_sleeps(loop):
     assert loop.run() == [(IDLE_SECONDS, SETTLE_FRAMES)] * 3
-    assert not loop.ui.window._busy
+    assert not loop.ui.window.needs_frame
+    assert not loop.ui.state.is_busy
+
+
+def bend(ui):
+    start = ui.screen(ui.pin_place(3))
+    ui.drag(start, (start[0] - 30, start[1] - 90))
+
+
+def overlays(ui):
+    bend(ui)
+    view = ui.state.view
+    view.vectors = view.ghost = view.trails = ui.state.show_mesh = True
+    view.heat = "area"
+    view.set_reference(np.full((30, 30, 4), 200, dtype=np.uint8))
+
+
+def session_timeline(ui):
+    ui.state.timeline.session_playback.watch(ui.session)
+    bend(ui)
+    ui.state.timeline.is_shown = True
+
+
+def keyframe_timeline(ui):
+    ui.state.timeline.show_keyframes()
+    ui.state.timeline.keyframe_playback.put(0.0)
+    bend(ui)
+    ui.state.timeline.keyframe_playback.put(1.0)
+    ui.state.timeline.keyframe_playback.onion.shown = True
+
+
+def unsaved_question(ui):
+    bend(ui)
+    files.quit_program(ui.state)
+
+
+IDLE = {
+    "start page": lambda ui: ui.editor.close(),
+    "pose": bend,
+    "overlays": overlays,
+    "two methods": lambda ui: setattr(ui.state, "split", True),
+    "session timeline": session_timeline,
+    "keyframe timeline": keyframe_timeline,
+    "message": lambda ui: setattr(ui.state, "error", "The file is damaged."),
+    "question": unsaved_question,
+    "about": lambda ui: setattr(ui.state, "about", True),
+    "shortcuts": lambda ui: setattr(ui.state, "keys", True),
+    "export": lambda ui: ui.menu("File", "Export..."),
+}
+
+
+@pytest.mark.parametrize("shown", IDLE)
+def test_a_window_that_is_at_rest_draws_nothing(loop, shown):
+    IDLE[shown](loop.ui)
+    loop.run(1)
+    assert loop.run(4) == [(IDLE_SECONDS, SETTLE_FRAMES)] * 4
+
+
+def test_a_step_that_fails_in_its_thread_is_told_and_the_window_sleeps_again(loop, monkeypatch):
+    ui = loop.ui
+    start = ui.screen(ui.pin_place(3))
+    targets, pose = ui.session.state.targets, ui.session.state.positions
+    threads, step = [], AkapDeformer.step
+
+    def fail(*arguments):
+        thread = threading.current_thread()
+        if not thread.name.startswith("engine"):  # the window compiles the engine in a thread of its own
+            return step(*arguments)
+        threads.append(thread)
+        raise SolverError("the linear system is singular")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(AkapDeformer, "step", fail)
+        io = imgui.get_io()
+        io.add_mouse_pos_event(*start)
+        io.add_mouse_button_event(0, True)
+        io.add_mouse_pos_event(start[0], start[1] - 60)
+        loop.run(3)
+    assert threads
+    assert ui.state.error == "the linear system is singular"
+    assert not ui.editor.busy
+    assert not ui.editor.moving
+    np.testing.assert_array_equal(ui.session.state.targets, targets)
+    assert ui.session.state.positions is pose
+    assert loop.run(4) == [(IDLE_SECONDS, SETTLE_FRAMES)] * 4, (
+        "the message is shown, and nothing else happens"
+    )
+
+    io.add_mouse_button_event(0, False)
+    ui.dialog("That did not work", "OK")
+    bend(ui)
+    assert ui.session.is_posed
+    assert not ui.state.error
 
 
 def test_an_event_wakes_it_until_all_stands_where_it_belongs(loop):
-    loop.on_wait = lambda count: count == 2
+    loop.on_sleep = lambda count: count == 2
     frames = [frames for _, frames in loop.run(4)]
     assert frames == [SETTLE_FRAMES, SETTLE_FRAMES, 2 * SETTLE_FRAMES, 2 * SETTLE_FRAMES]
 
@@ -70,12 +134,12 @@ def test_a_caret_blinks(loop):
 def test_it_wakes_for_a_tooltip(loop):
     """A mouse that rests sends nothing, so no event comes when the tooltip is due."""
     tools = imgui.internal.find_window_by_name("Tools")
-    glfw.set_cursor_pos(loop.ui.window._handle, tools.pos.x + tools.size.x / 2, tools.pos.y + 20)
+    glfw.set_cursor_pos(loop.ui.window.handle, tools.pos.x + tools.size.x / 2, tools.pos.y + 20)
     waits = loop.run(2)
     assert imgui.get_current_context().hover_item_delay_id != 0
     assert all(0 < seconds <= imgui.get_style().hover_delay_normal + 0.02 for seconds, _ in waits)
     assert waits[1][1] == waits[0][1] + SETTLE_FRAMES
-    glfw.set_cursor_pos(loop.ui.window._handle, *loop.ui.empty_place)
+    glfw.set_cursor_pos(loop.ui.window.handle, *loop.ui.empty_place)
     loop.ui.settle()
     assert widgets.tooltip_due() == 0.0
 
@@ -120,12 +184,12 @@ def test_it_draws_until_the_drawing_has_come_to_rest_and_shows_it(loop):
 def test_a_minimised_window_is_not_drawn(loop, monkeypatch):
     monkeypatch.setattr(glfw, "get_framebuffer_size", lambda handle: (0, 0))
     seconds = {seconds for seconds, _ in loop.run()}
-    assert loop.waits[-1][1] == 0
+    assert loop.sleeps[-1][1] == 0
     assert seconds <= {0.25, IDLE_SECONDS}
 
 
 def test_the_fitted_drawing_follows_the_size_of_the_window(ui):
-    handle = ui.window._handle
+    handle = ui.window.handle
     before = ui.editor.camera
     try:
         glfw.set_window_size(handle, 900, 700)

@@ -1,4 +1,6 @@
-"""Meshes that are made while the user goes on."""
+"""Meshes that are made in a thread while the user moves the sliders."""
+
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -9,7 +11,9 @@ from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing, make_drawing
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.session.edits import SetTargets
+from akap_editor.editor.session.stepper import INLINE
 from akap_editor.errors import InputError
+from tests.support.executors import HeldExecutor
 
 
 @pytest.fixture
@@ -24,102 +28,126 @@ def editor():
     return result
 
 
-def test_a_series_of_choices_is_one_entry_made_from_where_it_began(editor):
+@pytest.fixture(params=["inline", "thread"])
+def remesher(editor, request):
+    if request.param == "inline":
+        yield BackgroundRemesh(editor, INLINE)
+        return
+    with ThreadPoolExecutor(1) as thread:
+        yield BackgroundRemesh(editor, thread)
+
+
+@pytest.fixture
+def thread():
+    """Makes a mesh when `work` is called."""
+    return HeldExecutor()
+
+
+@pytest.fixture
+def held(editor, thread):
+    return BackgroundRemesh(editor, thread)
+
+
+def test_the_values_of_one_gesture_are_one_entry_made_from_where_it_began(editor, remesher):
     """Coarse in between: nothing of that is left in the result."""
-    session, remesher = editor.session, BackgroundRemesh(editor)
+    session = editor.session
     session.begin("Bend")
     session.apply(SetTargets({3: (150.0, 100.0)}))
     session.settle()
     session.commit()
     before, depth = session.state, session.history.depth
     for vertices in (600, 30, 900):
-        remesher.want(Meshing(vertices), held=True)
+        remesher.request(Meshing(vertices), dragging=True)
         assert remesher.meshing.vertices == vertices
         remesher.finish()
-    remesher.let_go()
+    remesher.end_drag()
     assert session.history.depth == depth + 1
     assert session.drawing.meshing == Meshing(900)
-    once = BackgroundRemesh(editor)
-    found = session.state.positions
+    positions = session.state.positions
     session.undo()
     assert session.state is before
-    once.want(Meshing(900))
+    once = BackgroundRemesh(editor)
+    once.request(Meshing(900))
     once.finish()
-    assert session.state.positions.tolist() == found.tolist()
+    assert session.state.positions.tolist() == positions.tolist()
 
 
-def test_only_the_last_of_many_choices_counts(editor):
-    remesher = BackgroundRemesh(editor)
+def test_only_the_last_of_many_requests_is_made(editor, held, thread):
     for vertices in range(200, 400, 5):
-        remesher.want(Meshing(vertices), held=True)
-        remesher.advance()
-    remesher.finish()
+        held.request(Meshing(vertices), dragging=True)
+        held.advance()
+    thread.work()
+    held.advance()
+    assert editor.session.drawing.meshing == Meshing(200)
+    thread.work()
+    held.advance()
     assert editor.session.drawing.meshing == Meshing(395)
-    assert not remesher.busy
-    assert remesher.active
-    remesher.let_go()
-    assert not remesher.active
+    assert thread.count == 2
+    assert not held.is_busy
+    assert held.is_active
+    held.end_drag()
+    assert not held.is_active
 
 
-def test_choices_of_two_gestures_are_two_entries(editor):
-    remesher, depth = BackgroundRemesh(editor), editor.session.history.depth
-    remesher.want(Meshing(300))
+def test_two_gestures_are_two_entries(editor, remesher):
+    depth = editor.session.history.depth
+    remesher.request(Meshing(300))
     remesher.finish()
-    remesher.want(Meshing(500))
+    remesher.request(Meshing(500))
     remesher.finish()
     assert editor.session.history.depth == depth + 2
 
 
-def test_a_choice_made_before_the_last_is_there_is_not_lost(editor):
-    remesher = BackgroundRemesh(editor)
-    remesher.want(Meshing(300))
-    remesher.advance()
-    remesher.want(Meshing(remesher.meshing.vertices, 5.0))
-    remesher.finish()
+def test_a_gesture_includes_the_request_of_one_that_is_not_made_yet(editor, held, thread):
+    held.request(Meshing(300))
+    held.advance()
+    held.request(Meshing(held.meshing.vertices, 5.0))
+    while held.is_busy:
+        thread.work()
+        held.advance()
     assert editor.session.drawing.meshing == Meshing(300, 5.0)
 
 
-def test_what_was_done_meanwhile_stays(editor):
-    remesher = BackgroundRemesh(editor)
-    remesher.want(Meshing(300))
-    remesher.advance()
+def test_edits_made_meanwhile_stay(editor, held, thread):
+    held.request(Meshing(300))
+    held.advance()
     gestures.add_pin(editor, (65.0, 60.0))
-    remesher.finish()
+    thread.work()
+    assert held.advance()
     assert len(editor.session.state.pins) == 4
     assert editor.session.drawing.meshing == Meshing(300)
     editor.undo()
     assert len(editor.session.state.pins) == 4
 
 
-def test_it_waits_for_a_gesture_to_end(editor):
-    remesher = BackgroundRemesh(editor)
-    remesher.want(Meshing(300))
-    remesher.advance()
+def test_a_mesh_waits_for_a_gesture_of_the_editor_to_end(editor, held, thread):
+    held.request(Meshing(300))
+    held.advance()
     editor.session.begin("Bend")
-    remesher._job[2].result()
-    assert not remesher.advance()
+    thread.work()
+    assert not held.advance()
     editor.session.abort()
-    assert remesher.advance()
+    assert held.advance()
 
 
-def test_another_drawing_ends_it(editor):
-    remesher = BackgroundRemesh(editor)
-    remesher.want(Meshing(300))
-    remesher.advance()
+def test_another_drawing_cancels_the_request(editor, held, thread):
+    held.request(Meshing(300))
+    held.advance()
     other = new_document(make_drawing(np.full((30, 40, 4), 255, np.uint8), vertices=30))
     editor.open(other)
-    remesher.finish()
+    thread.work()
+    held.finish()
     assert editor.session.document.drawing is other.drawing
     editor.close()
-    assert remesher.meshing is None
-    remesher.want(Meshing(100))
-    assert not remesher.busy
+    assert held.meshing is None
+    held.request(Meshing(100))
+    assert not held.is_busy
 
 
-def test_what_cannot_be_made_is_said_and_changes_nothing(editor):
-    remesher, state = BackgroundRemesh(editor), editor.session.state
-    remesher.want(Meshing(300, threshold=1.5))
+def test_a_mesh_that_cannot_be_made_is_an_error_and_changes_nothing(editor, remesher):
+    state = editor.session.state
+    remesher.request(Meshing(300, threshold=1.5))
     with pytest.raises(InputError, match=r"threshold: expected a share between 0 and 1, got 1\.5"):
         remesher.finish()
     assert editor.session.state is state
-    assert not remesher.busy
+    assert not remesher.is_busy

@@ -38,7 +38,7 @@ def drag(session, dx, dy):
 def followed(comparison, main):
     for _ in range(1000):
         comparison.follow(main)
-        if not comparison.moving:
+        if not comparison.is_moving:
             return comparison.session.state.positions
     raise AssertionError("it does not come to rest")
 
@@ -88,14 +88,14 @@ def test_another_method_starts_from_the_pose_that_is_there(main):
     comparison.close()
     assert comparison.session is None
     assert comparison.measure() is None
-    assert not comparison.moving
+    assert not comparison.is_moving
 
 
 def test_without_pins_or_motion_it_rests(drawing):
     session = Session(new_document(drawing))
     comparison = MethodComparison()
     comparison.follow(session)
-    assert not comparison.moving
+    assert not comparison.is_moving
     assert comparison.session.state.positions.tolist() == drawing.mesh.vertices.tolist()
 
 

@@ -5,7 +5,6 @@ from imgui_bundle import imgui  # isort: skip
 import ctypes
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.commands.command import Command
+from akap_editor.app.jobs.background_thread import BackgroundThread
 from akap_editor.app.jobs.task import Task
 from akap_editor.app.window import Window
 from akap_editor.editor.document.document import Document
@@ -28,6 +28,7 @@ from akap_editor.editor.session.session import Session
 te = imgui.test_engine
 Point = tuple[float, float]
 MOST_FRAMES = 2000
+DEADLINE = 60.0  # seconds; a slow machine takes a few
 
 # The Test Engine waits in this for a thread that runs Python. Its binding keeps the interpreter locked, so
 # the two would wait for one another for ever; a call through ctypes unlocks it.
@@ -59,8 +60,9 @@ class WindowDriver:
         """As just started with this document, whatever was open before. clock: the editor's, in seconds."""
         if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
             imgui.internal.close_popup_to_level(0, False)
-        editor = Editor(clock, ThreadPoolExecutor(1, "engine"))
-        self.window.state = AppState(editor, exporter=self.window.state.exporter)
+        wake = self.window.wake
+        editor = Editor(clock, BackgroundThread("engine", wake))
+        self.window.state = AppState(editor, wake, exporter=self.window.state.exporter)
         self.editor.ui_scale = self.window.scale
         files.show_document(self.state, document)
         self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.empty_place)))
@@ -121,13 +123,16 @@ class WindowDriver:
         te.post_swap(self._engine)
 
     def settle(self) -> None:
-        """Frames until the window would sleep."""
+        """Draw frames until nothing moves and no thread computes; a thread that is done must wake it."""
         self.window.wake()
         for _ in range(MOST_FRAMES):
-            if not self.window._busy:
+            if self.window.needs_frame:
+                self.frame()
+            elif self.state.is_busy:
+                self.window.wait_for_events(DEADLINE)
+                assert self.window.needs_frame, f"nothing has woken the window within {DEADLINE:g} s"
+            else:
                 return
-            self.window._awake -= 1
-            self.frame()
         raise AssertionError(f"still busy after {MOST_FRAMES} frames")
 
     def screenshot(self) -> NDArray[np.uint8]:
@@ -271,8 +276,8 @@ class WindowDriver:
         self.do(turn)
 
     def drop(self, *paths: Path) -> None:
-        """As GLFW tells of files dropped on the window."""
-        self.window._on_drop(None, [str(path) for path in paths])
+        """Drop files on the window."""
+        self.window.drop(list(paths))
         self.settle()
 
 

@@ -40,9 +40,12 @@ def draw(state: AppState, canvas: Canvas, scale: float) -> Canvas:
         state.comparison.close()
         return canvas
     left, right = halves(canvas)
-    if not state.run_reporting_errors(
-        lambda: state.comparison.follow(session, state.editor.worker, FRAME_BUDGET)
-    ):
+
+    def follow() -> None:
+        if state.comparison.follow(session, state.editor.worker, FRAME_BUDGET):
+            state.wake()
+
+    if not state.run_reporting_errors(follow):
         state.split = False
         return canvas
     settings = session.state.settings

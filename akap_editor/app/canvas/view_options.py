@@ -117,14 +117,9 @@ class ViewOptions:
         )
 
     @property
-    def moving(self) -> bool:
-        """Whether fields are still to come."""
+    def is_computing(self) -> bool:
+        """Whether vector fields are being computed."""
         return self._fields.coming is not None
-
-    @property
-    def waiting(self) -> bool:
-        """Whether they are being computed."""
-        return self._fields.coming is not None and not self._fields.coming.done()
 
     def _tint_of(self, editor: Editor) -> FaceColors | None:
         """What bends less, while the brush is at hand; one object for each stiffness."""

@@ -37,9 +37,18 @@ class Dialogs:
         self._asked: FileRequest | None = None
 
     @property
-    def waiting(self) -> bool:
-        """Whether a dialog of the system is open, whose answer must be polled."""
+    def native_is_open(self) -> bool:
+        """Whether a file dialog of the system is open.
+
+        Its answer must be polled: the library has no callback, and its blocking call would hold the
+        interpreter, so that a thread could not wait for it either.
+        """
         return self._native is not None
+
+    @property
+    def native_is_answered(self) -> bool:
+        """Whether the user has answered the file dialog of the system."""
+        return self._native is not None and bool(self._native.ready(0))
 
     def draw(self, state: AppState, scale: float) -> None:
         """One frame of what is to be answered now; a message goes before everything else."""

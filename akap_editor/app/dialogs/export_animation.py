@@ -190,16 +190,17 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
         yield Progress(0.3 * number / len(times), f"Posing frame {number + 1} of {len(times)}")
     frames = options.playing_order(frames, frames[0], frames[-1])
     pictures = paint_frames(frames, state.exporter, options.size, options.visible_background)
-    encoder = FrameEncoder(partial(write_animation, path, fps=options.fps, plays=options.plays, sheet=sheet))
+    export = partial(write_animation, path, fps=options.fps, plays=options.plays, sheet=sheet)
+    encoder = FrameEncoder(export, state.wake)
     try:
         for number, picture in enumerate(pictures):
             share = 0.3 + 0.6 * number / len(frames)
             progress = Progress(share, f"Drawing frame {number + 1} of {len(frames)}")
             yield progress
             for _ in encoder.take(picture):
-                yield progress
+                yield progress._replace(is_blocked=True)
         for _ in encoder.finish():
-            yield Progress(0.95, f"Writing {path.name}")
+            yield Progress(0.95, f"Writing {path.name}", is_blocked=True)
     finally:
         encoder.close()
     state.notice = f"Exported {path.name}, {len(frames)} frames, {encoder.said}"

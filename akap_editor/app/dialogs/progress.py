@@ -22,9 +22,9 @@ def draw(state: AppState, task: Task, scale: float) -> None:
     imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - imgui.calc_text_size(done).x)
     imgui.text(done)
     imgui.spacing()
-    if task.enough is not None and widgets.button("Stop here", primary=True):
-        task.enough()
-    if task.enough is not None:
+    if task.finish_early is not None and widgets.button("Stop here", primary=True):
+        task.finish_early()
+    if task.finish_early is not None:
         imgui.same_line()
     if widgets.button("Cancel") or widgets.cancel_pressed():
         task.cancel()

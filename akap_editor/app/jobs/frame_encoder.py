@@ -1,7 +1,6 @@
-"""Pictures that become a file in another thread, while more of them are drawn."""
+"""Encodes pictures to a file in a thread, while the window draws more of them."""
 
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 from queue import Full, Queue
 from typing import Protocol
@@ -9,9 +8,9 @@ from typing import Protocol
 from ...errors import InputError
 from ...io.atomic import Write, write_atomic
 from ...io.images import Picture
+from .background_thread import BackgroundThread, Wake, no_window
 
-_AHEAD = 8  # pictures that wait to be encoded
-_WAIT = 0.02  # seconds
+_MOST_QUEUED = 8  # pictures that may wait to be encoded: bounds the memory
 
 
 class Export(Protocol):
@@ -21,44 +20,53 @@ class Export(Protocol):
 
 
 class FrameEncoder:
-    """An export at work, which waits for its pictures. One that is closed too early writes no file."""
+    """Runs an export in a thread and hands it the pictures one after the other.
 
-    def __init__(self, export: Export) -> None:
-        self._waiting: Queue[Picture | None] = Queue(_AHEAD)
-        self._wanted = True
-        self._thread = ThreadPoolExecutor(1, "encoder")
+    wake: called in the thread when there is room for another picture, and when the file is written. `close`
+    must be called in the end; if the file is not written by then, it never is.
+    """
+
+    def __init__(self, export: Export, wake: Wake = no_window) -> None:
+        self._wake = wake
+        self._queue: Queue[Picture | None] = Queue(_MOST_QUEUED)
+        self._is_cancelled = False
+        self._thread = BackgroundThread("encoder", wake)
         self._written = self._thread.submit(lambda: export(frames=self._pictures(), write=self._write))
 
     def take(self, picture: Picture | None) -> Iterator[None]:
-        """Add a picture as soon as there is room, or not at all if nobody reads any more. None: the end."""
+        """Add a picture, or None after the last one; yields as long as the queue is full.
+
+        Drops the picture if the export has ended, for example with an error.
+        """
         while not self._written.done():
             try:
-                self._waiting.put(picture, timeout=_WAIT)
+                self._queue.put_nowait(picture)
             except Full:
                 yield
             else:
                 return
 
     def finish(self) -> Iterator[None]:
-        """There are no more pictures; goes on until the file is written."""
+        """End the pictures; yields until the file is written."""
         yield from self.take(None)
-        while not wait([self._written], _WAIT).done:
+        while not self._written.done():
             yield
 
     @property
     def said(self) -> str:
-        """What was written. Raises what the export has raised."""
+        """A few words on the file. Raises the exception of the export."""
         return self._written.result()
 
     def close(self) -> None:
-        """To be called in the end, come what may. What is still being encoded ends by itself."""
-        self._wanted = self._written.done()
-        for _ in self.take(None):
-            pass
+        """End the thread; cancels the export if the file is not written."""
+        self._is_cancelled = not self._written.done()
+        next(self.take(None), None)  # if the queue is full, the thread is about to read it and sees the flag
         self._thread.shutdown(wait=False)
 
     def _pictures(self) -> Iterator[Picture]:
-        while (picture := self._waiting.get()) is not None:
+        while (picture := self._queue.get()) is not None:
+            self._check()
+            self._wake()
             yield picture
         self._check()
 
@@ -67,5 +75,5 @@ class FrameEncoder:
         write_atomic(path, data)
 
     def _check(self) -> None:
-        if not self._wanted:
+        if self._is_cancelled:
             raise InputError("the export was cancelled")

@@ -1,4 +1,4 @@
-"""Recordings that are opened: done again, so that they end in a session to go on with."""
+"""Opens a recording: replays it, so that it ends in a session that one can continue."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -13,10 +13,11 @@ from .task import Progress, Steps, Task
 Show = Callable[[Session, SessionPlayback], None]
 
 
-def reenacting(path: Path, show: Show) -> Task:
-    """Does the recording in a file again, then shows its session, and the player that has watched it.
+def open_recording(path: Path, show: Show) -> Task:
+    """A task that replays the recording in a file and passes the session and its playback to ``show``.
 
-    Raises InputError where the file is no recording.
+    If the task is finished early, the session ends there. Raises InputError if the file is no recording or an
+    empty one; the task raises it at an event that cannot be replayed.
     """
     recording = read_recording(path)
     with error_context(path):
@@ -24,22 +25,24 @@ def reenacting(path: Path, show: Show) -> Task:
     playback = SessionPlayback(replay.clock)
     if not recording.events:
         raise InputError(f"{path}: expected a recording of something that was done, got none")
-    wanted = True
+    is_finished_early = False
 
-    def stop() -> None:
-        nonlocal wanted
-        wanted = False
+    def finish_early() -> None:
+        nonlocal is_finished_early
+        is_finished_early = True
 
     def steps() -> Steps:
         times = [float(recorded["t"]) for recorded in recording.events]
-        for number, event in enumerate(replay.events(), start=1):
-            if number == len(times) or times[number] > event.time:  # the last of what was done then
+        for count, event in enumerate(replay.events(), start=1):
+            is_last_of_its_time = count == len(times) or times[count] > event.time
+            if is_last_of_its_time:
                 playback.watch(replay.session)
-            yield Progress(number / len(times), f"At {event.time:.0f} of {recording.duration:.0f} s")
-            if not wanted:
+            text = f"At {event.time:.0f} of {recording.duration:.0f} s"
+            yield Progress(count / len(times), text)
+            if is_finished_early:
                 break
         session = replay.end()
         playback.watch(session)
         show(session, playback)
 
-    return Task(f"Opening {path.name}", steps(), stop)
+    return Task(f"Opening {path.name}", steps(), finish_early)

@@ -1,4 +1,4 @@
-"""Work that takes seconds: done in slices between frames, so that one sees how far it is and can stop it."""
+"""Long work, done in slices between frames, so that a dialog shows its progress and can cancel it."""
 
 import time
 from collections.abc import Callable, Generator
@@ -9,39 +9,45 @@ SLICE = 0.03  # seconds of work between two frames
 
 
 class Progress(NamedTuple):
-    """share: of the work that is done, 0 to 1; text: what is being done."""
+    """How far a task is.
+
+    share: of the work that is done, 0 to 1; text: what is being done; is_blocked: whether the task can only
+    go on when a thread is done, which then wakes the window.
+    """
 
     share: float = 0.0
     text: str = "Beginning ..."
+    is_blocked: bool = False
 
 
-BEGINNING = Progress()
+START = Progress()
 Steps = Generator[Progress, None, None]
 
 
 @dataclass(eq=False)
 class Task:
-    """title: of the dialog; steps: the work; enough: ends it with what there is so far, if that makes sense.
+    """Work that the window shows in a dialog.
 
-    A task that is stopped leaves all as it was: its generator is closed.
+    title: of the dialog; steps: the work, yields its progress often; finish_early: ends the work with the
+    result so far, None if that makes no sense.
     """
 
     title: str
     steps: Steps
-    enough: Callable[[], None] | None = None
-    progress: Progress = BEGINNING
+    finish_early: Callable[[], None] | None = None
+    progress: Progress = START
 
     def advance(self, seconds: float = SLICE) -> bool:
-        """Work for so long; whether it is done. Raises what the work raises."""
-        until = time.perf_counter() + seconds
+        """Work for ``seconds`` or until blocked; whether the task is done. Raises what the work raises."""
+        end = time.perf_counter() + seconds
         while True:
             try:
                 self.progress = next(self.steps)
             except StopIteration:
                 return True
-            if time.perf_counter() >= until:
+            if self.progress.is_blocked or time.perf_counter() >= end:
                 return False
 
     def cancel(self) -> None:
-        """Stop."""
+        """End the work without a result; everything stays as it was."""
         self.steps.close()

@@ -34,7 +34,7 @@ def draw(state: AppState, scale: float) -> None:
         logarithmic,
     )
     if vertices is not None:
-        state.remesher.want(replace(wanted, vertices=_rounded(vertices)), held=True)
+        state.remesher.request(replace(wanted, vertices=_rounded(vertices)), dragging=True)
     expand = _slider(
         state,
         "Expansion",
@@ -43,7 +43,7 @@ def draw(state: AppState, scale: float) -> None:
         "How far the mesh goes beyond the outline. Parts that are nearer to one another become one.",
     )
     if expand is not None:
-        state.remesher.want(replace(wanted, expand=round(expand, 1)), held=True)
+        state.remesher.request(replace(wanted, expand=round(expand, 1)), dragging=True)
     threshold = _slider(
         state,
         "Edge",
@@ -52,7 +52,7 @@ def draw(state: AppState, scale: float) -> None:
         "How opaque the picture must be to belong to the drawing. Lower it to keep what is faint.",
     )
     if threshold is not None:
-        state.remesher.want(replace(wanted, threshold=round(threshold) / 100), held=True)
+        state.remesher.request(replace(wanted, threshold=round(threshold) / 100), dragging=True)
     _numbers(state.document.drawing.mesh)
 
 
@@ -67,14 +67,14 @@ def _background(state: AppState, wanted: Meshing) -> None:
             "How far a color may be from that of the border and still be background.",
         )
         if tolerance is not None:
-            state.remesher.want(replace(wanted, background=round(tolerance) / 100), held=True)
+            state.remesher.request(replace(wanted, background=round(tolerance) / 100), dragging=True)
         if imgui.button("Keep the background", ImVec2(widgets.FULL, 0)):
-            state.remesher.want(replace(wanted, background=None))
+            state.remesher.request(replace(wanted, background=None))
     elif state.document.drawing.is_opaque:
         widgets.secondary_text("This picture has no transparency, so all of its rectangle bends.")
         if imgui.button("Remove background", ImVec2(widgets.FULL, 0)):
             state.notice = ""
-            state.remesher.want(replace(wanted, background=DEFAULT_TOLERANCE))
+            state.remesher.request(replace(wanted, background=DEFAULT_TOLERANCE))
         widgets.show_tooltip("Makes transparent what has the color of the border and is joined to it.")
 
 
@@ -89,7 +89,7 @@ def _slider(
     imgui.same_line(_LABEL * imgui.get_font_size())
     moved, chosen, released = widgets.slider(f"##{label}", value, (low, high), text, flags)
     if released:
-        state.remesher.let_go()
+        state.remesher.end_drag()
     if moved:
         state.notice = ""
     return chosen if moved else None

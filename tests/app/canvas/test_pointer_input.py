@@ -236,7 +236,7 @@ def escape(ui, hand):
 
 def lose_focus(ui, hand):
     for call in (glfw.hide_window, glfw.show_window, glfw.focus_window):
-        ui.on_main_thread(hand, partial(call, ui.window._handle))
+        ui.on_main_thread(hand, partial(call, ui.window.handle))
 
 
 def undo(ui, hand):

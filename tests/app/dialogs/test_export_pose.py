@@ -39,7 +39,7 @@ def export_as(ui, name):
     assert not dialog(ui).is_open
     ui.type_name(FILE, name)
     ui.settle()
-    assert not ui.state.waiting
+    assert not ui.state.is_busy
 
 
 def option(label):

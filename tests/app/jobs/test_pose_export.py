@@ -43,9 +43,8 @@ def test_pictures_are_drawn_by_the_window_and_files_written_in_order(writer):
     painter, said = Painter(), []
     writer.begin(job(1, 2))
     writer.begin(job(3))
-    while writer.moving:
-        if not writer.waiting:
-            said += filter(None, [writer.advance(painter)])
+    while writer.is_busy:
+        said += filter(None, [writer.advance(painter)])
     assert said == ["1 2", "3"]
     assert set(painter.threads) == {threading.current_thread()}
 
@@ -58,7 +57,7 @@ def test_what_fails_is_told_where_it_was_begun_and_the_next_is_written(writer):
         writer.finish(painter)
     writer.finish(painter)
     assert len(painter.threads) == 2
-    assert not writer.moving
+    assert not writer.is_busy
 
 
 def test_a_closed_window_keeps_no_thread_waiting():
@@ -93,7 +92,7 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
     while pinned.editor.moving:
         pinned.frame()
     np.testing.assert_allclose(pinned.pin_place(3), (x, y - 40), atol=0.25)
-    assert pinned.window._busy
+    assert pinned.state.is_busy
     assert not path.exists()
     gate.set()
     pinned.settle()

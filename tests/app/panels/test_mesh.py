@@ -26,7 +26,7 @@ def slide(ui: WindowDriver, label: str, *shares: float) -> list[Meshing | None]:
                 hand.mouse_move_to_pos(type(rect.min)(x, middle))
             hand.yield_(8)
             seen.append(ui.state.remesher.meshing)
-            assert number == 0 or ui.state.remesher.active
+            assert number == 0 or ui.state.remesher.is_active
         hand.mouse_up(0)
 
     ui.do(drag)
@@ -45,7 +45,7 @@ def test_vertices_slider_gives_another_mesh_as_one_entry(opened):
     places, before = opened.session.pin_positions(), opened.document
     depth = opened.session.history.depth
     slide(opened, "##Vertices", 0.2, 0.4, 0.6)
-    assert not opened.state.remesher.active
+    assert not opened.state.remesher.is_active
     drawing = opened.document.drawing
     assert len(drawing.mesh.vertices) > 3 * len(before.drawing.mesh.vertices)
     assert drawing.meshing.vertices == pytest.approx(len(drawing.mesh.vertices), rel=0.1)

@@ -1,6 +1,6 @@
 """Steps that another thread computes: edits meanwhile, edits that wait, failures, and the recording."""
 
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -20,36 +20,15 @@ from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.stepper import INLINE, SETTLED_MOTION
 from akap_editor.errors import SolverError
 from tests.support.editor_driver import Driver, bits
+from tests.support.executors import HeldExecutor
 
 END, AWAY, FARTHER = (105.0, 40.0), (100.0, 30.0), (95.0, 22.0)
-
-
-class Slow(Executor):
-    """Does what was submitted when it is told to."""
-
-    def __init__(self):
-        self.jobs = []
-        self.last = None
-
-    def submit(self, job, /, *args, **kwargs):
-        future = Future()
-        self.jobs.append((future, job, args, kwargs))
-        return future
-
-    def work(self):
-        jobs, self.jobs = self.jobs, []
-        for future, job, args, kwargs in jobs:
-            try:
-                future.set_result(job(*args, **kwargs))
-            except Exception as error:
-                future.set_exception(error)
-            self.last = future
 
 
 @pytest.fixture
 def slow(drawing):
     """Three pins, the last of them dragged, and its first step under way with a slow worker."""
-    driver = Driver(new_document(drawing), worker=Slow())
+    driver = Driver(new_document(drawing), worker=HeldExecutor())
     for at in ((20.0, 40.0), (62.0, 40.0), END):
         driver.click(at)
     driver.before = driver.everything
@@ -65,14 +44,15 @@ def kinds(driver):
 
 def test_until_a_step_is_done_the_pose_stays_and_the_pin_may_be_dragged_on(slow):
     rest = slow.session.drawing.mesh.vertices
-    assert slow.editor.waiting
+    assert slow.session.has_pending_step
+    assert not slow.session.step_is_ready()
     assert not slow.editor.advance(0.0)
     slow.move(FARTHER)
     assert slow.state.positions is rest
     np.testing.assert_allclose(slow.state.targets[2], FARTHER)
 
     slow.editor.worker.work()
-    assert not slow.editor.waiting
+    assert slow.session.step_is_ready()
     assert slow.editor.advance(0.0)
     assert slow.state.positions is not rest
     while slow.editor.moving:
@@ -148,7 +128,8 @@ def test_a_release_does_not_wait_for_the_step(slow):
     slow.move(FARTHER)
     slow.release(FARTHER)
     assert slow.tool == "PinsIdle"
-    assert slow.editor.waiting
+    assert slow.session.has_pending_step
+    assert not slow.session.step_is_ready()
     assert slow.session.history.undo_label == "Bend"
     slow.editor.worker.work()
     slow.advance()

@@ -223,7 +223,7 @@ def test_a_second_method_beside_turns_as_well(pinned):
     comparison.follow(pinned.session)
     turn(pinned, 2, 20, 40)
     comparison.follow(pinned.session)
-    while comparison.moving:
+    while comparison.is_moving:
         comparison.follow(pinned.session)
     assert comparison.session is not None
     assert comparison.session.pin_angle(2) == pytest.approx(math.radians(40), abs=NEAR)
