@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from akap_editor.geometry.mesh import TriMesh
 from tests.support.cartoons import SHARED_DATA
+from tests.support.shapes import SHAPES
 
 # The same cases on every run, and no deadline: a slow machine is not a failure.
 settings.register_profile("reproducible", derandomize=True, deadline=None)
@@ -52,3 +54,15 @@ def shared_data() -> Path:
     if not SHARED_DATA.is_dir():
         pytest.skip(f"{SHARED_DATA} is absent")
     return SHARED_DATA
+
+
+@pytest.fixture(params=SHAPES)
+def shape_name(request: pytest.FixtureRequest) -> str:
+    """The name of each shape of tests/support/shapes.py in turn."""
+    return request.param
+
+
+@pytest.fixture
+def mesh(shape_name: str) -> TriMesh:
+    """Each shape in turn."""
+    return SHAPES[shape_name]

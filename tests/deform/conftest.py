@@ -1,6 +1,4 @@
-"""The shapes of this folder's tests, and the paper's equations in loops and dense matrices."""
-
-from types import ModuleType
+"""Meshes of cartoons."""
 
 import numpy as np
 import pytest
@@ -10,39 +8,6 @@ from akap_editor.geometry.mesh import TriMesh
 from akap_editor.meshing.outline import outlines
 from akap_editor.meshing.triangulate import triangulate
 from akap_editor.resources import resource
-from tests.support import arap_reference as ARAP
-from tests.support import dense as DENSE
-from tests.support import shapes as SHAPES
-
-
-@pytest.fixture(scope="session")
-def shapes() -> ModuleType:
-    """What geometry/shapes.py defines."""
-    return SHAPES
-
-
-@pytest.fixture(scope="session")
-def dense() -> ModuleType:
-    """What dense.py defines."""
-    return DENSE
-
-
-@pytest.fixture(params=SHAPES.SHAPES)
-def shape_name(request: pytest.FixtureRequest) -> str:
-    """Each shape in turn, by name."""
-    return request.param
-
-
-@pytest.fixture
-def mesh(shape_name: str) -> TriMesh:
-    """Each shape in turn."""
-    return SHAPES.SHAPES[shape_name]
-
-
-@pytest.fixture(scope="session")
-def arap() -> ModuleType:
-    """What arap_reference.py defines."""
-    return ARAP
 
 
 @pytest.fixture(scope="session")

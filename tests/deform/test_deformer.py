@@ -8,6 +8,7 @@ import pytest
 from akap_editor.deform.methods import make_deformer, method_names, presets_of
 from akap_editor.errors import AkapError, InputError
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
+from tests.support import shapes
 
 # Every method is tested with the parameters of each of its presets, and with these.
 FURTHER_PARAMETERS = {
@@ -46,7 +47,7 @@ def shape_name(request):
 
 
 @pytest.fixture
-def mesh(shape_name, shapes):
+def mesh(shape_name):
     """Each shape in turn; of tied islands, one rides with the body and one with that one."""
     if shape_name != "tied islands":
         return shapes.SHAPES[shape_name]
@@ -68,7 +69,7 @@ def stepped(case, mesh, points, positions, targets, steps=1):
     return positions
 
 
-def scene(mesh, shapes, seed=1):
+def scene(mesh, seed=1):
     """Pins, a pose that is no rigid motion of the rest pose, and targets a few pixels from where pins are.
 
     Where parts are tied, one of them has all the pins.
@@ -85,8 +86,8 @@ def scene(mesh, shapes, seed=1):
     return points, pose, targets
 
 
-def test_arguments_are_not_modified(case, mesh, shapes):
-    arguments = points, pose, targets = scene(mesh, shapes)
+def test_arguments_are_not_modified(case, mesh):
+    arguments = points, pose, targets = scene(mesh)
     copies = [points.faces.copy(), points.weights.copy(), pose.copy(), targets.copy()]
     result = deformer_of(case, mesh, points).step(pose, targets)
     result.positions[:] += 1.0  # the caller's own from here on
@@ -94,8 +95,8 @@ def test_arguments_are_not_modified(case, mesh, shapes):
         assert now.tolist() == before.tolist()
 
 
-def test_result_is_well_formed(case, mesh, shapes):
-    points, pose, targets = scene(mesh, shapes)
+def test_result_is_well_formed(case, mesh):
+    points, pose, targets = scene(mesh)
     result = deformer_of(case, mesh, points).step(pose, targets)
     assert result.positions.shape == pose.shape
     assert result.positions.dtype == np.float64
@@ -107,9 +108,9 @@ def test_result_is_well_formed(case, mesh, shapes):
     assert result.report.pin_error == pytest.approx(off.max(), rel=1e-9, abs=1e-12)
 
 
-def test_result_depends_on_nothing_but_the_arguments(case, mesh, shapes):
+def test_result_depends_on_nothing_but_the_arguments(case, mesh):
     """Not on earlier steps, earlier pins, or another deformer: restoring the pose restores everything."""
-    points, pose, targets = scene(mesh, shapes)
+    points, pose, targets = scene(mesh)
     expected = stepped(case, mesh, points, pose, targets)
     others = shapes.random_pins(mesh, 7, 2)
     used = deformer_of(case, mesh, others)
@@ -123,20 +124,20 @@ def test_result_depends_on_nothing_but_the_arguments(case, mesh, shapes):
 
 
 @pytest.mark.parametrize(("factor", "shift"), [(np.exp(0.7j), 0), (1, 400 - 90j), (12.5, 0), (0.04j, 3 + 1j)])
-def test_moving_turning_and_scaling_commute_with_a_step(case, mesh, shapes, factor, shift):
+def test_moving_turning_and_scaling_commute_with_a_step(case, mesh, factor, shift):
     def moved(points):
         z = factor * (points[:, 0] + 1j * points[:, 1]) + shift
         return np.stack([z.real, z.imag], axis=1)
 
-    points, pose, targets = scene(mesh, shapes)
+    points, pose, targets = scene(mesh)
     expected = moved(stepped(case, mesh, points, pose, targets))
     other = TriMesh(moved(mesh.vertices), mesh.faces, mesh.tied)
     found = stepped(case, other, points, moved(pose), moved(targets))
     assert np.abs(found - expected).max() < 1e-9 * 300 * abs(factor)
 
 
-def test_renumbering_commutes_with_a_step(case, mesh, shapes):
-    points, pose, targets = scene(mesh, shapes)
+def test_renumbering_commutes_with_a_step(case, mesh):
+    points, pose, targets = scene(mesh)
     expected = stepped(case, mesh, points, pose, targets)
     other, order, new_faces = shapes.renumbered(mesh, 3)
     swap = np.random.default_rng(3).permutation(len(points))
@@ -148,21 +149,21 @@ def test_renumbering_commutes_with_a_step(case, mesh, shapes):
     assert np.abs(found - expected[order]).max() < 1e-9 * 300
 
 
-def test_choosing_pins_moves_nothing_at_rest(case, mesh, shapes):
+def test_choosing_pins_moves_nothing_at_rest(case, mesh):
     """Pins whose targets are where they are."""
     rest = mesh.vertices
     for points in (shapes.random_pins(mesh, 1), shapes.random_pins(mesh, 2, 1)):
         assert np.abs(stepped(case, mesh, points, rest, mesh.evaluate(points, rest)) - rest).max() < 1e-9
 
 
-def test_without_pins_nothing_moves(case, mesh, shapes):
-    _, pose, _ = scene(mesh, shapes)
+def test_without_pins_nothing_moves(case, mesh):
+    _, pose, _ = scene(mesh)
     assert stepped(case, mesh, NO_PINS, pose, np.zeros((0, 2))).tolist() == pose.tolist()
 
 
-def test_part_without_a_pin_holds_still(case, shapes):
+def test_part_without_a_pin_holds_still(case):
     mesh = shapes.SHAPES["islands"]
-    _, pose, _ = scene(mesh, shapes)
+    _, pose, _ = scene(mesh)
     own = mesh.component == mesh.component[mesh.faces[0, 0]]
     free = np.flatnonzero(own[mesh.faces[:, 0]])[[0, 7, -1]]
     points = MeshPoints(free, np.full((3, 3), 1 / 3))
@@ -184,17 +185,17 @@ def test_one_pin_moves_its_part_rigidly(case, mesh):
     assert result[~own].tolist() == mesh.vertices[~own].tolist()
 
 
-def test_pins_at_their_targets_translate_the_drawing(case, mesh, shapes):
-    points, _, _ = scene(mesh, shapes)
+def test_pins_at_their_targets_translate_the_drawing(case, mesh):
+    points, _, _ = scene(mesh)
     targets = mesh.evaluate(points, mesh.vertices) + np.array([6.0, -11.0])
     result = stepped(case, mesh, points, mesh.vertices, targets, 3)
     assert np.abs(result - mesh.vertices - [6.0, -11.0]).max() < 1e-6
 
 
 @pytest.mark.parametrize("shape_name", ["triangle", "strip", "islands"])
-def test_no_argument_leads_to_numbers_that_are_not_finite(case, mesh, shapes):
+def test_no_argument_leads_to_numbers_that_are_not_finite(case, mesh):
     """Targets at odds with one another, very far away, or all in one place."""
-    points, pose, targets = scene(mesh, shapes)
+    points, pose, targets = scene(mesh)
     opposite = 2 * targets.mean(axis=0) - targets
     for wanted in (opposite, np.repeat(targets[:1], len(targets), axis=0)):
         assert np.isfinite(stepped(case, mesh, points, pose, wanted)).all()
@@ -217,13 +218,13 @@ def test_no_argument_leads_to_numbers_that_are_not_finite(case, mesh, shapes):
         (np.eye(3)[:, :2], [["a", "b"]], "targets: expected real numbers"),
     ],
 )
-def test_bad_arguments_are_refused(case, shapes, positions, targets, sentence):
+def test_bad_arguments_are_refused(case, positions, targets, sentence):
     deformer = deformer_of(case, shapes.SHAPES["triangle"], MeshPoints([0], [[1.0, 0.0, 0.0]]))
     with pytest.raises(InputError, match=sentence):
         deformer.step(positions, targets)
 
 
-def test_pins_of_another_mesh_are_refused_and_the_old_ones_stay(case, shapes):
+def test_pins_of_another_mesh_are_refused_and_the_old_ones_stay(case):
     mesh = shapes.SHAPES["triangle"]
     points = MeshPoints([0], [[1.0, 0.0, 0.0]])
     deformer = deformer_of(case, mesh, points)

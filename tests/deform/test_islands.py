@@ -12,6 +12,7 @@ from akap_editor.geometry.mesh import MeshPoints, TriMesh
 from akap_editor.io.images import read_image
 from akap_editor.meshing.outline import outlines
 from akap_editor.meshing.triangulate import triangulate
+from tests.support import shapes
 
 STEP = StepReport(0.0, 1, 0.0, 0, 0.0)
 
@@ -32,13 +33,13 @@ class Puppeteer(Deformer):
 
 
 @pytest.fixture
-def comb(shapes):
+def comb():
     """A body with an arm below which there are two islands, the outer one nearer to the inner than to it."""
     return replace(shapes.blocks("######### ##....... ##......# ##......# ##....###", 20, 3, 0.15), tied=True)
 
 
 @pytest.fixture
-def row(shapes):
+def row():
     """A body and two islands beside it, one behind the other."""
     return replace(shapes.blocks("###.#.# ###.#.. ###...#", 40, 3, 0.2), tied=True)
 
@@ -205,13 +206,13 @@ def test_rigid_velocities_of_the_pins_are_those_of_every_part(row):
     assert np.abs(found - spinning).max() < 1e-6 * 300
 
 
-def test_many_islands_are_all_taken_along(shapes):
+def test_many_islands_are_all_taken_along():
     mesh = replace(shapes.blocks("#.#.# ..... #.#.# ..... #.#.#", 20, 2, 0.2), tied=True)
     moved = ridden(mesh, pin_on(mesh, (50, 50)), [mesh.vertices + by(30, 40)])
     assert np.abs(moved - mesh.vertices - by(30, 40)).max() < 1e-9 * 300
 
 
-def test_nails_around_a_gopher_ride_with_its_feet(shared_data, shapes):
+def test_nails_around_a_gopher_ride_with_its_feet(shared_data):
     """The body bent by pins: a nail is about as far from the skin next to it as before."""
     picture = read_image(shared_data / "gophers" / "gopher-42.png")[::5, ::5]
     mesh = replace(triangulate(outlines(picture[..., 3]), 1500), tied=True)
@@ -234,7 +235,7 @@ def test_nails_around_a_gopher_ride_with_its_feet(shared_data, shapes):
         rigid_motion(mesh.vertices[mesh.component == part], pose[mesh.component == part])
 
 
-def test_meshes_of_one_part_need_no_rider(shapes):
+def test_meshes_of_one_part_need_no_rider():
     mesh = replace(shapes.SHAPES["square"], tied=True)
     assert not isinstance(make_deformer("akap", mesh), IslandDeformer)
     assert isinstance(mesh, TriMesh)

@@ -22,6 +22,7 @@ from akap_editor.deform.methods import (
     presets_of,
 )
 from akap_editor.errors import InputError
+from tests.support import shapes
 from tests.support.toy_method import TOY, TranslationDeformer, add_toy_method
 
 
@@ -61,7 +62,7 @@ def test_bad_specs_are_refused(text, sentence):
         parse_method(text)
 
 
-def test_every_method_has_a_preset_and_every_preset_works(shapes):
+def test_every_method_has_a_preset_and_every_preset_works():
     assert {preset.method for preset in presets()} == set(method_names())
     for preset in presets():
         assert parse_method(preset.spec) == (preset.method, preset.parameters)
@@ -109,7 +110,7 @@ def test_every_parameter_of_every_method_is_described(method):
 
 
 @pytest.mark.parametrize("method", method_names())
-def test_defaults_lie_in_the_ranges_of_the_table(method, shapes):
+def test_defaults_lie_in_the_ranges_of_the_table(method):
     defaults = {**default_parameters(method), **get_method(method).document_defaults}
     for parameter in get_method(method).parameters:
         value = defaults[parameter.name]
@@ -124,7 +125,7 @@ def test_defaults_lie_in_the_ranges_of_the_table(method, shapes):
 
 
 @pytest.mark.parametrize("method", method_names())
-def test_every_value_of_the_table_is_accepted(method, shapes):
+def test_every_value_of_the_table_is_accepted(method):
     for parameter in get_method(method).parameters:
         match parameter.kind:
             case Switch():
@@ -147,32 +148,32 @@ def test_capabilities_are_those_of_the_class(method):
     assert deformer.has_vector_fields == hasattr(deformer, "vector_fields")
 
 
-def test_unknown_method_is_refused_with_the_known_ones(shapes):
+def test_unknown_method_is_refused_with_the_known_ones():
     names = ", ".join(method_names())
     with pytest.raises(InputError, match=f"method: expected one of {names}, got 'magic'"):
         make_deformer("magic", shapes.SHAPES["triangle"])
 
 
-def test_unknown_parameter_is_refused_with_the_known_ones(shapes):
+def test_unknown_parameter_is_refused_with_the_known_ones():
     for method in method_names():
         with pytest.raises(InputError, match=f"method {method}: expected parameters among .*, got 'speed'"):
             make_deformer(method, shapes.SHAPES["triangle"], speed=3)
 
 
 @pytest.mark.parametrize("name", [None, 3, ["akap"]])
-def test_method_that_is_no_name_is_refused(shapes, name):
+def test_method_that_is_no_name_is_refused(name):
     with pytest.raises(InputError, match="method: expected one of "):
         make_deformer(name, shapes.SHAPES["triangle"])
 
 
-def test_tied_islands_move_under_every_method_that_the_table_gets(monkeypatch, shapes):
+def test_tied_islands_move_under_every_method_that_the_table_gets(monkeypatch):
     add_toy_method(monkeypatch)
     for method in METHODS:
         deformer: Deformer = make_deformer(method, shapes.SHAPES["islands"])
         assert deformer.has_vector_fields == get_method(method).deformer.has_vector_fields
 
 
-def test_a_method_without_presets_and_parameters_works_everywhere_in_the_table(monkeypatch, shapes):
+def test_a_method_without_presets_and_parameters_works_everywhere_in_the_table(monkeypatch):
     add_toy_method(monkeypatch)
     mesh = shapes.SHAPES["square"]
     assert method_names()[-1] == TOY

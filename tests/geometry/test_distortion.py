@@ -6,6 +6,7 @@ import pytest
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import TriMesh
+from tests.support import shapes
 
 TURN = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
 
@@ -69,9 +70,9 @@ def test_collapsed_faces_are_infinitely_distorted(mesh, matrix):
     assert (result.area, result.angle, result.flipped) == (np.inf, np.inf, len(mesh.faces))
 
 
-def test_renumbering_changes_nothing(mesh, renumbered):
+def test_renumbering_changes_nothing(mesh):
     pose = mesh.vertices + np.random.default_rng(9).normal(scale=3.0, size=mesh.vertices.shape)
-    other, order, _ = renumbered(mesh, 1)
+    other, order, _ = shapes.renumbered(mesh, 1)
     before, after = distortion(mesh, pose), distortion(other, pose[order])
     assert (after.area, after.angle, after.flipped) == (
         close(before.area),

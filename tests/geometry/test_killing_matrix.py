@@ -5,6 +5,7 @@ import pytest
 
 from akap_editor.geometry.killing_matrix import KillingMatrix, VertexBlocks, add_face
 from akap_editor.geometry.operators import killing_energy, to_complex
+from tests.support import dense
 
 
 def filled(blocks, nonzeros):
@@ -21,12 +22,12 @@ def assembled(mesh, positions, **weights):
     return filled(killing.blocks, killing.nonzeros(to_complex(positions), **weights))
 
 
-def test_killing_matrix_is_that_of_the_stacked_rows(mesh, dense):
+def test_killing_matrix_is_that_of_the_stacked_rows(mesh):
     rows = dense.killing_rows(mesh.vertices, mesh.faces)
     assert np.abs(assembled(mesh, mesh.vertices) - rows.T @ rows).max() < 1e-11
 
 
-def test_killing_matrix_at_a_pose(mesh, dense):
+def test_killing_matrix_at_a_pose(mesh):
     pose = mesh.vertices @ [[1.1, 0.3], [-0.2, 0.8]] + 2 * np.sin(mesh.vertices[:, ::-1] / 20)
     rows = dense.killing_rows(pose, mesh.faces)
     assert np.abs(assembled(mesh, pose) - rows.T @ rows).max() < 1e-11
@@ -55,7 +56,7 @@ def test_matrices_of_faces_add_up(mesh):
     assert np.abs(filled(blocks, nonzeros) - expected).max() < 1e-12
 
 
-def test_stiff_faces_count_more(mesh, dense):
+def test_stiff_faces_count_more(mesh):
     stiffness = np.random.default_rng(3).uniform(0.5, 100, len(mesh.faces))
     rows = dense.killing_rows(mesh.vertices, mesh.faces) * np.sqrt(stiffness).repeat(3)[:, None]
     expected = rows.T @ rows
@@ -88,7 +89,7 @@ def test_killing_energy_is_the_quadratic_form(mesh):
     assert energy == pytest.approx(field.ravel() @ matrix @ field.ravel(), rel=1e-12)
 
 
-def test_flipped_faces_count_by_their_size(mesh, dense):
+def test_flipped_faces_count_by_their_size(mesh):
     """A pose from elsewhere may have flipped faces: a mirrored one has the mirrored energy."""
     mirrored = mesh.vertices * [-1.0, 1.0]
     field = np.random.default_rng(7).normal(size=mirrored.shape)

@@ -9,6 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import MeshPoints, TriMesh, barycentric, signed_areas
+from tests.support import shapes
 
 TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 FACE = np.array([[0, 1, 2]])
@@ -123,7 +124,7 @@ def test_outer_loops_turn_with_the_faces_and_holes_against(mesh):
     assert sum(areas) == pytest.approx(mesh.rest_areas.sum(), rel=1e-12)
 
 
-def test_components_and_holes(mesh, shape_name, shapes):
+def test_components_and_holes(mesh, shape_name):
     parts, holes = shapes.PARTS.get(shape_name, 1), shapes.HOLES.get(shape_name, 0)
     assert len(mesh.boundary_loops) == parts + holes
     assert sorted(set(mesh.component.tolist())) == list(range(parts))
@@ -210,7 +211,7 @@ def test_outside_is_refused_with_the_nearest_vertex():
         mesh.locate([[10.0, 10.0], [104.0, 3.0]])
 
 
-def test_hole_is_outside(shapes):
+def test_hole_is_outside():
     ring = shapes.SHAPES["ring"]
     assert ring.find([75.0, 75.0]) is None
     assert ring.find([25.0, 75.0]) is not None

@@ -12,6 +12,7 @@ from akap_editor.geometry.operators import killing_energy
 from akap_editor.meshing.outline import outlines
 from akap_editor.meshing.triangulate import triangulate
 from akap_editor.resources import bundled_drawings
+from tests.support import dense, shapes
 
 DRAWINGS = {path.stem: path for path in bundled_drawings()}
 WHOLE = float("inf")  # max_step: one field for the whole way
@@ -30,7 +31,7 @@ def bent(mesh):
 
 @pytest.mark.parametrize("trajectory", ["spiral", "linear"])
 @pytest.mark.parametrize("dirichlet", [True, False])
-def test_step_without_memory_is_that_of_the_paper(mesh, shapes, dense, dirichlet, trajectory):
+def test_step_without_memory_is_that_of_the_paper(mesh, dirichlet, trajectory):
     points, pose = shapes.random_pins(mesh, 1), bent(mesh)
     velocities = np.random.default_rng(1).normal(
         scale=1e-3, size=(len(points), 2)
@@ -48,7 +49,7 @@ def test_step_without_memory_is_that_of_the_paper(mesh, shapes, dense, dirichlet
     assert np.abs(deformer.vector_field(pose, velocities) - field).max() < 1e-8 * np.abs(field).max()
 
 
-def test_long_way_is_cut_into_equal_substeps(mesh, shapes):
+def test_long_way_is_cut_into_equal_substeps(mesh):
     points = shapes.random_pins(mesh, 2)
     start = mesh.evaluate(points, mesh.vertices)
     goals = start + np.array([7.0, -3.0])
@@ -61,7 +62,7 @@ def test_long_way_is_cut_into_equal_substeps(mesh, shapes):
     assert np.abs(result.positions - pose).max() < 1e-9
 
 
-def test_report(mesh, shapes):
+def test_report(mesh):
     points = shapes.random_pins(mesh, 3)
     offsets = 0.1 * np.random.default_rng(3).normal(size=(len(points), 2))
     goals = mesh.evaluate(points, mesh.vertices) + offsets
@@ -82,7 +83,7 @@ def turned(points, angle):
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_pins_turned_together_turn_the_drawing(shapes, memory):
+def test_pins_turned_together_turn_the_drawing(memory):
     """By targets, not velocities: exact only in the limit of small steps."""
     mesh = shapes.SHAPES["bar"]
     points = shapes.random_pins(mesh, 4, 3)
@@ -107,7 +108,7 @@ def settle(deformer, pose, goals, steps=40):
 
 @pytest.mark.parametrize("memory", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("dirichlet", [True, False])
-def test_pins_arrive(mesh, shapes, memory, dirichlet):
+def test_pins_arrive(mesh, memory, dirichlet):
     points = shapes.random_pins(mesh, 5)
     goals = mesh.evaluate(points, bent(mesh)) + np.array([12.0, -20.0])
     result = settle(deformer_with(mesh, points, memory=memory, dirichlet=dirichlet), mesh.vertices, goals)
@@ -115,16 +116,16 @@ def test_pins_arrive(mesh, shapes, memory, dirichlet):
     assert result.report.flipped == 0
 
 
-def bar_ends(mesh, shapes):
+def bar_ends(mesh):
     """Pins on the vertices of both ends of the bar; those of the right end come last."""
     x = mesh.vertices[:, 0]
     left, right = np.flatnonzero(x == x.min()), np.flatnonzero(x == x.max())
     return shapes.vertex_pins(mesh, np.concatenate([left, right])), len(right)
 
 
-def bend_and_back(mesh, shapes, memory):
+def bend_and_back(mesh, memory):
     """The bar after its right end was turned by 90° about its middle, and after it was turned back."""
-    points, count = bar_ends(mesh, shapes)
+    points, count = bar_ends(mesh)
     deformer = deformer_with(mesh, points, memory=memory)
     rest = mesh.evaluate(points, mesh.vertices)
     center = mesh.vertices.mean(axis=0)
@@ -141,24 +142,24 @@ def bend_and_back(mesh, shapes, memory):
     return poses
 
 
-def test_memory_brings_the_bar_back_to_rest(shapes):
+def test_memory_brings_the_bar_back_to_rest():
     mesh = shapes.SHAPES["bar"]
-    there, back = bend_and_back(mesh, shapes, 1.0)
+    there, back = bend_and_back(mesh, 1.0)
     assert distortion(mesh, there).flipped == 0
     assert np.abs(there - mesh.vertices).max() > 100
     assert np.abs(back - mesh.vertices).max() < 0.01
 
 
-def test_without_memory_the_way_leaves_a_trace(shapes):
+def test_without_memory_the_way_leaves_a_trace():
     """Section 3.2 says so; memory leaves less than a tenth of it."""
     mesh = shapes.SHAPES["bar"]
-    _, back = bend_and_back(mesh, shapes, 0.0)
+    _, back = bend_and_back(mesh, 0.0)
     assert np.abs(back - mesh.vertices).max() > 0.1
 
 
-def test_memory_lowers_distortion(shapes):
+def test_memory_lowers_distortion():
     mesh = shapes.SHAPES["bar"]
-    plain, kept = (distortion(mesh, bend_and_back(mesh, shapes, memory)[0]) for memory in (0.0, 1.0))
+    plain, kept = (distortion(mesh, bend_and_back(mesh, memory)[0]) for memory in (0.0, 1.0))
     assert kept.area < plain.area
     assert kept.angle < plain.angle
 
@@ -178,19 +179,19 @@ def wild_drag(mesh, points, memory, seed, moves=2):
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_no_face_flips_however_wild_the_drag(mesh, shapes, memory):
+def test_no_face_flips_however_wild_the_drag(mesh, memory):
     wild_drag(mesh, shapes.random_pins(mesh, 2), memory, 2)
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
 @pytest.mark.parametrize("name", DRAWINGS)
-def test_no_face_of_a_bundled_drawing_flips(shapes, name, memory):
+def test_no_face_of_a_bundled_drawing_flips(name, memory):
     mesh = triangulate(outlines(np.array(Image.open(DRAWINGS[name]).convert("RGBA"))[..., 3]), 500)
     wild_drag(mesh, shapes.random_pins(mesh, 1), memory, 1, moves=1)
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_pins_brought_to_one_place_stay_there(shapes, memory):
+def test_pins_brought_to_one_place_stay_there(memory):
     """The bar becomes a ring; about the place where its pins meet, it could turn freely."""
     mesh = shapes.SHAPES["bar"]
     middles = [np.argmin(np.abs(mesh.vertices - end).sum(axis=1)) for end in ([0, 30], [300, 30])]
@@ -206,7 +207,7 @@ def test_pins_brought_to_one_place_stay_there(shapes, memory):
     assert apart.report.pin_error < 0.25
 
 
-def test_pose_that_is_flipped_already_can_be_dragged(shapes):
+def test_pose_that_is_flipped_already_can_be_dragged():
     """Another method, or a file, may leave such a pose."""
     mesh = shapes.SHAPES["square"]
     inner = int(np.setdiff1d(np.arange(len(mesh.vertices)), mesh.boundary_vertices)[5])
@@ -219,7 +220,7 @@ def test_pose_that_is_flipped_already_can_be_dragged(shapes):
         assert deformer_with(mesh, points, memory=memory).step(pose, goals).report.pin_error < 0.25
 
 
-def test_single_vertex_of_an_interior_pin_gets_no_singularity(shapes):
+def test_single_vertex_of_an_interior_pin_gets_no_singularity():
     """Fig. 3: the first field alone dents the drawing at the pin, the second solve does not."""
     mesh = shapes.SHAPES["disc 2"]
     inner = np.setdiff1d(np.arange(len(mesh.vertices)), mesh.boundary_vertices)[[3, 60]]
@@ -249,24 +250,24 @@ def test_single_vertex_of_an_interior_pin_gets_no_singularity(shapes):
         ("max_step", [1]),
     ],
 )
-def test_settings_out_of_range_are_refused(shapes, setting, value):
+def test_settings_out_of_range_are_refused(setting, value):
     with pytest.raises(InputError, match=f"^{setting}: expected .*, got "):
         AkapDeformer(shapes.SHAPES["triangle"], **{setting: value})
 
 
-def test_collapsed_pose_is_a_solver_error(mesh, shapes):
+def test_collapsed_pose_is_a_solver_error(mesh):
     points = shapes.random_pins(mesh, 1)
     with pytest.raises(SolverError), np.errstate(all="ignore"):
         deformer_with(mesh, points).step(np.zeros_like(mesh.vertices), np.zeros((len(points), 2)) + 1.0)
 
 
-def test_velocities_of_another_number_of_pins_are_refused(mesh, shapes):
+def test_velocities_of_another_number_of_pins_are_refused(mesh):
     deformer = deformer_with(mesh, MeshPoints([0], [[1.0, 0.0, 0.0]]))
     with pytest.raises(InputError, match=r"velocities: expected shape \(1, 2\), got \(2, 2\)"):
         deformer.vector_field(mesh.vertices, [[0.0, 0.0], [1.0, 1.0]])
 
 
-def test_denser_mesh_moves_nearly_alike(shapes):
+def test_denser_mesh_moves_nearly_alike():
     """Energies are weighted by area, so that λ means the same on a finer mesh."""
     coarse = shapes.SHAPES["bar"]
     fine = TriMesh(*shapes.subdivide(coarse.vertices, coarse.faces))

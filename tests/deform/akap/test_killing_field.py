@@ -7,6 +7,7 @@ from akap_editor.deform.akap.killing_field import KillingSystem
 from akap_editor.errors import SolverError
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
 from akap_editor.geometry.operators import killing_energy, to_complex, to_points
+from tests.support import dense, shapes
 
 WEIGHT = 30.0
 
@@ -31,13 +32,13 @@ def random_velocities(points, seed):
 
 
 @pytest.fixture(params=[1, 2])
-def case(request, mesh, shapes):
+def case(request, mesh):
     """Pose, pins and velocities."""
     points = shapes.random_pins(mesh, request.param)
     return bent(mesh), points, random_velocities(points, request.param)
 
 
-def test_agrees_with_the_dense_implementation(mesh, case, dense):
+def test_agrees_with_the_dense_implementation(mesh, case):
     positions, points, velocities = case
     optimal, smooth = fields(mesh, positions, points, velocities)
     expected = dense.smooth_field(mesh, positions, points, velocities, WEIGHT)
@@ -62,7 +63,7 @@ def test_first_field_minimizes_energy_and_pin_error(mesh, case):
         assert energy_with_pins(mesh, positions, points, velocities, other) > least
 
 
-def test_second_field_minimizes_energy_with_the_boundary_fixed(mesh, case, dense):
+def test_second_field_minimizes_energy_with_the_boundary_fixed(mesh, case):
     positions, points, velocities = case
     optimal, smooth = fields(mesh, positions, points, velocities)
     rim = dense.boundary_vertices(mesh)
@@ -76,7 +77,7 @@ def test_second_field_minimizes_energy_with_the_boundary_fixed(mesh, case, dense
         assert killing_energy(positions, mesh.faces, optimal + change) >= least * (1 - 1e-12)
 
 
-def test_second_solve_changes_nothing_where_all_pins_sit_on_the_boundary(mesh, shapes, dense):
+def test_second_solve_changes_nothing_where_all_pins_sit_on_the_boundary(mesh):
     rng = np.random.default_rng(5)
     rim = np.array(dense.boundary_vertices(mesh))
     chosen = np.concatenate(
@@ -90,7 +91,7 @@ def test_second_solve_changes_nothing_where_all_pins_sit_on_the_boundary(mesh, s
     assert np.abs(expected - smooth).max() < 1e-9 * np.abs(smooth).max()
 
 
-def test_second_solve_smooths_around_an_interior_pin(shapes):
+def test_second_solve_smooths_around_an_interior_pin():
     mesh = shapes.SHAPES["disc 2"]
     inner = np.setdiff1d(np.arange(len(mesh.vertices)), mesh.boundary_vertices)[[3, 60]]
     points = shapes.vertex_pins(mesh, inner)
@@ -101,7 +102,7 @@ def test_second_solve_smooths_around_an_interior_pin(shapes):
 
 @pytest.mark.parametrize("each", [2, 5])
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_lemma_1_rigid_velocities_are_reproduced(mesh, shapes, seed, each):
+def test_lemma_1_rigid_velocities_are_reproduced(mesh, seed, each):
     points = shapes.random_pins(mesh, seed, each)
     positions = bent(mesh)
     rng = np.random.default_rng(seed)
@@ -119,7 +120,7 @@ def test_field_is_linear_in_the_velocities(mesh, case):
     assert np.abs(total - (2 * parts[0] - parts[1])).max() < 1e-9 * np.abs(total).max()
 
 
-def test_larger_weight_follows_the_pins_better(shapes):
+def test_larger_weight_follows_the_pins_better():
     mesh = shapes.SHAPES["disc 1"]
     points = shapes.random_pins(mesh, 1)
     velocities = random_velocities(points, 1)
@@ -156,7 +157,7 @@ def test_pins_at_one_place_do_not_leave_their_part_free_to_turn(mesh):
     assert np.abs(one - other).max() < 1e-9
 
 
-def test_pins_of_two_faces_that_share_a_vertex_count_as_one_place(shapes):
+def test_pins_of_two_faces_that_share_a_vertex_count_as_one_place():
     mesh = shapes.SHAPES["square"]
     faces = np.flatnonzero((mesh.faces == 7).any(axis=1))[:2]
     points = MeshPoints(faces, (mesh.faces[faces] == 7).astype(float))
@@ -164,7 +165,7 @@ def test_pins_of_two_faces_that_share_a_vertex_count_as_one_place(shapes):
     assert np.abs(field - [3.0, -4.0]).max() < 1e-9
 
 
-def test_collapsed_pose_is_a_solver_error(mesh, shapes):
+def test_collapsed_pose_is_a_solver_error(mesh):
     points = shapes.random_pins(mesh, 1)
     with pytest.raises(SolverError), np.errstate(all="ignore"):
         fields(mesh, np.zeros_like(mesh.vertices), points, np.zeros((len(points), 2)))

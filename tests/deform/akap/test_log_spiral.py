@@ -5,6 +5,7 @@ import pytest
 
 from akap_editor.deform.akap.log_spiral import LogSpirals, linear_flow, spiral_factor
 from akap_editor.geometry.operators import to_complex, to_points
+from tests.support import dense
 
 CENTER = 70.0 + 40.0j
 
@@ -58,7 +59,7 @@ def test_linear_holomorphic_fields_become_similarities(mesh, s):
 
 
 @pytest.mark.parametrize("t", [0.5, 1.0])
-def test_flow_is_the_mean_of_the_spirals_with_centers(mesh, dense, t):
+def test_flow_is_the_mean_of_the_spirals_with_centers(mesh, t):
     rng = np.random.default_rng(1)
     field = rng.normal(scale=3.0, size=mesh.vertices.shape)
     moved = to_points(LogSpirals(mesh).flow(to_complex(mesh.vertices), to_complex(field), t))

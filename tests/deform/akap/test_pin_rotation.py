@@ -10,6 +10,7 @@ from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.killing_matrix import KillingMatrix
 from akap_editor.geometry.mesh import MeshPoints
 from akap_editor.geometry.operators import to_complex, to_points
+from tests.support import shapes
 
 FREE = np.nan
 MEMORIES = pytest.mark.parametrize("memory", [0.0, 1.0])
@@ -28,7 +29,7 @@ def turning_of(mesh, points):
 # -- the terms -----------------------------------------------------------------------------------------------
 
 
-def test_turning_fields_cost_what_the_matrix_says(mesh, shapes):
+def test_turning_fields_cost_what_the_matrix_says(mesh):
     turning = turning_of(mesh, shapes.random_pins(mesh, 1, 2))
     pose = mesh.vertices @ [[1.1, 0.2], [-0.1, 0.9]]
     turning.place(pose)
@@ -44,7 +45,7 @@ def test_turning_fields_cost_what_the_matrix_says(mesh, shapes):
     )
 
 
-def test_rates_of_a_rotation(mesh, shapes):
+def test_rates_of_a_rotation(mesh):
     """A field that turns by ω costs c A ω², and pulls on what turns as it does."""
     turning = turning_of(mesh, shapes.random_pins(mesh, 1, 2))
     field = 0.3j * (to_complex(mesh.vertices) - 7.0)
@@ -55,7 +56,7 @@ def test_rates_of_a_rotation(mesh, shapes):
     assert np.vdot(pull, field).real == pytest.approx(1e4 * area * 0.3 * 0.5, rel=1e-9)
 
 
-def test_misfit_and_its_gradient(mesh, shapes):
+def test_misfit_and_its_gradient(mesh):
     turning = turning_of(mesh, shapes.random_pins(mesh, 2, 2))
     pose = to_complex(mesh.vertices @ [[1.1, 0.2], [-0.1, 0.9]])
     goal = np.exp(0.4j)
@@ -66,7 +67,7 @@ def test_misfit_and_its_gradient(mesh, shapes):
 
 
 @pytest.mark.parametrize("angle", [-3.0, -0.5, 0.0, 1.0, 3.1])
-def test_angles_are_those_of_the_surroundings(mesh, shapes, angle):
+def test_angles_are_those_of_the_surroundings(mesh, angle):
     points = shapes.random_pins(mesh, 1, 2)
     pose = to_points(np.exp(1j * angle) * to_complex(mesh.vertices))
     assert deformer_with(mesh, points).angles(pose) == pytest.approx(np.full(len(points), angle))
@@ -91,7 +92,7 @@ def test_part_with_one_pin_turns_with_it_as_a_whole(mesh, memory, dirichlet):
 
 
 @MEMORIES
-def test_pin_turns_to_its_angle_and_others_hold_still(shapes, memory):
+def test_pin_turns_to_its_angle_and_others_hold_still(memory):
     mesh = shapes.SHAPES["bar"]
     points = mesh.locate([[10.0, 30.0], [150.0, 30.0], [290.0, 30.0]])
     places = mesh.evaluate(points, mesh.vertices)
@@ -107,7 +108,7 @@ def test_pin_turns_to_its_angle_and_others_hold_still(shapes, memory):
     assert slope == pytest.approx(0.8, abs=0.1)
 
 
-def test_pin_holds_its_angle_while_another_is_dragged(shapes):
+def test_pin_holds_its_angle_while_another_is_dragged():
     """Without it the end of the bar would turn."""
     mesh = shapes.SHAPES["bar"]
     points = mesh.locate([[10.0, 30.0], [290.0, 30.0]])
@@ -122,7 +123,7 @@ def test_pin_holds_its_angle_while_another_is_dragged(shapes):
     assert ends[1] < 0.05
 
 
-def test_angle_where_a_pin_is_moves_nothing(mesh, shapes):
+def test_angle_where_a_pin_is_moves_nothing(mesh):
     points = shapes.random_pins(mesh, 3)
     places = mesh.evaluate(points, mesh.vertices)
     for memory in (0.0, 1.0):
@@ -130,7 +131,7 @@ def test_angle_where_a_pin_is_moves_nothing(mesh, shapes):
         assert np.abs(result.positions - mesh.vertices).max() < 1e-6
 
 
-def test_large_turn_is_cut_into_substeps(shapes):
+def test_large_turn_is_cut_into_substeps():
     mesh = shapes.SHAPES["square"]
     points = mesh.locate([mesh.vertices.mean(axis=0)])
     result = deformer_with(mesh, points).step(mesh.vertices, mesh.evaluate(points, mesh.vertices), [1.0])
@@ -138,7 +139,7 @@ def test_large_turn_is_cut_into_substeps(shapes):
     assert deformer_with(mesh, points).angles(result.positions)[0] == pytest.approx(1.0, abs=1e-6)
 
 
-def test_all_free_is_no_angle_at_all(mesh, shapes):
+def test_all_free_is_no_angle_at_all(mesh):
     points = shapes.random_pins(mesh, 3)
     goals = mesh.evaluate(points, mesh.vertices) + 3.0
     expected = deformer_with(mesh, points).step(mesh.vertices, goals).positions
@@ -149,7 +150,7 @@ def test_all_free_is_no_angle_at_all(mesh, shapes):
 
 
 @pytest.mark.parametrize("angles", [[0.0, 1.0], [np.inf], ["left"], 1.0])
-def test_bad_angles_are_refused(shapes, angles):
+def test_bad_angles_are_refused(angles):
     mesh = shapes.SHAPES["triangle"]
     deformer = deformer_with(mesh, MeshPoints([0], [[1.0, 0.0, 0.0]]))
     with pytest.raises(InputError, match=r"^angles: expected 1 "):
@@ -160,7 +161,7 @@ def test_bad_angles_are_refused(shapes, angles):
 
 
 @MEMORIES
-def test_stiff_parts_bend_less(shapes, memory):
+def test_stiff_parts_bend_less(memory):
     mesh = shapes.SHAPES["bar"]
     points = mesh.locate([[10.0, 30.0], [290.0, 30.0]])
     places = mesh.evaluate(points, mesh.vertices)
@@ -179,7 +180,7 @@ def test_stiff_parts_bend_less(shapes, memory):
 
 
 @MEMORIES
-def test_equal_stiffness_everywhere_changes_little(mesh, shapes, memory):
+def test_equal_stiffness_everywhere_changes_little(mesh, memory):
     """Only against the pins, which are stiff themselves."""
     points = shapes.random_pins(mesh, 2)
     goals = mesh.evaluate(points, mesh.vertices) + np.random.default_rng(2).normal(
@@ -197,6 +198,6 @@ def test_equal_stiffness_everywhere_changes_little(mesh, shapes, memory):
 
 
 @pytest.mark.parametrize("stiffness", [[1.0, 1.0], [0.0], [-1.0], [np.nan], [1e9], "hard"])
-def test_bad_stiffness_is_refused(shapes, stiffness):
+def test_bad_stiffness_is_refused(stiffness):
     with pytest.raises(InputError, match=r"^stiffness: expected 1 numbers"):
         AkapDeformer(shapes.SHAPES["triangle"], stiffness=stiffness)

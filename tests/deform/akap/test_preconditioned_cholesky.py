@@ -9,6 +9,7 @@ from akap_editor.deform.cholesky import SymmetricPattern
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.killing_matrix import KillingMatrix
 from akap_editor.geometry.operators import to_complex, to_points
+from tests.support import shapes
 
 TOLERANCE = 1e-6
 
@@ -40,7 +41,7 @@ def bent(mesh, angle):
 
 
 @pytest.fixture(scope="module")
-def system(shapes):
+def system():
     return System(shapes.SHAPES["bar"])
 
 
@@ -148,7 +149,7 @@ def test_exact_factorizes_every_matrix(system):
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_a_bend_is_the_same_with_few_factorizations_as_with_many(shapes, memory):
+def test_a_bend_is_the_same_with_few_factorizations_as_with_many(memory):
     """Each step within a hundredth of a pixel of the exact one on a drawing of a million square pixels."""
     mesh = shapes.SHAPES["bar"]
     points = shapes.random_pins(mesh, 4, 3)

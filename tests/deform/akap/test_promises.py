@@ -10,6 +10,7 @@ from akap_editor.errors import InputError, SolverError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, signed_areas
 from akap_editor.geometry.operators import killing_energy, to_complex, to_points
+from tests.support import dense, shapes
 
 WHOLE = float("inf")  # max_step: one field for the whole way
 
@@ -26,7 +27,7 @@ def bent(mesh):
     return np.stack([x + 8 * np.sin(y / 40), 1.1 * y - 6 * np.cos(x / 50)], axis=1)
 
 
-def scene(mesh, shapes, seed=1, each=3):
+def scene(mesh, seed=1, each=3):
     """A pose, pins and velocities."""
     points = shapes.random_pins(mesh, seed, each)
     return bent(mesh), points, np.random.default_rng(seed).normal(scale=5.0, size=(len(points), 2))
@@ -37,14 +38,14 @@ def scene(mesh, shapes, seed=1, each=3):
 
 @pytest.mark.parametrize("dirichlet", [True, False])
 @pytest.mark.parametrize("seed", [1, 2])
-def test_hard_pins_have_exactly_their_velocities(mesh, shapes, seed, dirichlet):
-    pose, points, velocities = scene(mesh, shapes, seed)
+def test_hard_pins_have_exactly_their_velocities(mesh, seed, dirichlet):
+    pose, points, velocities = scene(mesh, seed)
     deformer = deformer_with(mesh, points, constraints="hard", dirichlet=dirichlet)
     _, smooth = deformer.vector_fields(pose, velocities)
     assert np.abs(mesh.evaluate(points, smooth) - velocities).max() < 1e-9 * np.abs(smooth).max()
 
 
-def hard_field(mesh, dense, pose, points, velocities):
+def hard_field(mesh, pose, points, velocities):
     """Least ‖P u‖ among the u with W u = ũ, by an orthonormal basis of the null space of W."""
     rows, pins = dense.killing_rows(pose, mesh.faces), dense.pin_rows(mesh, points)
     particular = np.linalg.lstsq(pins, velocities.ravel(), rcond=1e-12)[0]
@@ -56,22 +57,22 @@ def hard_field(mesh, dense, pose, points, velocities):
 
 
 @pytest.mark.parametrize("dirichlet", [True, False])
-def test_hard_fields_are_those_of_the_dense_implementation(mesh, shapes, dense, dirichlet):
-    pose, points, velocities = scene(mesh, shapes)
+def test_hard_fields_are_those_of_the_dense_implementation(mesh, dirichlet):
+    pose, points, velocities = scene(mesh)
     deformer = deformer_with(mesh, points, constraints="hard", dirichlet=dirichlet)
     optimal, smooth = deformer.vector_fields(pose, velocities)
-    expected, _ = hard_field(mesh, dense, pose, points, velocities)
+    expected, _ = hard_field(mesh, pose, points, velocities)
     size = np.abs(expected).max()
     assert np.abs(smooth - expected).max() < 1e-8 * size
     second = dense.dirichlet_field(mesh, pose, expected) if dirichlet else expected
     assert np.abs(optimal - second).max() < 1e-8 * size
 
 
-def test_hard_field_has_the_least_energy(mesh, shapes, dense):
-    pose, points, velocities = scene(mesh, shapes)
+def test_hard_field_has_the_least_energy(mesh):
+    pose, points, velocities = scene(mesh)
     _, smooth = deformer_with(mesh, points, constraints="hard").vector_fields(pose, velocities)
     least = killing_energy(pose, mesh.faces, smooth)
-    _, free = hard_field(mesh, dense, pose, points, velocities)
+    _, free = hard_field(mesh, pose, points, velocities)
     rng = np.random.default_rng(3)
     for size in (1e-3, 0.1, 10.0):
         change = size * (free @ rng.normal(size=free.shape[1])).reshape(-1, 2)
@@ -79,8 +80,8 @@ def test_hard_field_has_the_least_energy(mesh, shapes, dense):
         assert killing_energy(pose, mesh.faces, smooth + change) >= least * (1 - 1e-12)
 
 
-def test_soft_pins_approach_hard_ones(mesh, shapes):
-    pose, points, velocities = scene(mesh, shapes)
+def test_soft_pins_approach_hard_ones(mesh):
+    pose, points, velocities = scene(mesh)
     _, limit = deformer_with(mesh, points, constraints="hard").vector_fields(pose, velocities)
     off = []
     for weight in (10.0, 100.0, 1e3, 1e4):
@@ -90,8 +91,8 @@ def test_soft_pins_approach_hard_ones(mesh, shapes):
     assert off[-1] < 1e-4
 
 
-def test_hard_pins_may_say_the_same_twice_or_contradict_one_another(mesh, shapes):
-    pose, points, velocities = scene(mesh, shapes, each=2)
+def test_hard_pins_may_say_the_same_twice_or_contradict_one_another(mesh):
+    pose, points, velocities = scene(mesh, each=2)
     twice = MeshPoints(np.tile(points.faces, 2), np.tile(points.weights, (2, 1)))
     _, once = deformer_with(mesh, points, constraints="hard").vector_fields(pose, velocities)
     deformer = deformer_with(mesh, twice, constraints="hard")
@@ -102,7 +103,7 @@ def test_hard_pins_may_say_the_same_twice_or_contradict_one_another(mesh, shapes
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_steps_with_hard_pins_arrive(mesh, shapes, memory):
+def test_steps_with_hard_pins_arrive(mesh, memory):
     points = shapes.random_pins(mesh, 5)
     goals = mesh.evaluate(points, bent(mesh)) + np.array([12.0, -20.0])
     deformer, pose = deformer_with(mesh, points, constraints="hard", memory=memory), mesh.vertices
@@ -113,7 +114,7 @@ def test_steps_with_hard_pins_arrive(mesh, shapes, memory):
     assert result.report.flipped == 0
 
 
-def test_fields_of_steps_with_hard_pins_have_exactly_their_velocities(mesh, shapes):
+def test_fields_of_steps_with_hard_pins_have_exactly_their_velocities(mesh):
     """Whatever steps came before: no factorization is used for two poses."""
     points = shapes.random_pins(mesh, 5)
     deformer = deformer_with(mesh, points, constraints="hard", dirichlet=False, max_step=WHOLE)
@@ -143,7 +144,7 @@ def drag(mesh, points, memory, between):
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_asking_for_fields_changes_no_step(mesh, shapes, memory):
+def test_asking_for_fields_changes_no_step(mesh, memory):
     points = shapes.random_pins(mesh, 4)
 
     def ask(deformer, pose, start):
@@ -154,7 +155,7 @@ def test_asking_for_fields_changes_no_step(mesh, shapes, memory):
     assert drag(mesh, points, memory, ask).tolist() == silent.tolist()
 
 
-def test_fields_are_exact_whatever_steps_came_before(mesh, shapes):
+def test_fields_are_exact_whatever_steps_came_before(mesh):
     points = shapes.random_pins(mesh, 4)
 
     def compare(deformer, pose, start):
@@ -175,7 +176,7 @@ def test_fields_are_exact_whatever_steps_came_before(mesh, shapes):
 
 
 @pytest.fixture(params=[0.0, 1.0])
-def long_step(request, mesh, shapes):
+def long_step(request, mesh):
     """A step of several substeps: where it began, and its result."""
     points = shapes.random_pins(mesh, 2)
     goals = mesh.evaluate(points, mesh.vertices)
@@ -208,7 +209,7 @@ def test_no_face_flips_on_the_way(mesh, long_step):
 
 
 @pytest.mark.parametrize("t", [0.0, 0.3, 0.5, 1.0])
-def test_way_of_a_rotation_is_the_rotation(mesh, shapes, t):
+def test_way_of_a_rotation_is_the_rotation(mesh, t):
     angle = 0.005  # so small that the ends of the velocities are as good as on the circle
     points = shapes.random_pins(mesh, 3)
     here, center = to_complex(mesh.evaluate(points, mesh.vertices)), to_complex(mesh.vertices).mean()
@@ -225,7 +226,7 @@ def test_way_without_pins_is_no_way(mesh):
 
 
 @pytest.mark.parametrize("t", [-1e-9, 1 + 1e-9, float("nan"), "half", None])
-def test_time_beyond_the_step_is_refused(shapes, t):
+def test_time_beyond_the_step_is_refused(t):
     mesh = shapes.SHAPES["square"]
     points = shapes.random_pins(mesh, 1)
     result = deformer_with(mesh, points).step(mesh.vertices, mesh.evaluate(points, mesh.vertices))
@@ -253,7 +254,7 @@ def check(mesh, result):
     ("name", "count"),
     [("triangle", 4000), ("strip", 3000), ("square", 1500), ("star", 750), ("islands", 750)],
 )
-def test_no_face_flips_in_many_random_gestures(shapes, name, count, memory, share):
+def test_no_face_flips_in_many_random_gestures(name, count, memory, share):
     """Each from where the last one ended: 10,000 gestures in all cases, pins chosen anew after every ten."""
     mesh = shapes.SHAPES[name]
     rng = np.random.default_rng(len(name))
@@ -272,7 +273,7 @@ def test_no_face_flips_in_many_random_gestures(shapes, name, count, memory, shar
         pose = result.positions
 
 
-def ends(mesh, shapes):
+def ends(mesh):
     """Pins in the middle of both ends of the bar."""
     low, high = mesh.vertices[:, 0].min(), mesh.vertices[:, 0].max()
     return shapes.vertex_pins(
@@ -281,10 +282,10 @@ def ends(mesh, shapes):
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_bar_tied_into_a_loop(shapes, memory):
+def test_bar_tied_into_a_loop(memory):
     """One end is led around, through the bar and on."""
     mesh = shapes.SHAPES["bar"]
-    points = ends(mesh, shapes)
+    points = ends(mesh)
     start = mesh.evaluate(points, mesh.vertices)
     deformer, pose = deformer_with(mesh, points, memory=memory), mesh.vertices
     for turn in np.linspace(0, 3 * np.pi, 91)[1:]:
@@ -295,7 +296,7 @@ def test_bar_tied_into_a_loop(shapes, memory):
         pose = result.positions
 
 
-def pulled_away_and_back(mesh, shapes, memory, way, steps):
+def pulled_away_and_back(mesh, memory, way, steps):
     """The results of a pin's jump by ``way`` and of the steps back, at most so many."""
     points = shapes.random_pins(mesh, 3)
     home = mesh.evaluate(points, mesh.vertices)
@@ -309,31 +310,31 @@ def pulled_away_and_back(mesh, shapes, memory, way, steps):
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_absurd_jump_flips_nothing_and_says_where_it_is_cut(mesh, shapes, memory):
-    results = pulled_away_and_back(mesh, shapes, memory, [5000.0, -300.0], 5)
+def test_absurd_jump_flips_nothing_and_says_where_it_is_cut(mesh, memory):
+    results = pulled_away_and_back(mesh, memory, [5000.0, -300.0], 5)
     for result in results:
         check(mesh, result)
     assert results[0].report.blocked or results[0].report.pin_error < 1
 
 
 @pytest.mark.parametrize(("memory", "far"), [(0.0, 1.0), (1.0, 1.0), (0.0, 3.0), (1.0, 3.0)])
-def test_going_back_frees_a_blocked_drag(mesh, shapes, memory, far):
+def test_going_back_frees_a_blocked_drag(mesh, memory, far):
     way = far * mesh.length * np.array([1.0, -0.06])
-    results = pulled_away_and_back(mesh, shapes, memory, way, 80)
+    results = pulled_away_and_back(mesh, memory, way, 80)
     for result in results:
         check(mesh, result)
     assert results[-1].report.pin_error < 0.25
 
 
-def test_some_of_these_drags_are_blocked(shapes):
+def test_some_of_these_drags_are_blocked():
     """Without memory, which opens faces again before they are in the way."""
-    results = pulled_away_and_back(shapes.SHAPES["ring"], shapes, 0.0, [140.0, -8.0], 80)
+    results = pulled_away_and_back(shapes.SHAPES["ring"], 0.0, [140.0, -8.0], 80)
     assert results[0].report.blocked
     assert results[0].report.pin_error > 1
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_contradicting_pins_flip_nothing(mesh, shapes, memory):
+def test_contradicting_pins_flip_nothing(mesh, memory):
     """Pins of one face, two of which are to change places."""
     face = len(mesh.faces) // 2
     points = MeshPoints([face] * 3, 0.8 * np.eye(3) + 0.2 / 3)
@@ -351,8 +352,8 @@ def test_contradicting_pins_flip_nothing(mesh, shapes, memory):
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])
 @pytest.mark.parametrize("constraints", ["soft", "hard"])
-def test_deformer_works_after_a_solver_error(mesh, shapes, constraints, memory):
-    pose, points, _ = scene(mesh, shapes)
+def test_deformer_works_after_a_solver_error(mesh, constraints, memory):
+    pose, points, _ = scene(mesh)
     goals = mesh.evaluate(points, pose) + 1.0
     settings = {"memory": memory, "constraints": constraints}
     expected = deformer_with(mesh, points, **settings).step(pose, goals).positions
@@ -377,9 +378,9 @@ def test_deformer_works_after_a_solver_error(mesh, shapes, constraints, memory):
         assert np.abs(found - expected).max() < 1e-5 * mesh.length
 
 
-def test_memory_of_nothing_is_the_method_without_memory(mesh, shapes):
+def test_memory_of_nothing_is_the_method_without_memory(mesh):
     """Bit for bit, and in the limit."""
-    pose, points, _ = scene(mesh, shapes)
+    pose, points, _ = scene(mesh)
     goals = mesh.evaluate(points, pose) + 0.5
     plain = deformer_with(mesh, points).step(pose, goals).positions
     assert deformer_with(mesh, points, memory=0).step(pose, goals).positions.tolist() == plain.tolist()

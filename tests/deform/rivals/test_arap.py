@@ -9,6 +9,7 @@ from akap_editor.deform.rivals.arap import ArapDeformer
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints
+from tests.support import dense, shapes
 
 
 def deformer_with(mesh, points, **settings):
@@ -17,7 +18,7 @@ def deformer_with(mesh, points, **settings):
     return deformer
 
 
-def scene(mesh, shapes, seed=1):
+def scene(mesh, seed=1):
     """Pins, a pose that is no rigid motion of the rest pose, and targets."""
     points = shapes.random_pins(mesh, seed)
     x, y = mesh.vertices.T
@@ -59,7 +60,7 @@ def dense_energy(mesh, pose):
     )
 
 
-def dense_iteration(mesh, dense, points, pose, targets):
+def dense_iteration(mesh, points, pose, targets):
     """One local step, and one global step with the pins as Lagrange's constraints."""
     n = len(mesh.vertices)
     turns = rotations(mesh, pose)
@@ -75,8 +76,8 @@ def dense_iteration(mesh, dense, points, pose, targets):
     return np.linalg.lstsq(bordered, np.vstack([right, targets]), rcond=1e-13)[0][:n]
 
 
-def test_energy_is_that_of_the_paper(mesh, shapes):
-    _, pose, _ = scene(mesh, shapes)
+def test_energy_is_that_of_the_paper(mesh):
+    _, pose, _ = scene(mesh)
     noise = np.random.default_rng(2).normal(scale=20.0, size=pose.shape)  # with flipped faces
     for positions in (pose, pose + noise):
         assert ArapDeformer(mesh).energy(positions) == pytest.approx(dense_energy(mesh, positions), rel=1e-9)
@@ -84,11 +85,11 @@ def test_energy_is_that_of_the_paper(mesh, shapes):
 
 @pytest.mark.parametrize("shape_name", ["square", "L", "star", "ring", "islands", "strip", "disc 1"])
 @pytest.mark.parametrize("iterations", [1, 3])
-def test_agrees_with_the_dense_implementation(mesh, shapes, dense, iterations):
-    points, pose, targets = scene(mesh, shapes)
+def test_agrees_with_the_dense_implementation(mesh, iterations):
+    points, pose, targets = scene(mesh)
     found = deformer_with(mesh, points, iterations=iterations, tolerance=0).step(pose, targets).positions
     for _ in range(iterations):
-        pose = dense_iteration(mesh, dense, points, pose, targets)
+        pose = dense_iteration(mesh, points, pose, targets)
     assert np.abs(found - pose).max() < 1e-8
 
 
@@ -97,8 +98,8 @@ def test_agrees_with_the_dense_implementation(mesh, shapes, dense, iterations):
 
 @pytest.mark.parametrize("rotations", ["faces", "spokes-and-rims"])
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_energy_never_rises(mesh, shapes, seed, rotations):
-    points, pose, targets = scene(mesh, shapes, seed)
+def test_energy_never_rises(mesh, seed, rotations):
+    points, pose, targets = scene(mesh, seed)
     deformer = deformer_with(mesh, points, iterations=1, tolerance=0, rotations=rotations)
     energies = []
     for _ in range(40):
@@ -114,13 +115,13 @@ def test_rigid_motions_cost_nothing(mesh):
     assert ArapDeformer(mesh).energy(2 * mesh.vertices) == pytest.approx(2 * mesh.rest_areas.sum())
 
 
-def test_pins_are_exactly_at_their_targets(mesh, shapes):
-    points, pose, targets = scene(mesh, shapes)
+def test_pins_are_exactly_at_their_targets(mesh):
+    points, pose, targets = scene(mesh)
     result = deformer_with(mesh, points).step(pose, targets)
     assert np.abs(mesh.evaluate(points, result.positions) - targets).max() < 1e-10 * 300
 
 
-def test_pins_that_contradict_one_another_meet_in_the_middle(mesh, shapes):
+def test_pins_that_contradict_one_another_meet_in_the_middle(mesh):
     face = len(mesh.faces) // 2
     points = MeshPoints([face] * 2, [[0.2, 0.3, 0.5]] * 2)
     here = mesh.evaluate(points, mesh.vertices)
@@ -128,7 +129,7 @@ def test_pins_that_contradict_one_another_meet_in_the_middle(mesh, shapes):
     assert np.abs(mesh.evaluate(points, result.positions) - here - [6.0, -2.0]).max() < 1e-9 * 300
 
 
-def test_turned_pins_turn_the_drawing(mesh, shapes):
+def test_turned_pins_turn_the_drawing(mesh):
     points = shapes.random_pins(mesh, 4)
     turned = mesh.vertices @ [[0.6, 0.8], [-0.8, 0.6]] + [30.0, -80.0]
     deformer = deformer_with(mesh, points, iterations=5000, tolerance=1e-12)
@@ -136,8 +137,8 @@ def test_turned_pins_turn_the_drawing(mesh, shapes):
     assert np.abs(result - turned).max() < 1e-4
 
 
-def test_iterations_go_on_from_the_pose(mesh, shapes):
-    points, pose, targets = scene(mesh, shapes)
+def test_iterations_go_on_from_the_pose(mesh):
+    points, pose, targets = scene(mesh)
     at_once = deformer_with(mesh, points, iterations=6, tolerance=0).step(pose, targets).positions
     deformer = deformer_with(mesh, points, iterations=2, tolerance=0)
     for _ in range(3):
@@ -145,17 +146,17 @@ def test_iterations_go_on_from_the_pose(mesh, shapes):
     assert np.abs(at_once - pose).max() < 1e-9 * 300
 
 
-def test_step_ends_once_nothing_moves_farther_than_the_tolerance(shapes):
+def test_step_ends_once_nothing_moves_farther_than_the_tolerance():
     mesh = shapes.SHAPES["square"]
-    points, pose, targets = scene(mesh, shapes)
+    points, pose, targets = scene(mesh)
     ended = deformer_with(mesh, points, iterations=100_000, tolerance=1e-6).step(pose, targets).positions
     once_more = deformer_with(mesh, points, iterations=1).step(ended, targets).positions
     assert np.abs(once_more - ended).max() < 1e-6 * mesh.length
 
 
-def test_converging_goes_on_until_nothing_moves(shapes):
+def test_converging_goes_on_until_nothing_moves():
     mesh = shapes.SHAPES["bar"]
-    points, pose, targets = scene(mesh, shapes)
+    points, pose, targets = scene(mesh)
     few = deformer_with(mesh, points).step(pose, targets).positions
     deformer = deformer_with(mesh, points, converge=True)
     ended = deformer.step(pose, targets).positions
@@ -187,8 +188,8 @@ def vertex_energy(mesh, pose):
 
 
 @pytest.mark.parametrize("shape_name", ["triangle", "L", "ring", "strip", "disc 1"])
-def test_energy_of_spokes_and_rims_is_that_of_its_definition(mesh, shapes):
-    _, pose, _ = scene(mesh, shapes)
+def test_energy_of_spokes_and_rims_is_that_of_its_definition(mesh):
+    _, pose, _ = scene(mesh)
     noise = np.random.default_rng(2).normal(scale=20.0, size=pose.shape)
     deformer = ArapDeformer(mesh, rotations="spokes-and-rims")
     for positions in (pose, pose + noise):
@@ -202,7 +203,7 @@ def test_energy_of_spokes_and_rims_is_that_of_its_definition(mesh, shapes):
     ("rotations", "kind"), [("faces", "ELEMENTS"), ("spokes-and-rims", "SPOKES_AND_RIMS")]
 )
 @pytest.mark.parametrize("shape_name", ["square", "bar", "star", "ring", "disc 2"])
-def test_least_energy_is_that_of_libigl(mesh, shapes, rotations, kind):
+def test_least_energy_is_that_of_libigl(mesh, rotations, kind):
     igl = pytest.importorskip("igl", reason="libigl is not installed")
     vertices = np.random.default_rng(6).choice(len(mesh.vertices), 4, replace=False)
     points = shapes.vertex_pins(mesh, vertices)
@@ -222,7 +223,7 @@ def test_least_energy_is_that_of_libigl(mesh, shapes, rotations, kind):
 
 
 @pytest.mark.parametrize("name", ["elephant", "cat", "noto/dancer"])
-def test_bent_cartoon_keeps_its_shape(cartoon_mesh, shapes, name):
+def test_bent_cartoon_keeps_its_shape(cartoon_mesh, name):
     mesh = cartoon_mesh(name)
     points = shapes.random_pins(mesh, 1, 4)
     size = mesh.length
@@ -245,6 +246,6 @@ def test_bent_cartoon_keeps_its_shape(cartoon_mesh, shapes, name):
         ({"rotations": "edges"}, "rotations: expected 'faces' or 'spokes-and-rims', got 'edges'"),
     ],
 )
-def test_bad_settings_are_refused(shapes, settings, message):
+def test_bad_settings_are_refused(settings, message):
     with pytest.raises(InputError, match=message):
         ArapDeformer(shapes.SHAPES["triangle"], **settings)

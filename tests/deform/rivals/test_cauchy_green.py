@@ -9,6 +9,7 @@ from akap_editor.deform.rivals.cauchy_green import CauchyGreenDeformer
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
+from tests.support import shapes
 
 CAGE = np.array([0, 2 + 0.3j, 3 - 0.5j, 3.4 + 2j, 1.8 + 1.1j, 0.2 + 1.9j])  # not convex
 INSIDE = np.array([0.4 + 0.5j, 1.7 + 0.8j, 3.0 + 1.2j, 0.3 + 1.5j])
@@ -103,7 +104,7 @@ def test_what_is_left_out_does_not_depend_on_where_a_ring_begins():
 
 @pytest.mark.parametrize("smoothness", [1e-4, 1e-2])
 @pytest.mark.parametrize("shape_name", ["L", "star", "strip"])
-def test_a_finer_cage_makes_hardly_a_difference(mesh, shapes, smoothness):
+def test_a_finer_cage_makes_hardly_a_difference(mesh, smoothness):
     points = shapes.random_pins(mesh, 1, 4)
     targets = some_targets(mesh, points)
     coarse, fine = (moved(mesh, points, targets, cage=size, smoothness=smoothness) for size in (60, 250))
@@ -115,7 +116,7 @@ def test_a_finer_cage_makes_hardly_a_difference(mesh, shapes, smoothness):
 
 @pytest.mark.parametrize("smoothness", [1e-6, 1e-4, 1.0])
 @pytest.mark.parametrize("factor", [np.exp(0.9j), 0.3 - 0.4j])
-def test_similarities_are_reproduced(mesh, shapes, factor, smoothness):
+def test_similarities_are_reproduced(mesh, factor, smoothness):
     points = shapes.random_pins(mesh, 1, 4)
     z = factor * (mesh.vertices[:, 0] + 1j * mesh.vertices[:, 1]) + (30 - 80j)
     expected = np.stack([z.real, z.imag], axis=1)
@@ -123,13 +124,13 @@ def test_similarities_are_reproduced(mesh, shapes, factor, smoothness):
     assert np.abs(found - expected).max() < 1e-7
 
 
-def test_two_pins_make_a_similarity(mesh, shapes):
+def test_two_pins_make_a_similarity(mesh):
     points = shapes.random_pins(mesh, 3, 2)
     found = moved(mesh, points, some_targets(mesh, points))
     assert distortion(mesh, found).face_angle == pytest.approx(2.0, abs=1e-7)
 
 
-def test_angle_distortion_vanishes_as_the_mesh_is_refined(shapes):
+def test_angle_distortion_vanishes_as_the_mesh_is_refined():
     """With its square, as the map is holomorphic and the mesh shows it linear on each face."""
     mesh = shapes.SHAPES["L"]
     chosen = np.random.default_rng(3).choice(len(mesh.vertices), 4, replace=False)
@@ -147,7 +148,7 @@ def test_angle_distortion_vanishes_as_the_mesh_is_refined(shapes):
     assert excess[-1] < 1e-3 < areas[-1]
 
 
-def test_smaller_smoothness_brings_pins_nearer(shapes):
+def test_smaller_smoothness_brings_pins_nearer():
     mesh = shapes.SHAPES["disc 2"]
     points = shapes.random_pins(mesh, 1, 5)
     targets = some_targets(mesh, points)
@@ -169,7 +170,7 @@ def test_pins_at_one_place_translate_by_their_mean(mesh):
     assert np.abs(found - mesh.vertices - [6.0, -2.0])[own].max() < 1e-10
 
 
-def test_a_hole_is_bent_as_if_filled(shapes):
+def test_a_hole_is_bent_as_if_filled():
     ring = shapes.blocks("### #.# ###", 50, 3)
     whole = shapes.blocks("### ### ###", 50, 3)
     places = np.array([[20.0, 30.0], [120.0, 25.0], [130.0, 140.0], [30.0, 120.0]])
@@ -180,7 +181,7 @@ def test_a_hole_is_bent_as_if_filled(shapes):
     assert np.abs(bent - filled[same.argmax(axis=1)]).max() < 1e-6
 
 
-def test_the_pose_so_far_does_not_matter(mesh, shapes):
+def test_the_pose_so_far_does_not_matter(mesh):
     points = shapes.random_pins(mesh, 1)
     targets = some_targets(mesh, points)
     deformer = CauchyGreenDeformer(mesh, cage=40)
@@ -190,7 +191,7 @@ def test_the_pose_so_far_does_not_matter(mesh, shapes):
 
 
 @pytest.mark.parametrize("name", ["elephant", "cat", "noto/gecko"])
-def test_pins_of_a_cartoon_arrive(cartoon_mesh, shapes, name):
+def test_pins_of_a_cartoon_arrive(cartoon_mesh, name):
     mesh = cartoon_mesh(name)
     points = shapes.random_pins(mesh, 1, 5)
     size = mesh.length
@@ -220,6 +221,6 @@ def test_rest_pose_that_overlaps_itself_is_refused():
         ({"smoothness": 0}, r"smoothness: expected a number from 1e-06 to 1e\+06, got 0"),
     ],
 )
-def test_bad_settings_are_refused(shapes, settings, message):
+def test_bad_settings_are_refused(settings, message):
     with pytest.raises(InputError, match=message):
         CauchyGreenDeformer(shapes.SHAPES["triangle"], **settings)

@@ -8,6 +8,7 @@ from akap_editor.deform.rivals.igarashi import IgarashiDeformer
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints
+from tests.support import shapes
 
 
 def moved(mesh, points, targets, **settings):
@@ -68,7 +69,7 @@ def dense_pose(mesh, points, targets, pull):
 
 
 @pytest.mark.parametrize("shape_name", ["triangle", "square", "L", "ring", "strip", "disc 1"])
-def test_agrees_with_the_paper_in_dense_matrices(mesh, shapes):
+def test_agrees_with_the_paper_in_dense_matrices(mesh):
     points = shapes.random_pins(mesh, 1)
     targets = some_targets(mesh, points)
     found = moved(mesh, points, targets, pin_weight=30.0)
@@ -76,7 +77,7 @@ def test_agrees_with_the_paper_in_dense_matrices(mesh, shapes):
 
 
 @pytest.mark.parametrize("factor", [1.0, 0.6 + 0.8j, -1.0])
-def test_rigid_motions_are_reproduced(mesh, shapes, factor):
+def test_rigid_motions_are_reproduced(mesh, factor):
     points = shapes.random_pins(mesh, 2)
     z = factor * (mesh.vertices[:, 0] + 1j * mesh.vertices[:, 1]) + (30 - 80j)
     expected = np.stack([z.real, z.imag], axis=1)
@@ -84,7 +85,7 @@ def test_rigid_motions_are_reproduced(mesh, shapes, factor):
     assert np.abs(found - expected).max() < 1e-6
 
 
-def test_scaled_pins_do_not_scale_the_drawing(shapes):
+def test_scaled_pins_do_not_scale_the_drawing():
     """Which is what the second step is for."""
     mesh = shapes.SHAPES["disc 2"]
     points = shapes.random_pins(mesh, 2, 2)
@@ -93,7 +94,7 @@ def test_scaled_pins_do_not_scale_the_drawing(shapes):
     assert distortion(mesh, 1.3 * mesh.vertices).area > 2.25
 
 
-def test_larger_weight_brings_pins_nearer(mesh, shapes):
+def test_larger_weight_brings_pins_nearer(mesh):
     points = shapes.random_pins(mesh, 3)
     targets = some_targets(mesh, points)
     off = [
@@ -112,7 +113,7 @@ def test_pins_at_one_place_translate_by_their_mean(mesh):
     assert np.abs(found - mesh.vertices - [6.0, -2.0])[own].max() < 1e-10
 
 
-def test_the_pose_so_far_does_not_matter(mesh, shapes):
+def test_the_pose_so_far_does_not_matter(mesh):
     points = shapes.random_pins(mesh, 1)
     targets = some_targets(mesh, points)
     deformer = IgarashiDeformer(mesh)
@@ -122,7 +123,7 @@ def test_the_pose_so_far_does_not_matter(mesh, shapes):
 
 
 @pytest.mark.parametrize("name", ["elephant", "cat", "noto/dancer"])
-def test_cartoon_is_bent_nearly_as_by_iterations(cartoon_mesh, shapes, name):
+def test_cartoon_is_bent_nearly_as_by_iterations(cartoon_mesh, name):
     """Comparable if somewhat less desirable than iterative methods, says the paper of 2011."""
     mesh = cartoon_mesh(name)
     points = shapes.random_pins(mesh, 1, 4)
@@ -137,6 +138,6 @@ def test_cartoon_is_bent_nearly_as_by_iterations(cartoon_mesh, shapes, name):
 
 
 @pytest.mark.parametrize("weight", [0.5, 1e6, "strong", float("nan")])
-def test_bad_settings_are_refused(shapes, weight):
+def test_bad_settings_are_refused(weight):
     with pytest.raises(InputError, match="pin_weight: expected a number"):
         IgarashiDeformer(shapes.SHAPES["triangle"], pin_weight=weight)

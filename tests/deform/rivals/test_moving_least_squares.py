@@ -6,6 +6,7 @@ import pytest
 from akap_editor.deform.rivals.moving_least_squares import MovingLeastSquaresDeformer
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import MeshPoints
+from tests.support import shapes
 
 RIGID = np.array([[0.6, 0.8], [-0.8, 0.6]])
 SIMILARITY = 1.7 * RIGID
@@ -30,7 +31,7 @@ def some_targets(mesh, points, seed=1):
     return mesh.evaluate(points, mesh.vertices) + rng.normal(scale=8.0, size=(len(points), 2))
 
 
-def vertex_pins(mesh, shapes, each=4, seed=1):
+def vertex_pins(mesh, each=4, seed=1):
     """Pins at vertices, ``each`` in every part (or all it has)."""
     rng = np.random.default_rng(seed)
     parts = [np.flatnonzero(mesh.component == part) for part in np.unique(mesh.component)]
@@ -55,7 +56,7 @@ def least_squares(vertex, pins, targets, weights, transform):
 
 
 @pytest.mark.parametrize("alpha", [0.5, 1.0, 2.0])
-def test_each_vertex_goes_where_its_least_squares_take_it(mesh, shapes, transform, alpha):
+def test_each_vertex_goes_where_its_least_squares_take_it(mesh, transform, alpha):
     points = shapes.random_pins(mesh, 1, 4)
     targets = some_targets(mesh, points)
     found = moved(mesh, points, targets, transform=transform, alpha=alpha)
@@ -68,8 +69,8 @@ def test_each_vertex_goes_where_its_least_squares_take_it(mesh, shapes, transfor
 
 
 @pytest.mark.parametrize("alpha", [0.5, 1.0, 4.0])
-def test_pins_at_vertices_are_exactly_at_their_targets(mesh, shapes, transform, alpha):
-    chosen, points = vertex_pins(mesh, shapes)
+def test_pins_at_vertices_are_exactly_at_their_targets(mesh, transform, alpha):
+    chosen, points = vertex_pins(mesh)
     targets = some_targets(mesh, points)
     found = moved(mesh, points, targets, transform=transform, alpha=alpha)
     assert np.abs(found[chosen] - targets).max() < 1e-10
@@ -86,23 +87,23 @@ def test_pins_at_vertices_are_exactly_at_their_targets(mesh, shapes, transform, 
         ("affine", AFFINE),
     ],
 )
-def test_transforms_of_its_kind_are_reproduced(mesh, shapes, transform, matrix):
+def test_transforms_of_its_kind_are_reproduced(mesh, transform, matrix):
     points = shapes.random_pins(mesh, 2, 4)
     expected = mesh.vertices @ matrix + SHIFT
     found = moved(mesh, points, mesh.evaluate(points, expected), transform=transform)
     assert np.abs(found - expected).max() < 1e-8
 
 
-def test_rigid_maps_do_not_follow_a_scaling(shapes):
+def test_rigid_maps_do_not_follow_a_scaling():
     mesh = shapes.SHAPES["disc 2"]
-    chosen, points = vertex_pins(mesh, shapes)
+    chosen, points = vertex_pins(mesh)
     targets = 2 * mesh.vertices[chosen]
     found = moved(mesh, points, targets)
     assert np.abs(found[chosen] - targets).max() < 1e-10
     assert np.abs(found - 2 * mesh.vertices).max() > 20.0
 
 
-def test_two_pins_make_a_similarity_of_an_affine_map(mesh, shapes):
+def test_two_pins_make_a_similarity_of_an_affine_map(mesh):
     points = shapes.random_pins(mesh, 3, 2)
     targets = some_targets(mesh, points)
     similar, affine = (moved(mesh, points, targets, transform=name) for name in ("similarity", "affine"))
@@ -110,7 +111,7 @@ def test_two_pins_make_a_similarity_of_an_affine_map(mesh, shapes):
 
 
 @pytest.mark.parametrize("nearness", [0.0, 1e-9])
-def test_affine_maps_with_pins_on_a_line_are_similarities(shapes, nearness):
+def test_affine_maps_with_pins_on_a_line_are_similarities(nearness):
     mesh = shapes.SHAPES["bar"]
     points = mesh.locate([[20.0, 33.0], [150.0, 33.0 + nearness], [280.0, 33.0]])
     targets = mesh.evaluate(points, mesh.vertices) @ SIMILARITY
@@ -126,7 +127,7 @@ def test_pins_at_one_place_translate_by_their_mean(mesh, transform):
     assert np.abs(found - mesh.vertices - [6.0, -2.0])[own].max() < 1e-10
 
 
-def test_targets_at_one_place_do_not_turn_a_rigid_map(mesh, shapes):
+def test_targets_at_one_place_do_not_turn_a_rigid_map(mesh):
     """No rotation fits better than another."""
     points = shapes.random_pins(mesh, 2)
     targets = np.tile([40.0, 70.0], (len(points), 1))
@@ -135,7 +136,7 @@ def test_targets_at_one_place_do_not_turn_a_rigid_map(mesh, shapes):
     assert np.abs(first - turned - [-30.0, 30.0]).max() < 1e-9
 
 
-def test_the_pose_so_far_does_not_matter(mesh, shapes, transform):
+def test_the_pose_so_far_does_not_matter(mesh, transform):
     points = shapes.random_pins(mesh, 1)
     targets = some_targets(mesh, points)
     deformer = MovingLeastSquaresDeformer(mesh, transform)
@@ -145,7 +146,7 @@ def test_the_pose_so_far_does_not_matter(mesh, shapes, transform):
 
 
 @pytest.mark.parametrize("alpha", [1.0, 10.0])
-def test_hardly_separated_pins_and_vertices_stay_finite(shapes, transform, alpha):
+def test_hardly_separated_pins_and_vertices_stay_finite(transform, alpha):
     mesh = shapes.SHAPES["disc 1"]
     points = MeshPoints(
         [0, 0, 40, 60], [[1.0, 0.0, 0.0], [1 - 1e-12, 1e-12, 0.0], [0.2, 0.3, 0.5], [0, 1, 0]]
@@ -156,7 +157,7 @@ def test_hardly_separated_pins_and_vertices_stay_finite(shapes, transform, alpha
 
 
 @pytest.mark.parametrize("name", ["elephant", "cat", "noto/gecko"])
-def test_pins_of_a_cartoon_nearly_arrive(cartoon_mesh, shapes, name, transform):
+def test_pins_of_a_cartoon_nearly_arrive(cartoon_mesh, name, transform):
     mesh = cartoon_mesh(name)
     points = shapes.random_pins(mesh, 1, 4)
     size = mesh.length
@@ -165,7 +166,7 @@ def test_pins_of_a_cartoon_nearly_arrive(cartoon_mesh, shapes, name, transform):
     found = moved(mesh, points, targets, transform=transform)
     off = np.hypot(*(mesh.evaluate(points, found) - targets).T)
     assert off.max() < 0.01 * size
-    chosen, points = vertex_pins(mesh, shapes)
+    chosen, points = vertex_pins(mesh)
     targets = some_targets(mesh, points)
     assert np.abs(moved(mesh, points, targets, transform=transform)[chosen] - targets).max() < 1e-9
 
@@ -182,6 +183,6 @@ def test_pins_of_a_cartoon_nearly_arrive(cartoon_mesh, shapes, name, transform):
         ({"alpha": float("inf")}, "alpha: expected a number"),
     ],
 )
-def test_bad_settings_are_refused(shapes, settings, message):
+def test_bad_settings_are_refused(settings, message):
     with pytest.raises(InputError, match=message):
         MovingLeastSquaresDeformer(shapes.SHAPES["triangle"], **settings)
