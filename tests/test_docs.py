@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from akap_editor.deform.methods import METHODS
+
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
 LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
@@ -64,3 +66,12 @@ def test_every_screenshot_is_on_a_page():
 def test_the_page_of_keys_is_that_of_the_program():
     """If this fails, run python tools/make_shortcuts.py."""
     assert (ROOT / "docs" / "shortcuts.md").read_text("utf-8") == tool("make_shortcuts").page()
+
+
+def test_presets_of_the_paper_have_their_names_of_the_screen():
+    page = (ROOT / "docs" / "methods.md").read_text("utf-8")
+    assert not [
+        preset.label
+        for preset in METHODS["akap"].presets
+        if f"| `{preset.spec}` | {preset.label} |" not in page
+    ]
