@@ -199,12 +199,12 @@ def add_keyframes(window: Window) -> None:
     pin = posed_elephant().state.pins[-1]
     x, y = pin.target.tolist()
     rest = posed_elephant().drawing.mesh.vertices
-    state.timeline.keyframe_playback.put(0.0, rest)
-    state.timeline.keyframe_playback.put(0.8, posed_elephant().state.positions)
+    state.timeline.keyframe_playback.set_keyframe(0.0, rest)
+    state.timeline.keyframe_playback.set_keyframe(0.8, posed_elephant().state.positions)
     gestures.move_pin(editor, pin.id, (x - 120.0, y + 260.0))
     assert editor.session is not None
     editor.session.settle()
-    state.timeline.keyframe_playback.put(1.6)
+    state.timeline.keyframe_playback.set_keyframe(1.6)
     for time, name in ((0.0, "Rest"), (0.8, "Trunk up"), (1.6, "Reach")):
         state.timeline.keyframe_playback.scrub(time)
         gestures.add_pose(editor, name)
@@ -217,8 +217,8 @@ def keyframes(window: Window) -> None:
     """Keyframes on the timeline, with onion skin."""
     add_keyframes(window)
     window.state.show_pins = False
-    window.state.timeline.keyframe_playback.onion.shown = True
-    window.state.timeline.keyframe_playback.chosen = frozenset({0.8})
+    window.state.timeline.keyframe_playback.onion_skin.is_shown = True
+    window.state.timeline.keyframe_playback.selected = frozenset({0.8})
 
 
 @shot("timeline")
@@ -227,7 +227,7 @@ def timeline(window: Window) -> None:
     files.open_path(window.state, resource("assets", "recordings", "elephant.akaprec"))
     while window.state.is_busy:
         window.frame()
-    window.state.timeline.session_playback.cut_to(1.5, 6.0)
+    window.state.timeline.session_playback.mark_range(1.5, 6.0)
     window.state.timeline.session_playback.scrub(4.0)
     window.state.notice = ""
 

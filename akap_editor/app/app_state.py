@@ -136,12 +136,12 @@ class AppState:
     def needs_frame(self) -> bool:
         """Whether the next frame changes something without an event: deferred jobs, a task, playback."""
         task_can_go_on = self.task is not None and not self.task.progress.is_blocked
-        return bool(self._jobs or self._due) or task_can_go_on or self.timeline.playback.playing
+        return bool(self._jobs or self._due) or task_can_go_on or self.timeline.playback.is_playing
 
     @property
     def is_busy(self) -> bool:
         """Whether anything moves or is computed, be it in a thread; when it ends, the window is idle."""
-        moves = self.editor.moving or self.comparison.is_moving or self.timeline.playback.playing
+        moves = self.editor.moving or self.comparison.is_moving or self.timeline.playback.is_playing
         computes = self.view.is_computing or self.remesher.is_busy or self.writer.is_busy
         return moves or computes or self.needs_frame or self.task is not None
 
@@ -209,7 +209,7 @@ class AppState:
         overlays = self.view.overlays(self.editor, distortion, mesh, scale)
         if not self.timeline.shows_keyframes:
             return overlays
-        return replace(overlays, skins=skins(*self.timeline.keyframe_playback.neighbors()))
+        return replace(overlays, skins=skins(*self.timeline.keyframe_playback.onion_poses()))
 
     def measure(self) -> Distortion | None:
         """The distortion of the current pose, computed once for each pose."""

@@ -291,7 +291,7 @@ class Window:
             self._canvas.choose_cursor(state)
         if state.editor.advance():
             self._frames_due = SETTLE_FRAMES
-        state.timeline.session_playback.watch(state.editor.session)
+        state.timeline.session_playback.follow(state.editor.session)
         state.editor.start_next_step()
         draw_markers(state, self.scale)
         draw_legend(state.view, state.editor, self.scale)

@@ -8,7 +8,7 @@ import click
 
 from ..deform.pose_interpolation import InterpolationCache
 from ..editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
-from ..editor.animation.keyframe_playback import keyed_frame
+from ..editor.animation.keyframe_playback import animation_frame
 from ..editor.animation.motion import Motion, shorten_pauses
 from ..editor.document.easing import EASINGS
 from ..editor.document.settings import Settings
@@ -198,7 +198,9 @@ def _open_keyframes(path: Path) -> _Source:
     animation = document.state.animation
     if not animation.keyframes:
         raise InputError(f"{path}: expected a drawing with keyframes, or a recording, got one without any")
-    return _Source(animation.duration, lambda times: (keyed_frame(document, cache, time) for time in times))
+    return _Source(
+        animation.duration, lambda times: (animation_frame(document, cache, time) for time in times)
+    )
 
 
 def _refuse(options: dict[str, object]) -> None:

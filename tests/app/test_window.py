@@ -41,17 +41,17 @@ def overlays(ui):
 
 
 def session_timeline(ui):
-    ui.state.timeline.session_playback.watch(ui.session)
+    ui.state.timeline.session_playback.follow(ui.session)
     bend(ui)
     ui.state.timeline.is_shown = True
 
 
 def keyframe_timeline(ui):
     ui.state.timeline.show_keyframes()
-    ui.state.timeline.keyframe_playback.put(0.0)
+    ui.state.timeline.keyframe_playback.set_keyframe(0.0)
     bend(ui)
-    ui.state.timeline.keyframe_playback.put(1.0)
-    ui.state.timeline.keyframe_playback.onion.shown = True
+    ui.state.timeline.keyframe_playback.set_keyframe(1.0)
+    ui.state.timeline.keyframe_playback.onion_skin.is_shown = True
 
 
 def unsaved_question(ui):

@@ -77,13 +77,13 @@ class Canvas:
                 state.notice = ""
                 clicks = io.mouse_clicked_count[index]
                 if io.key_ctrl:
-                    state.timeline.session_playback.take(True)
+                    state.timeline.session_playback.start_take()
                     self._records_take = True
                 editor.handle_event(PointerEvent("press", position, button, io.key_shift, io.key_alt, clicks))
             if imgui.is_mouse_released(index) and not editor.tool.is_idle:
                 editor.handle_event(PointerEvent("release", position, button, io.key_shift, io.key_alt))
                 if self._records_take:
-                    state.timeline.session_playback.take(False)
+                    state.timeline.session_playback.end_take()
                     self._records_take = False
 
     def _read_keys(self, state: AppState) -> None:

@@ -74,7 +74,7 @@ def _remove(state: AppState) -> None:
     if state.editor.selection:
         gestures.remove_selected_pins(state.editor)
     else:
-        state.timeline.keyframe_playback.remove()
+        state.timeline.keyframe_playback.delete_keyframes()
 
 
 def _find(state: AppState) -> None:

@@ -105,15 +105,15 @@ class ExportAnimationDialog:
 
     def open(self, state: AppState) -> None:
         """Show the dialog if there is a range to export; playback stops."""
-        start, end = state.timeline.playback.range
+        start, end = state.timeline.playback.played_range
         if state.document is not None and end > start:
-            if state.timeline.playback.playing:
+            if state.timeline.playback.is_playing:
                 state.timeline.playback.stop()
             self.is_open = True
 
     def draw(self, state: AppState, scale: float) -> None:
         """Draw one frame. scale: points per design point."""
-        start, end = state.timeline.playback.range
+        start, end = state.timeline.playback.played_range
         if state.document is None or end <= start:
             self.is_open = False
             return
@@ -154,7 +154,7 @@ def frame_at(state: AppState, time: float) -> Frame:
 
 def frame_count(state: AppState, options: AnimationExportOptions) -> int:
     """The number of frames of an export with these options."""
-    start, end = state.timeline.playback.range
+    start, end = state.timeline.playback.played_range
     times = options.frame_times(start, end)
     return len(options.playing_order(times, frame_at(state, start), frame_at(state, end)))
 
@@ -183,7 +183,7 @@ def export_animation(state: AppState, options: AnimationExportOptions, path: Pat
 
 def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: bool) -> Steps:
     """Compute the poses, then draw the pictures, which another thread encodes."""
-    times = options.frame_times(*state.timeline.playback.range)
+    times = options.frame_times(*state.timeline.playback.played_range)
     frames = []
     for number, time in enumerate(times):
         frames.append(frame_at(state, time))

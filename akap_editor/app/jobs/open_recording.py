@@ -36,13 +36,13 @@ def open_recording(path: Path, show: Show) -> Task:
         for count, event in enumerate(replay.events(), start=1):
             is_last_of_its_time = count == len(times) or times[count] > event.time
             if is_last_of_its_time:
-                playback.watch(replay.session)
+                playback.follow(replay.session)
             text = f"At {event.time:.0f} of {recording.duration:.0f} s"
             yield Progress(count / len(times), text)
             if is_finished_early:
                 break
         session = replay.end()
-        playback.watch(session)
+        playback.follow(session)
         show(session, playback)
 
     return Task(f"Opening {path.name}", steps(), finish_early)

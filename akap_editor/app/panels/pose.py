@@ -131,7 +131,9 @@ def _menu(state: AppState, pose: NamedPose) -> None:
     if imgui.menu_item_simple("Keyframe of It"):
         state.timeline.set_mode("keyframes")
         state.timeline.is_shown = True
-        state.run_reporting_errors(lambda: state.timeline.keyframe_playback.put(positions=pose.positions))
+        state.run_reporting_errors(
+            lambda: state.timeline.keyframe_playback.set_keyframe(positions=pose.positions)
+        )
     imgui.separator()
     assert state.document is not None
     last = len(state.document.state.poses) - 1
@@ -192,7 +194,7 @@ def _mixer(state: AppState, scale: float) -> None:
     """From one pose to another: the slider shows what is between, and takes it when it is let go."""
     session, pose_blend = state.editor.session, state.pose_blend
     assert session is not None
-    chosen = pose_blend.chosen(session)
+    chosen = pose_blend.endpoints(session)
     assert chosen is not None
     names = [pose.name for pose in session.state.poses]
     width = (imgui.get_content_region_avail().x - 8 * scale) / 2
@@ -210,7 +212,7 @@ def _mixer(state: AppState, scale: float) -> None:
     )
     if moved:
         pose_blend.share = min(max(share / 100, 0.0), 1.0)
-        pose_blend.show(session)
+        pose_blend.preview(session)
     if released:
         session.end_preview()
         pose = pose_blend.pose(session)

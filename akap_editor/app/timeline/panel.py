@@ -20,7 +20,7 @@ def draw(state: AppState, scale: float) -> None:
         return
     keyed = state.timeline.mode == "keyframes"
     if keyed:
-        state.timeline.keyframe_playback.watch()
+        state.timeline.keyframe_playback.update()
     state.timeline.playback.advance()
     height = (KEYED_HEIGHT if keyed else HEIGHT) * scale
     if widgets.side_bar("Timeline", imgui.Dir.down, height, ImVec2(10 * scale, 8 * scale)):
@@ -60,25 +60,25 @@ def _button(icon: str, name: str, scale: float, on: bool, color: tuple[float, ..
 def _buttons(state: AppState, scale: float) -> None:
     playback, playing = state.timeline.session_playback, state.timeline.playback
     if state.timeline.mode == "session":
-        recording = playback.taking is not None
+        recording = playback.take_start is not None
         icon = icons.ICON_FA_STOP if recording else icons.ICON_FA_CIRCLE
         if _button(icon, "record", scale, True, ACCENT if recording else RED):
-            playback.take(not recording)
+            (playback.end_take if recording else playback.start_take)()
         widgets.show_tooltip(
             "Record: what you do from here to the next click is the part that is played and exported"
         )
     else:
         key_track.buttons(state, scale)
     imgui.same_line(0, 4 * scale)
-    if _button(icons.ICON_FA_PAUSE if playing.playing else icons.ICON_FA_PLAY, "play", scale, True, TEXT):
-        playing.play()
+    if _button(icons.ICON_FA_PAUSE if playing.is_playing else icons.ICON_FA_PLAY, "play", scale, True, TEXT):
+        playing.toggle_playing()
     widgets.show_tooltip("Play (L)")
     imgui.same_line(0, 4 * scale)
     if _button(icons.ICON_FA_REPEAT, "loop", scale, playing.loop):
         playing.loop = not playing.loop
     widgets.show_tooltip("Play over and over")
     imgui.same_line(0, 4 * scale)
-    imgui.begin_disabled(playing.range[1] <= playing.range[0])
+    imgui.begin_disabled(playing.played_range[1] <= playing.played_range[0])
     if _button(icons.ICON_FA_FILM, "export", scale, True, TEXT):
         state.dialog(ExportAnimationDialog).open(state)
     imgui.end_disabled()
@@ -88,49 +88,51 @@ def _buttons(state: AppState, scale: float) -> None:
 def _track(state: AppState, scale: float) -> None:
     """The time from start to end: what is played in amber, two marks that cut it, and where one is."""
     playback, drawer = state.timeline.session_playback, imgui.get_window_draw_list()
-    label = f"{playback.at if playback.at is not None else playback.duration:.1f} / {playback.duration:.1f} s"
+    label = (
+        f"{playback.time if playback.time is not None else playback.duration:.1f} / {playback.duration:.1f} s"
+    )
     room = imgui.calc_text_size("000.0 / 000.0 s").x + 12 * scale
     corner, rim = imgui.get_cursor_screen_pos(), 8 * scale  # so that both ends can be taken hold of
     width, height = max(imgui.get_content_region_avail().x - room, 40 * scale), 28 * scale
     imgui.invisible_button("##track", ImVec2(width, height))
     corner.x, width = corner.x + rim, width - 2 * rim
     held, hovered = imgui.is_item_active(), imgui.is_item_hovered()
-    playback.view.fit(playback.duration or 1.0)
-    track = key_track.TimeScale(corner.x, width, playback.view)
+    playback.visible_range.fit(playback.duration or 1.0)
+    track = key_track.TimeScale(corner.x, width, playback.visible_range)
     if hovered and not held:
-        key_track.zoom(playback.view, track)
+        key_track.zoom(playback.visible_range, track)
     moment = track.time(imgui.get_mouse_pos().x)
     if imgui.is_item_activated():
         near, below = 8 * scale, imgui.get_mouse_pos().y > corner.y + 0.6 * height
-        start, end = (abs(imgui.get_mouse_pos().x - track.x(mark)) for mark in playback.range)
+        start, end = (abs(imgui.get_mouse_pos().x - track.x(mark)) for mark in playback.played_range)
         on_mark = below and min(start, end) < near
         state.grip = ("start" if start < end else "end") if on_mark else "head"
     if held and playback.snapshots:
         if state.grip == "start":
-            playback.cut_to(start=moment)
+            playback.mark_range(start=moment)
         elif state.grip == "end":
-            playback.cut_to(end=moment)
+            playback.mark_range(end=moment)
         else:
             playback.scrub(moment)
     middle = corner.y + height / 2
-    low, high = (track.x(mark) for mark in playback.range)
+    low, high = (track.x(mark) for mark in playback.played_range)
     drawer.push_clip_rect(
         ImVec2(corner.x - rim, corner.y), ImVec2(corner.x + width + rim, corner.y + height), True
     )
-    key_track.draw_part(drawer, playback.view, corner, width, scale)
+    key_track.draw_part(drawer, playback.visible_range, corner, width, scale)
     _bar(drawer, corner.x, corner.x + width, middle, scale, packed(FRAME))
     _bar(drawer, low, high, middle, scale, packed(ACCENT, 0.55))
     key_track.draw_marks(drawer, [low, high], corner.y + height, scale)
-    if playback.taking is not None:
+    if playback.take_start is not None:
         _bar(
             drawer,
-            track.x(playback.taking),
+            track.x(playback.take_start),
             track.x(playback.duration),
             middle,
             scale,
             packed(RED),
         )
-    head = track.x(playback.at if playback.at is not None else playback.view.whole)
+    head = track.x(playback.time if playback.time is not None else playback.visible_range.total)
     thickness = (2.5 if held or hovered else 2) * scale
     drawer.add_line(ImVec2(head, corner.y), ImVec2(head, corner.y + height), packed(TEXT), thickness)
     drawer.pop_clip_rect()

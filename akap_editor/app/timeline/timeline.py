@@ -47,7 +47,7 @@ class Timeline:
 
     def show_present(self) -> None:
         """Show the present pose on the canvas instead of another moment's."""
-        if self.session_playback.at is not None:
-            self.session_playback.now()
-        if self.keyframe_playback.following:
-            self.keyframe_playback.leave()
+        if self.session_playback.time is not None:
+            self.session_playback.show_present()
+        if self.keyframe_playback.is_previewing:
+            self.keyframe_playback.show_present()

@@ -1,8 +1,8 @@
-"""The animation of keyframes, looked at at any time, played, and changed."""
+"""Playback and editing of the keyframes: scrub, play, select, drag, ease; and the onion skin."""
 
-import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
+from time import monotonic
 from typing import Literal
 
 from ...deform.pose_interpolation import InterpolationCache
@@ -12,66 +12,70 @@ from ..document.depth import face_order
 from ..document.document import Document
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
 from ..document.pin_angles import pins_fixed_at_pose
-from ..editor import Editor
+from ..gestures import EditContext
 from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
 from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
 from .frames import Frame
-from .playback import Playback
-from .time_view import VisibleRange
+from .playback import Playback, VisibleRange
 
-GAP = 0.5  # seconds between a keyframe and one that is put after it without a time
-STEP = 0.05  # seconds: what times snap to, and what keys move by
-MOST_SKINS = 6  # of the onion skin, on each side
-SHORTEST_VIEW = 2.0  # seconds on the timeline, where it shows all
-
-Edge = Literal["keyframes", "frames"]
+TIME_STEP = 0.05  # seconds: times snap to multiples of it, and keys move by it
+MAX_ONION_POSES = 6  # on each side
+_DUPLICATE_GAP = 0.5  # seconds between the last keyframe and duplicates
+_MIN_TOTAL_SECONDS = 2.0  # shown by the timeline, even if the animation is shorter
 
 
 @dataclass
 class OnionSkin:
-    """Neighbors of the pose that is seen, shown translucently.
+    """The poses before and after the playhead, shown translucently.
 
-    of: whether keyframes before and after, or moments a ``step`` of seconds apart; count: on each side.
+    kind: the nearest keyframes, or the poses at times that are ``step`` seconds apart; count: on each side.
     """
 
-    shown: bool = False
-    of: Edge = "keyframes"
+    is_shown: bool = False
+    kind: Literal["keyframes", "times"] = "keyframes"
     count: int = 2
     step: float = 0.1
 
 
 class KeyframePlayback(Playback):
-    """Shows the keyframes of an editor's drawing at the moment ``at``; see `Session.visit`.
+    """Shows the keyframes of the open document at any time, and edits them; see `Session.preview`.
 
-    Looking edits nothing. The next gesture takes the pose that is seen, and then it is the present one, until
-    another moment is looked at. chosen: times of the keyframes that are selected; view: the part of the time
-    that the timeline shows.
+    Scrubbing edits nothing. The next gesture starts from the pose at the playhead, which becomes the present
+    pose. selected: times of the selected keyframes.
     """
 
-    def __init__(self, editor: Editor, clock: Callable[[], float] = time.monotonic) -> None:
+    time: float
+
+    def __init__(self, editor: EditContext, clock: Callable[[], float] = monotonic) -> None:
         super().__init__(clock)
-        self.onion = OnionSkin()
+        self.onion_skin = OnionSkin()
         self._editor = editor
-        self._ways = InterpolationCache()
+        self._interpolation = InterpolationCache()
         self._session: Session | None = None
-        self._forget()
+        self._reset()
 
-    def _forget(self) -> None:
-        self.at: float = 0.0
-        self.cut = self._played = None
-        self.chosen: frozenset[float] = frozenset()
-        self.view = VisibleRange(SHORTEST_VIEW)
-        self._moved: tuple[dict[float, float], bool] | None = None  # of a drag: times to times, as copies
-        self._beneath: Floats | None = None  # the present pose while another one is followed
+    def _reset(self) -> None:
+        self.time = 0.0
+        self.marked_range = self._last_update = None
+        self.selected: frozenset[float] = frozenset()
+        self.visible_range = VisibleRange(_MIN_TOTAL_SECONDS)
+        self._drag: tuple[dict[float, float], bool] | None = None  # old times to new ones, whether it copies
+        self._present_pose: Floats | None = None  # while the pose at the playhead is shown instead
 
-    # -- what is there -------------------------------------------------------------------------------------
+    # -- state ---------------------------------------------------------------------------------------------
+
+    @property
+    def stored_animation(self) -> Animation:
+        """The animation of the document, without the drag under way."""
+        session = self._editor.session
+        return NO_ANIMATION if session is None else session.present.animation
 
     @property
     def animation(self) -> Animation:
-        """As a drag of keyframes would leave it."""
-        kept = NO_ANIMATION if self._editor.session is None else self._editor.session.present.animation
-        return kept if self._moved is None else kept.with_moved_keyframes(*self._moved)
+        """The animation as the drag under way would leave it."""
+        animation = self.stored_animation
+        return animation if self._drag is None else animation.with_moved_keyframes(*self._drag)
 
     @property
     def duration(self) -> float:
@@ -80,7 +84,7 @@ class KeyframePlayback(Playback):
 
     @property
     def loop(self) -> bool:
-        """Whether playing starts over; kept with the keyframes."""
+        """Whether playing starts over at the end; a part of the animation."""
         return self.animation.loop
 
     @loop.setter
@@ -88,190 +92,192 @@ class KeyframePlayback(Playback):
         self._edit("Play over and over" if loop else "Play once", SetLoop(loop))
 
     @property
-    def following(self) -> bool:
-        """Whether the moment is shown, and not the present pose."""
-        return self._beneath is not None
+    def is_previewing(self) -> bool:
+        """Whether the pose at the playhead is shown instead of the present one."""
+        return self._present_pose is not None
 
     @property
-    def held(self) -> bool:
+    def is_dragging(self) -> bool:
         """Whether keyframes are being dragged."""
-        return self._moved is not None
+        return self._drag is not None
 
     @property
-    def kept_times(self) -> tuple[float, ...]:
-        """Of all keyframes, without a drag."""
-        return () if self._editor.session is None else self._editor.session.present.animation.times
+    def selected_in_drag(self) -> frozenset[float]:
+        """Times of the selected keyframes, as the drag under way would leave them."""
+        if self._drag is None:
+            return self.selected
+        return frozenset(self._drag[0].get(time, time) for time in self.selected)
 
-    @property
-    def shown_chosen(self) -> frozenset[float]:
-        """Where the chosen keyframes are during a drag."""
-        if self._moved is None:
-            return self.chosen
-        return frozenset(self._moved[0].get(time, time) for time in self.chosen)
-
-    def pose(self, moment: float) -> Floats | None:
+    def pose(self, time: float) -> Floats | None:
         """The pose (n, 2) at a time; None without keyframes."""
         session, animation = self._editor.session, self.animation
         if session is None or not animation.keyframes:
             return None
-        return pose_at(self._ways, session.drawing.mesh, animation, moment)
+        return animation_pose(self._interpolation, session.drawing.mesh, animation, time)
 
-    def frame(self, moment: float) -> Frame:
-        """What is seen at a time; there must be keyframes."""
-        session, pose = self._editor.session, self.pose(moment)
+    def frame(self, time: float) -> Frame:
+        """The frame at a time; there must be keyframes."""
+        session, pose = self._editor.session, self.pose(time)
         assert session is not None
         assert pose is not None, "expected keyframes"
         return Frame(session.drawing, pose, face_order(session.drawing.mesh, session.present.pins))
 
-    def neighbors(self) -> tuple[list[Floats], list[Floats]]:
-        """Poses before and after the moment, the nearest ones first, as the onion skin is to show them."""
-        animation, onion = self.animation, self.onion
-        if self.playing or not onion.shown or not animation.keyframes:
+    def onion_poses(self) -> tuple[list[Floats], list[Floats]]:
+        """The poses of the onion skin before and after the playhead, the nearest ones first."""
+        animation, onion_skin = self.animation, self.onion_skin
+        if self.is_playing or not onion_skin.is_shown or not animation.keyframes:
             return [], []
-        if onion.of == "keyframes":
-            here = as_keyframe_time(self.at)
-            before = [key.positions for key in reversed(animation.keyframes) if key.time < here]
-            after = [key.positions for key in animation.keyframes if key.time > here]
-            return before[: onion.count], after[: onion.count]
-        steps = [onion.step * (number + 1) for number in range(onion.count)]
-        earlier = (self.pose(self.at - step) for step in steps if self.at - step >= -1e-9)
-        later = (self.pose(self.at + step) for step in steps if self.at + step <= self.duration + 1e-9)
-        return [each for each in earlier if each is not None], [each for each in later if each is not None]
+        if onion_skin.kind == "keyframes":
+            time, keyframes = as_keyframe_time(self.time), animation.keyframes
+            before = [keyframe.positions for keyframe in reversed(keyframes) if keyframe.time < time]
+            after = [keyframe.positions for keyframe in keyframes if keyframe.time > time]
+            return before[: onion_skin.count], after[: onion_skin.count]
+        offsets = [onion_skin.step * (number + 1) for number in range(onion_skin.count)]
+        earlier = (self.pose(self.time - offset) for offset in offsets if self.time - offset >= -1e-9)
+        latest = self.duration + 1e-9
+        later = (self.pose(self.time + offset) for offset in offsets if self.time + offset <= latest)
+        return [pose for pose in earlier if pose is not None], [pose for pose in later if pose is not None]
 
-    # -- looking -------------------------------------------------------------------------------------------
+    # -- playhead ------------------------------------------------------------------------------------------
 
-    def watch(self) -> None:
-        """Take notice of what was edited; to be called once a frame."""
+    def update(self) -> None:
+        """Adapt to edits since the last call; to be called once a frame."""
         session = self._editor.session
         if session is not self._session:
             self._session = session
-            self._forget()
+            self._reset()
         if session is None:
             return
-        self.chosen &= set(self.kept_times)
-        if not self.held:
-            self.view.fit(max(SHORTEST_VIEW, 1.2 * self.duration, self.at))
-        if self._beneath is None or session.is_previewing or session.history.is_open:
+        self.selected &= set(self.stored_animation.times)
+        if not self.is_dragging:
+            self.visible_range.fit(max(_MIN_TOTAL_SECONDS, 1.2 * self.duration, self.time))
+        if self._present_pose is None or session.is_previewing or session.history.is_open:
             return
-        if session.state.positions is self._beneath:  # what was edited is no pose
+        if session.state.positions is self._present_pose:  # an edit ended the preview and kept the pose
             self._show()
         else:
-            self._beneath = self._played = None
+            self._present_pose = self._last_update = None
 
-    def scrub(self, moment: float) -> None:
-        """Look at a moment, also after the last keyframe; without keyframes the present pose stays."""
-        self.at = min(max(moment, 0.0), MAX_KEYFRAME_TIME)
-        self.view.reveal(self.at)
+    def scrub(self, time: float) -> None:
+        """Move the playhead and show the pose there, also after the last keyframe."""
+        self.time = min(max(time, 0.0), MAX_KEYFRAME_TIME)
+        self.visible_range.reveal(self.time)
         self._show()
 
     def _show(self) -> None:
-        session, pose = self._editor.session, self.pose(self.at)
+        session, pose = self._editor.session, self.pose(self.time)
         if session is None or session.history.is_open:
             return
         if pose is None:
-            self.leave()
+            self.show_present()
             return
         present = session.present
-        self._beneath = present.positions
+        self._present_pose = present.positions
         pins = pins_fixed_at_pose(session.drawing.mesh, present.pins, pose)
         session.preview(replace(present, positions=pose, pins=pins), takes_pose=True)
 
-    def leave(self) -> None:
+    def show_present(self) -> None:
         """Show the present pose."""
-        self._beneath = self._played = None
-        if self._editor.session is not None and not self._editor.session.history.is_open:
-            self._editor.session.end_preview()
+        self._present_pose = self._last_update = None
+        session = self._editor.session
+        if session is not None and not session.history.is_open:
+            session.end_preview()
 
-    def step(self, forward: bool) -> None:
-        """Look at the next keyframe, or the one before."""
-        here, times = as_keyframe_time(self.at), self.animation.times
+    def go_to_keyframe(self, forward: bool) -> None:
+        """Move the playhead to the next keyframe or the previous one, and select it."""
+        now, times = as_keyframe_time(self.time), self.animation.times
         if forward:
-            there = next((time for time in times if time > here), None)
+            time = next((time for time in times if time > now), None)
         else:
-            there = next((time for time in reversed(times) if time < here), None)
-        if there is not None:
-            self.chosen = frozenset({there})
-            self.scrub(there)
+            time = next((time for time in reversed(times) if time < now), None)
+        if time is not None:
+            self.selected = frozenset({time})
+            self.scrub(time)
 
-    # -- keyframes -----------------------------------------------------------------------------------------
+    # -- edits ---------------------------------------------------------------------------------------------
 
-    def put(self, moment: float | None = None, positions: Floats | None = None) -> None:
-        """A keyframe of what is seen, or of a pose (n, 2), at a moment, by default where one looks."""
+    def set_keyframe(self, time: float | None = None, positions: Floats | None = None) -> None:
+        """Set a keyframe and select it; replaces a keyframe at the same time.
+
+        time: that of the playhead by default; positions: a pose (n, 2), by default the one that is shown.
+        """
         session = self._editor.session
         if session is None or self._editor.busy:
             return
-        time = as_keyframe_time(self.at if moment is None else moment)
-        if positions is None and self.following:
+        time = as_keyframe_time(self.time if time is None else time)
+        if positions is None and self.is_previewing:
             positions = session.state.positions
         label = "Change keyframe" if time in self.animation.times else "Add keyframe"
         self._edit(label, SetKeyframe(time, positions))
-        self.chosen, self.at = frozenset({time}), time
+        self.selected, self.time = frozenset({time}), time
 
-    def remove(self) -> None:
-        """Take away the chosen keyframes, or the one where one looks."""
-        gone = self._meant()
-        if gone:
-            self._edit(_counted("Remove", gone), DeleteKeyframes(gone))
-            self.chosen = frozenset()
+    def delete_keyframes(self) -> None:
+        """Delete the selected keyframes, or the one at the playhead."""
+        times = self._affected_times()
+        if times:
+            self._edit(_counted("Remove", times), DeleteKeyframes(times))
+            self.selected = frozenset()
 
-    def duplicate(self) -> None:
-        """Copies of the chosen keyframes, or of the one where one looks, after the last one."""
-        meant = self._meant()
-        if meant:
-            by = self.duration + GAP - meant[0]
-            self._place(
-                {time: as_keyframe_time(min(time + by, MAX_KEYFRAME_TIME)) for time in meant}, copy=True
-            )
+    def duplicate_keyframes(self) -> None:
+        """Copy the selected keyframes, or the one at the playhead, to the end."""
+        times = self._affected_times()
+        if times:
+            shift = self.duration + _DUPLICATE_GAP - times[0]
+            self._move({time: _within_limits(time + shift) for time in times}, copy=True)
 
-    def nudge(self, by: float) -> None:
-        """Bring the chosen keyframes forward or back in time; the first stays at 0 or later."""
-        meant = self._meant()
-        if meant:
-            by = max(by, -meant[0])
-            self._place({time: as_keyframe_time(min(time + by, MAX_KEYFRAME_TIME)) for time in meant})
+    def shift_keyframes(self, by: float) -> None:
+        """Move the selected keyframes, or the one at the playhead, by seconds; the first not before 0."""
+        times = self._affected_times()
+        if times:
+            shift = max(by, -times[0])
+            self._move({time: _within_limits(time + shift) for time in times})
 
-    def set_time(self, old: float, new: float) -> None:
-        """Another time for one keyframe."""
-        self._place({old: as_keyframe_time(min(max(new, 0.0), MAX_KEYFRAME_TIME))})
+    def move_keyframe(self, old: float, new: float) -> None:
+        """Move the keyframe at the time ``old`` to ``new``."""
+        self._move({old: _within_limits(new)})
 
-    def ease(self, ease: str | None, general: bool = False) -> None:
-        """How it goes on from the chosen keyframes; general: wherever nothing else is said."""
-        times = None if general else self._meant()
-        if general or times:
-            self._edit("Change easing", SetEasing(times, ease))
+    def set_easing(self, easing: str | None) -> None:
+        """Set the easing after the selected keyframes, or the one at the playhead; None: the default."""
+        times = self._affected_times()
+        if times:
+            self._edit("Change easing", SetEasing(times, easing))
 
-    def _meant(self) -> list[float]:
-        """Times of the chosen keyframes, or of the one where one looks."""
-        return sorted(self.chosen) or [
-            time for time in self.animation.times if time == as_keyframe_time(self.at)
-        ]
+    def set_default_easing(self, easing: str) -> None:
+        """Set the easing after all keyframes that have none of their own."""
+        self._edit("Change easing", SetEasing(None, easing))
 
-    # -- keyframes that are dragged ------------------------------------------------------------------------
+    def drag_keyframes(self, moves: Mapping[float, float], copy: bool = False) -> None:
+        """Show the animation with keyframes at other times; `drop_keyframes` makes it an edit.
 
-    def drag(self, moves: Mapping[float, float], copy: bool = False) -> None:
-        """Show the animation with keyframes at other times; nothing is edited before `drop`."""
-        moves = {old: as_keyframe_time(min(max(new, 0.0), MAX_KEYFRAME_TIME)) for old, new in moves.items()}
-        self._moved = moves, copy
-        if self.following:
+        moves: old times to new ones; copy: whether the keyframes also stay at the old times.
+        """
+        self._drag = {old: _within_limits(new) for old, new in moves.items()}, copy
+        if self.is_previewing:
             self._show()
 
-    def drop(self, keep: bool = True) -> None:
-        """End the drag; its keyframes stay where they are, or return."""
-        if self._moved is None:
+    def drop_keyframes(self, keep: bool = True) -> None:
+        """End the drag: edit the animation as it is shown, or return to the one before the drag."""
+        if self._drag is None:
             return
-        (moves, copy), self._moved = self._moved, None
+        (moves, copy), self._drag = self._drag, None
         if keep and any(old != new for old, new in moves.items()):
-            self._place(moves, copy)
-        elif self.following:
+            self._move(moves, copy)
+        elif self.is_previewing:
             self._show()
 
-    def _place(self, moves: Mapping[float, float], copy: bool = False) -> None:
-        label = _counted("Duplicate" if copy else "Move", moves)
-        self._edit(label, MoveKeyframes(dict(moves), copy))
-        if self.chosen or copy:
-            self.chosen = frozenset(moves.get(time, time) for time in self.chosen or moves)
-        if not copy and as_keyframe_time(self.at) in moves:
-            self.at = moves[as_keyframe_time(self.at)]
+    def _affected_times(self) -> list[float]:
+        """Times of the selected keyframes, or of the one at the playhead, ascending."""
+        playhead = as_keyframe_time(self.time)
+        return sorted(self.selected) or [time for time in self.animation.times if time == playhead]
+
+    def _move(self, moves: Mapping[float, float], copy: bool = False) -> None:
+        """Move or copy keyframes; selection and playhead move along."""
+        self._edit(_counted("Duplicate" if copy else "Move", moves), MoveKeyframes(dict(moves), copy))
+        if self.selected or copy:
+            self.selected = frozenset(moves.get(time, time) for time in self.selected or moves)
+        playhead = as_keyframe_time(self.time)
+        if not copy and playhead in moves:
+            self.time = moves[playhead]
 
     def _edit(self, label: str, edit: KeyframeEdit) -> None:
         session = self._editor.session
@@ -279,31 +285,37 @@ class KeyframePlayback(Playback):
             return
         session.end_preview()
         self._editor.apply(label, edit)
-        if self.following:
+        if self.is_previewing:
             self._show()
 
 
-def pose_at(ways: InterpolationCache, mesh: TriMesh, animation: Animation, moment: float) -> Floats:
+def animation_pose(
+    interpolation: InterpolationCache, mesh: TriMesh, animation: Animation, time: float
+) -> Floats:
     """The pose (n, 2) of an animation of a mesh at a time; there must be keyframes."""
-    start, end, share = animation.keyframes_around(moment)
-    return ways.pose(mesh, start.positions, end.positions, share)
+    start, end, share = animation.keyframes_around(time)
+    return interpolation.pose(mesh, start.positions, end.positions, share)
 
 
-def keyed_frame(document: Document, ways: InterpolationCache, moment: float) -> Frame:
-    """What is seen of a document's keyframes at a time; there must be some."""
-    pose = pose_at(ways, document.drawing.mesh, document.state.animation, moment)
+def animation_frame(document: Document, interpolation: InterpolationCache, time: float) -> Frame:
+    """The frame of a document's animation at a time; there must be keyframes."""
+    pose = animation_pose(interpolation, document.drawing.mesh, document.state.animation, time)
     return Frame(document.drawing, pose, document.face_order)
 
 
-def stretched(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:
-    """New times of keyframes when the one at ``dragged`` moves, and the first or the last one stays."""
-    ordered = sorted(times)
-    fixed = ordered[-1] if dragged == ordered[0] else ordered[0]
+def stretch_times(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:
+    """Old times to new ones, when ``dragged`` moves ``to`` a time and the first or the last one stays."""
+    ascending = sorted(times)
+    fixed = ascending[-1] if dragged == ascending[0] else ascending[0]
     span = dragged - fixed
-    share = (to - fixed) / span if span else 1.0
-    least = STEP / max(abs(span), STEP)
-    return {time: fixed + max(share, least) * (time - fixed) for time in ordered}
+    scale = (to - fixed) / span if span else 1.0
+    min_scale = TIME_STEP / max(abs(span), TIME_STEP)
+    return {time: fixed + max(scale, min_scale) * (time - fixed) for time in ascending}
 
 
-def _counted(verb: str, keys: Mapping[float, float] | list[float]) -> str:
-    return f"{verb} keyframe" if len(keys) == 1 else f"{verb} {len(keys)} keyframes"
+def _within_limits(time: float) -> float:
+    return as_keyframe_time(min(max(time, 0.0), MAX_KEYFRAME_TIME))
+
+
+def _counted(verb: str, times: Collection[float]) -> str:
+    return f"{verb} keyframe" if len(times) == 1 else f"{verb} {len(times)} keyframes"

@@ -1,9 +1,10 @@
-"""A recording as a motion: a pose for every time, not only for those that were recorded."""
+"""A recording as a motion: a pose at any time, not only at the recorded ones."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import groupby
 from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,88 +17,98 @@ from ..session.recording import MAX_TIME, Recording
 from ..session.replay import ReplayedEvent
 from .frames import Frame
 
-LONGEST_MOVE = 0.25  # seconds: what moved after a longer pause moved in the last of it
+MAX_MOVE_SECONDS = 0.25  # a motion between two recorded times takes at most this long
 
 
 def shorten_pauses(recording: Recording, longest: float) -> Recording:
-    """The same, but where nothing was done for more than ``longest`` seconds, that long only."""
+    """Shorten the pauses between events to ``longest`` seconds. Raises InputError."""
     as_number(longest, "longest pause", 0, MAX_TIME)
-    events, before, now = [], 0.0, 0.0
+    events, previous, time = [], 0.0, 0.0
     for event in recording.events:
-        now += min(event["t"] - before, longest)
-        before = event["t"]
-        events.append({**event, "t": now})
+        time += min(event["t"] - previous, longest)
+        previous = event["t"]
+        events.append({**event, "t": time})
     return replace(recording, events=events)
+
+
+class _TimedStep(NamedTuple):
+    """A step with the pose (n, 2) before it and its share of a segment's time."""
+
+    pose: Floats
+    result: StepResult
+    share: float
 
 
 @dataclass(frozen=True, eq=False)
 class _Segment:
-    """From ``start``, where ``steps`` begin, to ``end``, where it is ``after``; earlier it is ``before``.
+    """The motion between two recorded times.
 
-    steps: each with the pose that it began with, and with the share of the time that it takes, which is that
-    of the way.
+    Until ``start`` the frame is ``before``, then ``steps`` lead to ``after`` at ``end``. A step takes a share
+    of the time that is proportional to how far it moves.
     """
 
     start: float
     end: float
     before: Frame
-    steps: tuple[tuple[Floats, StepResult, float], ...]
+    steps: tuple[_TimedStep, ...]
     after: Frame
 
 
 class Motion:
-    """What is seen of a recording of ``drawing`` that is done again, at times that do not fall.
+    """The frames of a recording that is replayed on a drawing, at ascending times.
 
-    Between two recorded times the drawing moves along its trajectories (`StepResult.at`); of methods that
-    know none, each edge turns at a constant rate (`PoseInterpolation`). So a few recorded steps a second play
-    as many frames along arcs. A pose that was set, and not reached by steps, comes at once, and so does
-    another mesh.
+    Between two recorded times the drawing moves along its trajectories (`StepResult.at`); with methods that
+    have none, each edge rotates and grows at a constant rate (`PoseInterpolation`). So a few recorded steps a
+    second play as many frames along arcs. A pose that no step led to appears at once, and so does another
+    mesh.
     """
 
-    def __init__(self, drawing: Drawing, moments: Iterable[ReplayedEvent]) -> None:
+    def __init__(self, drawing: Drawing, events: Iterable[ReplayedEvent]) -> None:
         self._drawing = drawing
-        self._groups = (list(group) for _, group in groupby(moments, key=attrgetter("time")))
+        self._groups = (list(group) for _, group in groupby(events, key=attrgetter("time")))
         rest = Frame(drawing, drawing.mesh.vertices)
-        self._stretch = _Segment(0.0, 0.0, rest, (), rest)
-        self._ways = InterpolationCache()
+        self._segment = _Segment(0.0, 0.0, rest, (), rest)
+        self._interpolation = InterpolationCache()
 
     def frames(self, times: Iterable[float]) -> Iterator[Frame]:
-        """Drawing and pose at each of ``times``, in seconds, ascending."""
+        """The frame at each of ``times``, in seconds, ascending."""
         for time in times:
-            while time > self._stretch.end and (group := next(self._groups, None)) is not None:
-                self._stretch = self._next(group)
+            while time > self._segment.end and (group := next(self._groups, None)) is not None:
+                self._segment = self._next_segment(group)
             yield self._frame(time)
 
-    def _next(self, group: list[ReplayedEvent]) -> _Segment:
-        before, last = self._stretch.after, group[-1]
-        drawing, pose, _ = before
-        bent = last.state.drawing or self._drawing
-        after = Frame(bent, last.state.positions, face_order(bent.mesh, last.state.pins))
-        if bent is not drawing or any(moment.jumped for moment in group):
+    def _next_segment(self, group: list[ReplayedEvent]) -> _Segment:
+        """The segment to a group of events that have the same time."""
+        before, last = self._segment.after, group[-1]
+        drawing = last.state.drawing or self._drawing
+        after = Frame(drawing, last.state.positions, face_order(drawing.mesh, last.state.pins))
+        if drawing is not before.drawing or any(event.jumped for event in group):
             return _Segment(last.time, last.time, before, (), after)
-        moved: list[tuple[Floats, StepResult, float]] = []
-        for moment in group:
-            if moment.step is not None:
-                moved.append((pose, moment.step, float(np.abs(moment.state.positions - pose).max())))
-            pose = moment.state.positions
-        way = sum(length for *_, length in moved)
-        steps = tuple((began, step, length / way) for began, step, length in moved if length)
-        start = max(self._stretch.end, last.time - LONGEST_MOVE) if steps else last.time
+        pose = before.pose
+        moves: list[tuple[Floats, StepResult, float]] = []
+        for event in group:
+            if event.step is not None:
+                moves.append((pose, event.step, float(np.abs(event.state.positions - pose).max())))
+            pose = event.state.positions
+        total = sum(length for *_, length in moves)
+        steps = tuple(_TimedStep(pose, step, length / total) for pose, step, length in moves if length)
+        start = max(self._segment.end, last.time - MAX_MOVE_SECONDS) if steps else last.time
         return _Segment(start, last.time, before, steps, after)
 
     def _frame(self, time: float) -> Frame:
-        stretch = self._stretch
-        if time >= stretch.end:
-            return stretch.after
-        if time <= stretch.start:
-            return stretch.before
-        local = (time - stretch.start) / (stretch.end - stretch.start)
-        drawing, order = stretch.after.drawing, stretch.after.order
-        for began, step, share in stretch.steps:  # noqa: B007
-            if local <= share:
+        segment = self._segment
+        if time >= segment.end:
+            return segment.after
+        if time <= segment.start:
+            return segment.before
+        drawing, _, order = segment.after
+        share = (time - segment.start) / (segment.end - segment.start)
+        for step in segment.steps:
+            if share <= step.share:
                 break
-            local -= share
-        local = min(local / share, 1.0)
-        if step.flow is not None:
-            return Frame(drawing, step.at(local), order)
-        return Frame(drawing, self._ways.pose(drawing.mesh, began, step.positions, local), order)
+            share -= step.share
+        progress = min(share / step.share, 1.0)
+        if step.result.flow is not None:
+            return Frame(drawing, step.result.at(progress), order)
+        pose = self._interpolation.pose(drawing.mesh, step.pose, step.result.positions, progress)
+        return Frame(drawing, pose, order)

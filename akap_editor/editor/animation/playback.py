@@ -1,90 +1,133 @@
-"""What all that can be played has in common: a moment that is looked at, a range, and time that passes."""
+"""The base of what a timeline plays: a playhead, a range, and the part of the time that is visible."""
 
-import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from time import monotonic
 
-from .time_view import VisibleRange
+MIN_VISIBLE_SECONDS = 0.5
+
+
+class VisibleRange:
+    """The part of its time that a timeline shows: all of it, or less when it is zoomed in.
+
+    start, seconds: beginning and length of that part; total: length of the whole time, which begins at 0.
+    """
+
+    def __init__(self, total: float) -> None:
+        self.total = self.seconds = total
+        self.start = 0.0
+
+    @property
+    def is_zoomed(self) -> bool:
+        """Whether it is less than the whole time."""
+        return self.seconds < self.total
+
+    def fit(self, total: float) -> None:
+        """Change the length of the whole time; a zoomed-in part keeps its place and length."""
+        seconds = self.seconds if self.is_zoomed else total
+        self.total = total
+        self._show(self.start, seconds)
+
+    def zoom(self, factor: float, time: float) -> None:
+        """Zoom in by a factor; ``time`` keeps its place on the screen."""
+        seconds = max(self.seconds / factor, min(MIN_VISIBLE_SECONDS, self.total))
+        self._show(time - (time - self.start) / self.seconds * seconds, seconds)
+
+    def pan(self, by: float) -> None:
+        """Move by seconds, as far as the ends of the whole time."""
+        self._show(self.start + by, self.seconds)
+
+    def reveal(self, time: float) -> None:
+        """Move a time into the middle unless it is visible."""
+        if not self.start <= time <= self.start + self.seconds:
+            self._show(time - self.seconds / 2, self.seconds)
+
+    def _show(self, start: float, seconds: float) -> None:
+        self.seconds = min(seconds, self.total)
+        self.start = min(max(start, 0.0), self.total - self.seconds)
 
 
 class Playback(ABC):
-    """at: the moment that is looked at, in seconds, None where none is; loop: whether playing starts over;
-    cut: the part that is played and exported, all of it where None; view: the part that the timeline shows.
+    """Shows a motion at any time and plays a range of it.
+
+    time: of the playhead, in seconds; None while the present is shown. marked_range: start and end of the
+    part that is played and exported; None for the whole motion. loop: whether playing starts over at the end.
+    clock: returns seconds.
     """
 
     loop = True
-    view: VisibleRange
+    visible_range: VisibleRange
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
-        self.at: float | None = None
-        self.cut: tuple[float, float] | None = None
-        self._played: float | None = None  # the clock at the last frame of playing
+        self.time: float | None = None
+        self.marked_range: tuple[float, float] | None = None
+        self._last_update: float | None = None  # the clock at the last update while it plays
 
     @property
     @abstractmethod
     def duration(self) -> float:
-        """Seconds from 0 to the end."""
+        """Seconds from 0 to the end of the motion."""
 
     @abstractmethod
-    def scrub(self, moment: float) -> None:
-        """Show what is seen at a time."""
+    def scrub(self, time: float) -> None:
+        """Move the playhead and show the pose there."""
 
     @property
-    def playing(self) -> bool:
-        """Whether time passes."""
-        return self._played is not None
+    def is_playing(self) -> bool:
+        """Whether the playhead moves with the clock."""
+        return self._last_update is not None
 
     @property
-    def range(self) -> tuple[float, float]:
-        """What is played and exported, in seconds."""
-        return self.cut or (0.0, self.duration)
+    def playhead(self) -> float:
+        """Time of the playhead, in seconds; the end while the present is shown."""
+        return self.duration if self.time is None else self.time
 
     @property
-    def position(self) -> float:
-        """Where one is, in seconds; at the end where no moment is looked at."""
-        return self.duration if self.at is None else self.at
+    def played_range(self) -> tuple[float, float]:
+        """Start and end of the part that is played and exported, seconds."""
+        return self.marked_range or (0.0, self.duration)
 
-    def look(self, moment: float) -> None:
-        """Stop at a moment; before the start there is none."""
-        self._played = None
-        self.scrub(max(moment, 0.0))
+    def stop_at(self, time: float) -> None:
+        """Stop and move the playhead, to 0 at the earliest."""
+        self._last_update = None
+        self.scrub(max(time, 0.0))
 
-    def play(self) -> None:
-        """Play the range from where it is looked at, or from its start; stop where it plays."""
-        start, end = self.range
-        if self.playing:
+    def toggle_playing(self) -> None:
+        """Play from the playhead if it is in the range, otherwise from the start of the range; or stop."""
+        start, end = self.played_range
+        if self.is_playing:
             self.stop()
         elif end > start:
-            inside = self.at is not None and start <= self.at < end
-            self._played = self._clock()
-            self.scrub(self.at if inside and self.at is not None else start)
+            is_inside = self.time is not None and start <= self.time < end
+            self._last_update = self._clock()
+            self.scrub(self.time if is_inside and self.time is not None else start)
 
     def stop(self) -> None:
-        """Let no more time pass."""
-        self._played = None
-        if self.at is not None:
-            self.scrub(self.at)
+        """Stop playing; the playhead stays."""
+        self._last_update = None
+        if self.time is not None:
+            self.scrub(self.time)
 
     def advance(self) -> None:
-        """Let time pass; to be called once a frame."""
-        if self._played is None or self.at is None:
-            self._played = None
+        """Move the playhead by the time since the last call, if it plays; to be called once a frame."""
+        if self._last_update is None or self.time is None:
+            self._last_update = None
             return
         now = self._clock()
-        moment, (start, end) = self.at + now - self._played, self.range
-        self._played = now
-        if moment < end:
-            self.scrub(moment)
+        time, (start, end) = self.time + now - self._last_update, self.played_range
+        self._last_update = now
+        if time < end:
+            self.scrub(time)
         elif self.loop and end > start:
-            self.scrub(start + (moment - end) % (end - start))
+            self.scrub(start + (time - end) % (end - start))
         else:
-            self._played = None
+            self._last_update = None
             self.scrub(end)
 
-    def cut_to(self, start: float | None = None, end: float | None = None) -> None:
-        """Change the range; an empty one is all there is."""
-        low, high = self.range
+    def mark_range(self, start: float | None = None, end: float | None = None) -> None:
+        """Change start or end of the range; an empty range means the whole motion."""
+        low, high = self.played_range
         low = low if start is None else max(start, 0.0)
         high = high if end is None else min(end, self.duration)
-        self.cut = (low, high) if low < high else None
+        self.marked_range = (low, high) if low < high else None

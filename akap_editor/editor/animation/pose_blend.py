@@ -1,4 +1,4 @@
-"""A pose between two that were given names, to be looked at before it is taken."""
+"""A blend of two named poses, to look at before it is applied."""
 
 from dataclasses import replace
 
@@ -9,31 +9,34 @@ from ..session.session import Session
 
 
 class PoseBlend:
-    """start, end: names of poses; share: how far from one to the other, 0 to 1."""
+    """A pose between two named poses.
+
+    start, end: names of the poses; share: 0 for the start, 1 for the end.
+    """
 
     def __init__(self) -> None:
         self.start = self.end = ""
         self.share = 0.0
-        self._ways = InterpolationCache()
+        self._interpolation = InterpolationCache()
 
-    def chosen(self, session: Session) -> tuple[NamedPose, NamedPose] | None:
-        """The two poses; the first and the last one where none was chosen; None with less than two poses."""
-        poses = {pose.name: pose for pose in session.state.poses}
+    def endpoints(self, session: Session) -> tuple[NamedPose, NamedPose] | None:
+        """The two poses; the first or the last one for an unknown name, None with fewer than two poses."""
+        poses = session.state.poses
         if len(poses) < 2:
             return None
-        every = list(poses.values())
-        return poses.get(self.start, every[0]), poses.get(self.end, every[-1])
+        by_name = {pose.name: pose for pose in poses}
+        return by_name.get(self.start, poses[0]), by_name.get(self.end, poses[-1])
 
     def pose(self, session: Session) -> Floats | None:
-        """The pose (n, 2) between the two that are chosen."""
-        chosen = self.chosen(session)
-        if chosen is None:
+        """The blended pose (n, 2); None if there are fewer than two named poses."""
+        endpoints = self.endpoints(session)
+        if endpoints is None:
             return None
-        start, end = chosen
-        return self._ways.pose(session.drawing.mesh, start.positions, end.positions, self.share)
+        start, end = endpoints
+        return self._interpolation.pose(session.drawing.mesh, start.positions, end.positions, self.share)
 
-    def show(self, session: Session) -> None:
-        """Look at it; nothing is edited."""
+    def preview(self, session: Session) -> None:
+        """Show the blend without editing anything; see `Session.preview`."""
         pose = None if session.history.is_open else self.pose(session)
         if pose is not None:
             session.preview(replace(session.state, positions=pose))

@@ -1,9 +1,9 @@
-"""What a session looked like at every moment, to be watched again, and gone on with from anywhere."""
+"""Playback of the session itself: every state that was seen, to look at again and to continue from."""
 
-import time
 from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
+from time import monotonic
 
 from ...deform.pose_interpolation import InterpolationCache
 from ..document.depth import face_order
@@ -11,128 +11,140 @@ from ..document.document import EditState
 from ..document.drawing import Drawing
 from ..session.session import Session
 from .frames import Frame
-from .motion import LONGEST_MOVE
-from .playback import Playback
-from .time_view import VisibleRange
+from .motion import MAX_MOVE_SECONDS
+from .playback import Playback, VisibleRange
 
-LONGEST_PAUSE = 1.0  # seconds: pauses between edits are not shown for longer
-MOST_BYTES = 2**28  # of poses; beyond, every second of the older ones is forgotten
+MAX_PAUSE_SECONDS = 1.0  # longer pauses between edits are shortened to this
+MAX_BYTES = 2**28  # of poses; when there are more, every second one of the older half is dropped
 
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
     """A state of the session.
 
-    time: in seconds, with pauses shortened; line: of the recording before it; jumps: as the session had them.
+    time: in seconds, with shortened pauses; line: number of lines of the recording before it;
+    discontinuities: as the session counted them.
     """
 
     time: float
     line: int
     state: EditState
     drawing: Drawing
-    jumps: int = 0
+    discontinuities: int = 0
 
 
 class SessionPlayback(Playback):
-    """Watches a session and shows it again; see `Session.visit`.
+    """Records the states of a session and shows them again; see `Session.preview`.
 
-    Times are seconds since the session began, pauses shortened. Going on from an earlier moment starts a new
-    branch: what came after that moment leaves the timeline, and stays in history and recording.
+    Times are seconds since the session began, with shortened pauses. An edit at an earlier time starts a new
+    branch: later snapshots leave the timeline, but stay in the history and in the recording. take_start: time
+    at which the current take began, None if there is none.
     """
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         super().__init__(clock)
         self._session: Session | None = None
-        self._ways = InterpolationCache()
-        self._forget()
+        self._interpolation = InterpolationCache()
+        self._reset()
 
-    def _forget(self) -> None:
+    def _reset(self) -> None:
         self.snapshots: list[Snapshot] = []
-        self.at = self.cut = self._played = None  # at None is now
-        self.view = VisibleRange(1.0)  # the part of it that the timeline shows
-        self.taking: float | None = None  # since when a take is recorded
-        self._seen = self._clock()
+        self.time = self.marked_range = self._last_update = None
+        self.visible_range = VisibleRange(1.0)
+        self.take_start: float | None = None
+        self._last_change = self._clock()
 
     @property
     def duration(self) -> float:
-        """Seconds from the first to the last shot."""
+        """Seconds from the first snapshot to the last one."""
         return self.snapshots[-1].time if self.snapshots else 0.0
 
-    def watch(self, session: Session | None) -> None:
-        """Note the session's state, where it is another than before; to be called once a frame."""
+    def follow(self, session: Session | None) -> None:
+        """Record the session's state if it has changed; to be called once a frame."""
         if session is not self._session:
             self._session = session
-            self._forget()
+            self._reset()
         if session is None or session.is_previewing or session.has_pending_step:
             return
-        if self.at is not None:  # a gesture went on from there
-            self.snapshots = self.snapshots[: self._index(self.at) + 1]
-            self.at = self._played = None
-            self.taking = self.duration if self.taking is not None else None
-            self.cut = None if self.cut is not None and self.cut[1] > self.duration else self.cut
-            self._seen = self._clock()
+        if self.time is not None:  # an edit continued from an earlier snapshot
+            self._start_branch(self.time)
         if self.snapshots and self.snapshots[-1].state is session.state:
             return
         now = self._clock()
-        passed = min(now - self._seen, LONGEST_PAUSE) if self.snapshots else 0.0
-        self._seen = now
-        line = len(session.recording.events) + 1
-        self.snapshots.append(
-            Snapshot(self.duration + passed, line, session.state, session.drawing, session.discontinuities)
-        )
-        if len(self.snapshots) * session.state.positions.nbytes > MOST_BYTES:
+        pause = min(now - self._last_change, MAX_PAUSE_SECONDS) if self.snapshots else 0.0
+        self._last_change = now
+        time, line = self.duration + pause, len(session.recording.events) + 1
+        self.snapshots.append(Snapshot(time, line, session.state, session.drawing, session.discontinuities))
+        if len(self.snapshots) * session.state.positions.nbytes > MAX_BYTES:
             half = len(self.snapshots) // 2
             self.snapshots = self.snapshots[:half:2] + self.snapshots[half:]
 
-    def _index(self, moment: float) -> int:
-        return max(0, bisect_right(self.snapshots, moment, key=lambda shot: shot.time) - 1)
+    def _start_branch(self, time: float) -> None:
+        """Drop the snapshots after a time, and what refers to them."""
+        self.snapshots = self.snapshots[: self._index(time) + 1]
+        self.time = self._last_update = None
+        if self.take_start is not None:
+            self.take_start = self.duration
+        if self.marked_range is not None and self.marked_range[1] > self.duration:
+            self.marked_range = None
+        self._last_change = self._clock()
 
-    def shot(self, moment: float) -> Snapshot:
-        """What was seen at a time."""
-        return self.snapshots[self._index(moment)]
+    def _index(self, time: float) -> int:
+        return max(0, bisect_right(self.snapshots, time, key=lambda snapshot: snapshot.time) - 1)
 
-    def scrub(self, moment: float) -> None:
-        """Show the session as it was at a time; at its end, as it is. While it plays, also between shots."""
+    def snapshot_at(self, time: float) -> Snapshot:
+        """The last snapshot up to a time."""
+        return self.snapshots[self._index(time)]
+
+    def scrub(self, time: float) -> None:
+        """Show the session at a time, while playing also between snapshots; at the end show the present."""
         if self._session is None or self._session.history.is_open or not self.snapshots:
             return
-        if moment >= self.duration:
-            self.now()
+        if time >= self.duration:
+            self.show_present()
             return
-        self.at = max(moment, 0.0)
-        self.view.reveal(self.at)
-        shot = self.shot(self.at)
-        if self.playing:
-            self._session.preview(shot.state, shot.line, self.frame(self.at).pose)
-        elif shot.state is not self._session.state:
-            self._session.preview(shot.state, shot.line)
+        self.time = max(time, 0.0)
+        self.visible_range.reveal(self.time)
+        snapshot = self.snapshot_at(self.time)
+        if self.is_playing:
+            self._session.preview(snapshot.state, snapshot.line, self.frame(self.time).pose)
+        elif snapshot.state is not self._session.state:
+            self._session.preview(snapshot.state, snapshot.line)
 
-    def now(self) -> None:
-        """Show the session as it is."""
-        self.at = self._played = None
+    def show_present(self) -> None:
+        """Show the session as it is now."""
+        self.time = self._last_update = None
         if self._session is not None:
             self._session.end_preview()
 
-    def take(self, on: bool) -> None:
-        """Start or end a take: the part of the session between the two becomes the range."""
-        if on:
-            self.stop()
-            self._seen = self._clock()
-            self.taking = self.duration if self.at is None else self.at
-        elif self.taking is not None:
-            self.cut = (self.taking, self.duration) if self.duration > self.taking else None
-            self.taking = None
+    def start_take(self) -> None:
+        """Start a take at the playhead: what is done until its end becomes the range."""
+        self.stop()
+        self._last_change = self._clock()
+        self.take_start = self.playhead
 
-    def frame(self, moment: float) -> Frame:
-        """What is seen at a time, also between two shots: each edge turns and grows at a constant rate.
+    def end_take(self) -> None:
+        """End the take, if there is one, and mark it as the range."""
+        if self.take_start is not None:
+            is_empty = self.duration <= self.take_start
+            self.marked_range = None if is_empty else (self.take_start, self.duration)
+            self.take_start = None
 
-        After a longer pause, the motion takes the last of it. What was not reached by steps comes at once.
+    def frame(self, time: float) -> Frame:
+        """The frame at a time; between two snapshots each edge rotates and grows at a constant rate.
+
+        After a long pause the motion takes only its last `MAX_MOVE_SECONDS`. A pose that no step led to
+        appears at once.
         """
-        index = self._index(moment)
-        shot = self.snapshots[index]
-        after = self.snapshots[min(index + 1, len(self.snapshots) - 1)]
-        start = max(shot.time, after.time - LONGEST_MOVE)
-        pose = shot.state.positions
-        if moment > start and after.jumps == shot.jumps and after.drawing is shot.drawing:
-            share = (moment - start) / (after.time - start)
-            pose = self._ways.pose(shot.drawing.mesh, pose, after.state.positions, min(share, 1.0))
-        return Frame(shot.drawing, pose, face_order(shot.drawing.mesh, shot.state.pins))
+        index = self._index(time)
+        snapshot = self.snapshots[index]
+        following = self.snapshots[min(index + 1, len(self.snapshots) - 1)]
+        start = max(snapshot.time, following.time - MAX_MOVE_SECONDS)
+        mesh, pose = snapshot.drawing.mesh, snapshot.state.positions
+        is_continuous = (
+            following.discontinuities == snapshot.discontinuities and following.drawing is snapshot.drawing
+        )
+        if time > start and is_continuous:
+            share = min((time - start) / (following.time - start), 1.0)
+            pose = self._interpolation.pose(mesh, pose, following.state.positions, share)
+        return Frame(snapshot.drawing, pose, face_order(mesh, snapshot.state.pins))

@@ -150,10 +150,10 @@ def keyed(pinned):
     playback = pinned.state.timeline.keyframe_playback
     pinned.state.timeline.is_shown, pinned.state.timeline.mode = True, "keyframes"
     pinned.settle()
-    playback.put(0.0)
+    playback.set_keyframe(0.0)
     gestures.move_pin(pinned.editor, 3, (210.0, 50.0))
     pinned.settle()
-    playback.put(1.0)
+    playback.set_keyframe(1.0)
     playback.scrub(0.0)
     pinned.editor.select(())
     pinned.settle()
@@ -173,9 +173,9 @@ def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
 
 
 def test_stepping_stops_what_plays(keyed):
-    keyed.state.timeline.playback.play()
+    keyed.state.timeline.playback.toggle_playing()
     keys(keyed, Key.page_down)
-    assert not keyed.state.timeline.playback.playing
+    assert not keyed.state.timeline.playback.is_playing
 
 
 def test_the_session_is_looked_back_at_by_keys(pinned):
@@ -184,16 +184,16 @@ def test_the_session_is_looked_back_at_by_keys(pinned):
     pinned.settle()
     playback = pinned.state.timeline.session_playback
     keys(pinned, Key.home)
-    assert playback.at == 0.0
+    assert playback.time == 0.0
     assert pinned.session.is_previewing
     keys(pinned, Key.end)
-    assert playback.at is None
+    assert playback.time is None
 
 
 def test_keys_that_walk_a_panel_move_no_time(keyed):
     keyed.state.timeline.keyframe_playback.scrub(0.5)
     keys(keyed, Key.tab, Key.page_down, Key.end, Key.home)
-    assert keyed.state.timeline.keyframe_playback.at == 0.5
+    assert keyed.state.timeline.keyframe_playback.time == 0.5
 
 
 # -- around the canvas --------------------------------------------------------------------------------------

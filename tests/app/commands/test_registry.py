@@ -87,11 +87,11 @@ def keyed(ui):
     playback = ui.state.timeline.keyframe_playback
     ui.state.timeline.is_shown, ui.state.timeline.mode = True, "keyframes"
     ui.settle()
-    playback.put(0.0)
+    playback.set_keyframe(0.0)
     bend(ui)
-    playback.put(1.0)
+    playback.set_keyframe(1.0)
     playback.scrub(1.0)
-    playback.chosen = frozenset({1.0})
+    playback.selected = frozenset({1.0})
     ui.settle()
 
 
@@ -104,23 +104,23 @@ def once_keyed(ui):
     """Playing takes a tenth of a second, and then the range is over."""
     keyed(ui)
     ui.state.timeline.keyframe_playback.loop = False
-    ui.state.timeline.keyframe_playback.cut_to(0.1, 0.2)
+    ui.state.timeline.keyframe_playback.mark_range(0.1, 0.2)
 
 
 def looked_at(ui):
     """Three seconds, the first and the last one cut off, looked at after a half second of the rest."""
     keyed(ui)
-    ui.state.timeline.keyframe_playback.put(3.0)
-    ui.state.timeline.keyframe_playback.cut_to(1.0, 2.5)
+    ui.state.timeline.keyframe_playback.set_keyframe(3.0)
+    ui.state.timeline.keyframe_playback.mark_range(1.0, 2.5)
     ui.state.timeline.keyframe_playback.scrub(1.5)
 
 
 def look_is(moment):
-    return lambda ui: ui.state.timeline.keyframe_playback.at == pytest.approx(moment)
+    return lambda ui: ui.state.timeline.keyframe_playback.time == pytest.approx(moment)
 
 
 def range_is(start, end):
-    return lambda ui: ui.state.timeline.keyframe_playback.range == pytest.approx((start, end))
+    return lambda ui: ui.state.timeline.keyframe_playback.played_range == pytest.approx((start, end))
 
 
 def watch_requests(ui):
@@ -162,12 +162,12 @@ CASES = {
     "Start Range Here": (looked_at, range_is(1.5, 2.5)),
     "End Range Here": (looked_at, range_is(1.0, 1.5)),
     "Range Is Everything": (looked_at, range_is(0.0, 3.0)),
-    "Zoom into Timeline": (keyed, lambda ui: ui.state.timeline.keyframe_playback.view.zoomed),
+    "Zoom into Timeline": (keyed, lambda ui: ui.state.timeline.keyframe_playback.visible_range.is_zoomed),
     "Zoom out of Timeline": (
-        lambda ui: [keyed(ui), ui.state.timeline.keyframe_playback.view.zoom(1.4, 0.0)],
-        lambda ui: not ui.state.timeline.keyframe_playback.view.zoomed,
+        lambda ui: [keyed(ui), ui.state.timeline.keyframe_playback.visible_range.zoom(1.4, 0.0)],
+        lambda ui: not ui.state.timeline.keyframe_playback.visible_range.is_zoomed,
     ),
-    "Select All Keyframes": (keyed, lambda ui: ui.state.timeline.keyframe_playback.chosen == {0.0, 1.0}),
+    "Select All Keyframes": (keyed, lambda ui: ui.state.timeline.keyframe_playback.selected == {0.0, 1.0}),
     "Crosshair": (watch_tools, lambda ui: "KeyboardPointer" in ui.tools),
     "Next Pin": (one_selected, lambda ui: ui.editor.selection == {3}),
     "Previous Pin": (one_selected, lambda ui: ui.editor.selection == {1}),
@@ -181,16 +181,16 @@ CASES = {
         lambda ui: setattr(ui.state.view, "heat", "area"),
         lambda ui: RANGES[ui.state.view.heat_range] == 2.0,
     ),
-    "Play": (once_keyed, lambda ui: ui.state.timeline.keyframe_playback.at == 0.2),
+    "Play": (once_keyed, lambda ui: ui.state.timeline.keyframe_playback.time == 0.2),
     "Export Animation...": (keyed, lambda ui: ui.state.dialog(ExportAnimationDialog).is_open),
     "Keyframe Here": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
     "Remove Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
     "Duplicate Keyframe": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5)),
-    "Next Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.at == 1.0),
-    "Previous Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.at == 0.0),
+    "Next Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.time == 1.0),
+    "Previous Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.time == 0.0),
     "Move Keyframe Earlier": (keyed, lambda ui: times(ui) == (0.0, 0.95)),
     "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
-    "Onion Skin": (keyed, lambda ui: ui.state.timeline.keyframe_playback.onion.shown),
+    "Onion Skin": (keyed, lambda ui: ui.state.timeline.keyframe_playback.onion_skin.is_shown),
     "Open...": (nothing, lambda ui: ui.state.request is not None and not ui.state.request.saving),
     "Cut Out with Mask...": (
         nothing,

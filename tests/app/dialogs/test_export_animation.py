@@ -32,10 +32,10 @@ def keyed(pinned):
     state = pinned.state
     state.timeline.is_shown, state.timeline.mode = True, "keyframes"
     pinned.settle()
-    state.timeline.keyframe_playback.put(0.0)
+    state.timeline.keyframe_playback.set_keyframe(0.0)
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0] - 20, start[1] - 80))
-    state.timeline.keyframe_playback.put(0.4)
+    state.timeline.keyframe_playback.set_keyframe(0.4)
     pinned.settle()
     return pinned
 
@@ -63,7 +63,7 @@ def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
 
 
 def test_asking_does_not_change_what_is_seen(keyed):
-    keyed.state.timeline.keyframe_playback.leave()
+    keyed.state.timeline.keyframe_playback.show_present()
     before = keyed.session.state
     keyed.state.dialog(ExportAnimationDialog).open(keyed.state)
     keyed.dialog(TITLE, "Cancel")
@@ -96,7 +96,7 @@ def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
     index = next(
         k
         for k in range(1, len(snapshots))
-        if snapshots[k].jumps == snapshots[k - 1].jumps
+        if snapshots[k].discontinuities == snapshots[k - 1].discontinuities
         and (snapshots[k].state.positions != snapshots[k - 1].state.positions).any()
     )
     before, after = snapshots[index - 1].state.positions, snapshots[index].state.positions
@@ -109,7 +109,7 @@ def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
 
 def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
     playback = keyed.state.timeline.keyframe_playback
-    playback.put(0.8, playback.animation.keyframes[0].positions)
+    playback.set_keyframe(0.8, playback.animation.keyframes[0].positions)
     for options, count in (
         (AnimationExportOptions("APNG", fps=10), 8),
         (AnimationExportOptions("APNG", fps=10, loop=False), 9),
@@ -117,7 +117,7 @@ def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
         export_animation(keyed.state, options, tmp_path / "out.apng")
         keyed.settle()
         assert f"{count} frames" in keyed.state.notice
-    playback.cut_to(end=0.4)
+    playback.mark_range(end=0.4)
     assert frame_count(keyed.state, AnimationExportOptions("APNG", fps=10)) == 5
 
 

@@ -28,7 +28,7 @@ def test_what_was_done_by_hand_is_saved_and_done_again_to_the_last_bit(ui, tmp_p
 
 def recorded(ui, tmp_path):
     """A recording of three pins, a drag, an undo and a drag; and the session that it was made of."""
-    ui.state.timeline.session_playback.watch(ui.session)
+    ui.state.timeline.session_playback.follow(ui.session)
     for place in ((50.0, 80.0), (130.0, 80.0), (210.0, 80.0)):
         ui.click(ui.screen(place))
     start = ui.screen((210.0, 80.0))
@@ -55,7 +55,7 @@ def test_a_recording_opens_in_its_final_pose_with_all_of_it_on_the_timeline(ui, 
     assert playback.snapshots[-1].state is again.state
     playback.scrub(0.0)
     np.testing.assert_array_equal(again.state.positions, again.drawing.mesh.vertices)
-    playback.now()
+    playback.show_present()
 
 
 def test_a_recording_that_was_opened_is_gone_on_with_and_branched(ui, tmp_path):

@@ -20,7 +20,7 @@ def keyed(pinned):
     pinned.key(imgui.Key.k)
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0] - 20, start[1] - 100))
-    state.timeline.keyframe_playback.put(1.0)
+    state.timeline.keyframe_playback.set_keyframe(1.0)
     state.timeline.keyframe_playback.scrub(0.0)
     pinned.settle()
     return pinned
@@ -36,7 +36,7 @@ def on_track(ui, time, y=28):
     ui.do(lambda hand: found.setdefault("rect", hand.item_info("//Timeline/##keys").rect_full))
     rect, playback = found["rect"], ui.state.timeline.keyframe_playback
     left, width = rect.min.x + 8, rect.max.x - rect.min.x - 16
-    view = playback.view
+    view = playback.visible_range
     return round(left + width * (time - view.start) / view.seconds), round(rect.min.y + y)
 
 
@@ -44,7 +44,7 @@ def at_time(ui, time, share):
     """What is seen is the pose at a time, the share of the way from rest to the bent pose."""
     first, last = (ui.session.present.animation.keyframes[number].positions for number in (0, -1))
     seen = ui.session.state.positions
-    assert ui.state.timeline.keyframe_playback.at == pytest.approx(time)
+    assert ui.state.timeline.keyframe_playback.time == pytest.approx(time)
     far = np.abs(last - first).max()
     return np.abs(seen - first).max() == pytest.approx(share * far, abs=0.06 * far)
 
@@ -99,7 +99,7 @@ def test_keyframes_are_dragged_copied_and_stretched(keyed):
 
 
 def test_several_are_chosen_with_shift_and_moved_together(keyed):
-    keyed.state.timeline.keyframe_playback.put(0.5)
+    keyed.state.timeline.keyframe_playback.set_keyframe(0.5)
     keyed.click(on_track(keyed, 0.5))
     keyed.click(on_track(keyed, 1.0), shift=True)
     keyed.drag(on_track(keyed, 0.5), on_track(keyed, 0.7))
@@ -114,7 +114,7 @@ def test_escape_takes_a_drag_of_keyframes_back(keyed):
     def drag(hand):
         keyed.begin_drag(hand, start)
         hand.mouse_move_to_pos(imgui.ImVec2(*end))
-        assert keyed.state.timeline.keyframe_playback.held
+        assert keyed.state.timeline.keyframe_playback.is_dragging
         hand.key_press(imgui.Key.escape)
         hand.mouse_move_to_pos(imgui.ImVec2(*start))
         hand.mouse_up(0)
@@ -139,7 +139,7 @@ def test_a_double_click_adds_and_delete_is_for_keyframes_where_no_pin_is_selecte
 
 def test_the_range_is_cut_by_its_marks(keyed):
     keyed.drag(on_track(keyed, 1.0, y=44), on_track(keyed, 0.8, y=44))
-    assert keyed.state.timeline.keyframe_playback.range == pytest.approx((0.0, 0.8))
+    assert keyed.state.timeline.keyframe_playback.played_range == pytest.approx((0.0, 0.8))
 
 
 def test_the_menu_of_a_keyframe_changes_its_easing(keyed):
@@ -162,7 +162,7 @@ def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
     for name in ("Up", "Down"):
         gestures.add_pose(keyed.editor, name)
 
-    keyed.state.timeline.keyframe_playback.set_time(1.0, 0.5)
+    keyed.state.timeline.keyframe_playback.move_keyframe(1.0, 0.5)
     keyed.settle()
     keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Up", "//Timeline/##keys"))
     assert times(keyed) == (0.0, 0.5, 1.0)
@@ -207,7 +207,7 @@ def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):
     playback = keyed.state.timeline.keyframe_playback
     playback.scrub(0.5)
     plain = keyed.screenshot().astype(int)
-    playback.onion.shown = True
+    playback.onion_skin.is_shown = True
     skinned = keyed.screenshot().astype(int)
     left, top, right, bottom = (round(each) for each in keyed.editor.canvas)
     differs = (skinned - plain)[top:bottom, left:right]
@@ -215,26 +215,26 @@ def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):
     assert (redder > 20).sum() > 200, "orange, after"
     assert (redder < -20).sum() > 200, "blue, before"
     playback.scrub(0.0)
-    assert [len(each) for each in playback.neighbors()] == [0, 1]
-    playback.onion.of, playback.onion.count = "frames", 3
-    assert [len(each) for each in playback.neighbors()] == [0, 3]
-    playback.play()
-    assert playback.neighbors() == ([], [])
+    assert [len(each) for each in playback.onion_poses()] == [0, 1]
+    playback.onion_skin.kind, playback.onion_skin.count = "times", 3
+    assert [len(each) for each in playback.onion_poses()] == [0, 3]
+    playback.toggle_playing()
+    assert playback.onion_poses() == ([], [])
 
 
 def test_playing_moves_on_with_the_clock_and_loops(keyed, monkeypatch):
     playback, now = keyed.state.timeline.keyframe_playback, [100.0]
     monkeypatch.setattr(playback, "_clock", lambda: now[0])
-    playback.play()
+    playback.toggle_playing()
     for moment in (0.25, 0.5, 0.75):
         now[0] += 0.25
         keyed.frame()
-        assert playback.at == pytest.approx(moment)
+        assert playback.time == pytest.approx(moment)
     now[0] += 0.5
     keyed.frame()
-    assert playback.at == pytest.approx(0.25)
-    playback.play()
-    assert not playback.playing
+    assert playback.time == pytest.approx(0.25)
+    playback.toggle_playing()
+    assert not playback.is_playing
 
 
 def test_keyframes_are_saved_and_opened(keyed, tmp_path):
@@ -258,12 +258,18 @@ def test_the_wheel_zooms_in_on_a_time_and_keyframes_are_taken_there(keyed):
     playback = keyed.state.timeline.keyframe_playback
     place = on_track(keyed, 1.0)
     keyed.wheel(place, 4)
-    assert 0 < playback.view.start < 1.0 < playback.view.start + playback.view.seconds < 2.0
+    assert (
+        0
+        < playback.visible_range.start
+        < 1.0
+        < playback.visible_range.start + playback.visible_range.seconds
+        < 2.0
+    )
     assert np.abs(np.subtract(on_track(keyed, 1.0), place)).max() <= 1
     keyed.drag(place, on_track(keyed, 0.85))
     assert times(keyed) == (0.0, 0.85)
     keyed.wheel(place, -20)
-    assert (playback.view.start, playback.view.seconds) == (0.0, 2.0)
+    assert (playback.visible_range.start, playback.visible_range.seconds) == (0.0, 2.0)
 
 
 def test_looping_is_a_step_of_undo(keyed):

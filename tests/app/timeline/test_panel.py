@@ -50,38 +50,38 @@ def test_a_drag_on_the_track_goes_back_and_forth(bent):
 def test_the_head_is_taken_at_the_end_and_the_mark_below_it(bent):
     playback = bent.state.timeline.session_playback
     bent.drag(on_track(bent, 0.99), on_track(bent, 0.5))
-    assert playback.at == pytest.approx(0.5 * playback.duration, abs=0.05)
-    assert playback.cut is None
+    assert playback.time == pytest.approx(0.5 * playback.duration, abs=0.05)
+    assert playback.marked_range is None
     bent.drag(on_track(bent, 0.995, 0.85), on_track(bent, 0.7, 0.85))
-    assert playback.range == pytest.approx((0.0, 0.7 * playback.duration), abs=0.05)
+    assert playback.played_range == pytest.approx((0.0, 0.7 * playback.duration), abs=0.05)
 
 
 def test_the_wheel_shows_a_part_of_the_time_where_the_head_goes_slower(bent):
     playback = bent.state.timeline.session_playback
     playback.snapshots = [replace(shot, time=float(number)) for number, shot in enumerate(playback.snapshots)]
     bent.wheel(on_track(bent, 0.5), 5)
-    start, seconds = playback.view.start, playback.view.seconds
+    start, seconds = playback.visible_range.start, playback.visible_range.seconds
     assert 0 < start < start + seconds < playback.duration
     bent.drag(on_track(bent, 0.5), on_track(bent, 0.4))
-    assert start < playback.at < start + seconds
-    assert playback.at == pytest.approx(start + 0.4 * seconds, abs=0.02 * seconds)
+    assert start < playback.time < start + seconds
+    assert playback.time == pytest.approx(start + 0.4 * seconds, abs=0.02 * seconds)
     playback.scrub(0.0)
-    assert playback.view.start == 0.0
+    assert playback.visible_range.start == 0.0
     bent.wheel(on_track(bent, 0.5), -40)
-    assert not playback.view.zoomed
+    assert not playback.visible_range.is_zoomed
 
 
 def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(bent):
     playback = bent.state.timeline.session_playback
     playback.scrub(0.5 * playback.duration)
     bent.settle()
-    here = playback.shot(playback.at).time
+    here = playback.snapshot_at(playback.time).time
     start = bent.screen(bent.pin_place(3))
     bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
     assert bent.session.history.labels[-2:] == ["Go Back in Time", "Bend"]
-    assert playback.cut is not None
-    assert playback.cut[0] == pytest.approx(here)
-    assert playback.cut[0] < playback.cut[1] <= playback.duration
+    assert playback.marked_range is not None
+    assert playback.marked_range[0] == pytest.approx(here)
+    assert playback.marked_range[0] < playback.marked_range[1] <= playback.duration
 
 
 def test_a_drag_on_the_canvas_goes_on_from_there(bent):
@@ -99,15 +99,15 @@ def test_control_and_drag_records_that_gesture_only(bent):
     before = bent.state.timeline.session_playback.duration
     start = bent.screen(bent.pin_place(3))
     bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
-    assert bent.state.timeline.session_playback.cut is not None
-    start, end = bent.state.timeline.session_playback.cut
+    assert bent.state.timeline.session_playback.marked_range is not None
+    start, end = bent.state.timeline.session_playback.marked_range
     assert before <= start < end <= bent.state.timeline.session_playback.duration
-    assert bent.state.timeline.session_playback.taking is None
+    assert bent.state.timeline.session_playback.take_start is None
 
 
 def test_the_range_is_exported(bent, tmp_path):
     playback = bent.state.timeline.session_playback
-    playback.cut_to(0.0, min(0.5, playback.duration))
+    playback.mark_range(0.0, min(0.5, playback.duration))
     export_animation(bent.state, AnimationExportOptions(), tmp_path / "wave.webp")
     bent.settle()
     assert bent.state.error == ""

@@ -7,7 +7,12 @@ import pytest
 
 from akap_editor.deform.pose_interpolation import InterpolationCache
 from akap_editor.editor import gestures
-from akap_editor.editor.animation.keyframe_playback import KeyframePlayback, keyed_frame, pose_at, stretched
+from akap_editor.editor.animation.keyframe_playback import (
+    KeyframePlayback,
+    animation_frame,
+    animation_pose,
+    stretch_times,
+)
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing
 from akap_editor.editor.document.remesh import remesh_drawing
@@ -23,13 +28,13 @@ END = (105.0, 40.0)
 def player(pinned, clock):
     """Keyframes of the rest pose at 0, and of a bent one at 1 second."""
     player = KeyframePlayback(pinned.editor, clock)
-    player.watch()
-    player.put(0.0)
+    player.update()
+    player.set_keyframe(0.0)
     pinned.drag(END, (90.0, 60.0))
     pinned.settle()
-    player.watch()
-    player.put(1.0)
-    player.at = 0.0
+    player.update()
+    player.set_keyframe(1.0)
+    player.time = 0.0
     return player
 
 
@@ -43,31 +48,31 @@ def test_the_pose_between_keyframes_is_the_eased_in_between(player, pinned, draw
     for moment, share in ((0.0, 0.0), (0.25, 0.15625), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)):
         expected = ways.pose(drawing.mesh, start.positions, end.positions, share)
         np.testing.assert_array_equal(player.pose(moment), expected)
-    player.ease("none", general=True)
+    player.set_default_easing("none")
     np.testing.assert_array_equal(
         player.pose(0.25), ways.pose(drawing.mesh, start.positions, end.positions, 0.25)
     )
-    player.chosen = frozenset({0.0})
-    player.ease("hold")
+    player.selected = frozenset({0.0})
+    player.set_easing("hold")
     assert player.pose(0.999) is start.positions
     assert player.pose(1.0) is end.positions
     document = pinned.session.present_document
-    assert keyed_frame(document, ways, 1.0).pose is end.positions
-    assert pose_at(ways, drawing.mesh, document.state.animation, 0.5) is start.positions
+    assert animation_frame(document, ways, 1.0).pose is end.positions
+    assert animation_pose(ways, drawing.mesh, document.state.animation, 0.5) is start.positions
 
 
 def test_every_edit_is_undone_redone_and_recorded(player, pinned, drawing):
     session, states = pinned.session, []
-    player.chosen = frozenset({1.0})
+    player.selected = frozenset({1.0})
     for edit in (
-        lambda: player.put(0.5),
-        lambda: player.nudge(0.05),
-        player.duplicate,
-        lambda: player.ease("out"),
+        lambda: player.set_keyframe(0.5),
+        lambda: player.shift_keyframes(0.05),
+        player.duplicate_keyframes,
+        lambda: player.set_easing("out"),
         lambda: setattr(player, "loop", False),
-        lambda: player.ease("in", general=True),
-        lambda: player.set_time(1.0, 2.0),
-        player.remove,
+        lambda: player.set_default_easing("in"),
+        lambda: player.move_keyframe(1.0, 2.0),
+        player.delete_keyframes,
     ):
         states.append(bits(session.present))
         edit()
@@ -85,7 +90,7 @@ def test_every_edit_is_undone_redone_and_recorded(player, pinned, drawing):
 def test_a_pose_that_is_seen_between_becomes_a_keyframe_and_is_recorded(player, pinned, drawing):
     player.scrub(0.5)
     seen = pinned.session.state.positions
-    player.put()
+    player.set_keyframe()
     assert times(pinned) == (0.0, 0.5, 1.0)
     np.testing.assert_array_equal(pinned.session.present.animation.keyframes[1].positions, seen)
     assert bits(replayed_state(pinned.session.recording, drawing)) == bits(pinned.session.present)
@@ -96,45 +101,45 @@ def test_looking_changes_nothing_and_edits_of_keyframes_leave_the_pose(player, p
     events = len(session.recording.events)
     for moment in (0.0, 0.3, 1.0, 5.0):
         player.scrub(moment)
-        player.watch()
+        player.update()
         assert session.is_previewing
     assert bits(session.present) == before
     assert bits(session.present_document.state) == before
     assert len(session.recording.events) == events
     positions = session.present.positions
-    player.nudge(0.1)
-    player.watch()
+    player.shift_keyframes(0.1)
+    player.update()
     assert session.is_previewing, "it goes on being looked at"
     assert session.present.positions is positions
-    player.leave()
+    player.show_present()
     assert not session.is_previewing
 
 
 def test_undo_of_a_pose_shows_the_present(player, pinned):
     player.scrub(0.5)
     pinned.undo()  # the keyframe
-    player.watch()
-    assert player.following
+    player.update()
+    assert player.is_previewing
     pinned.undo()  # the drag
-    player.watch()
-    assert not player.following
+    player.update()
+    assert not player.is_previewing
     assert not pinned.session.is_previewing
 
 
 def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(player, pinned):
-    player.put(0.5)
-    player.chosen = frozenset({1.0})
+    player.set_keyframe(0.5)
+    player.selected = frozenset({1.0})
     depth = pinned.session.history.depth
     for to in (0.7, 0.5, 0.2):
-        player.drag({1.0: to})
+        player.drag_keyframes({1.0: to})
     assert times(pinned) == (0.0, 0.5, 1.0)
     assert player.animation.times == (0.0, 0.2, 0.5)
-    player.drop()
+    player.drop_keyframes()
     assert times(pinned) == (0.0, 0.2, 0.5)
-    assert player.chosen == {0.2}
+    assert player.selected == {0.2}
     assert pinned.session.history.depth == depth + 1
-    player.drag({0.2: 0.5})
-    player.drop(keep=False)
+    player.drag_keyframes({0.2: 0.5})
+    player.drop_keyframes(keep=False)
     assert times(pinned) == (0.0, 0.2, 0.5)
 
 
@@ -143,22 +148,22 @@ def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(player, pinned):
     [(2.0, 4.0, (0, 2, 4)), (0.0, 1.0, (1, 1.5, 2)), (1.0, 2.0, (0, 2, 4)), (2.0, -9.0, (0, 0.025, 0.05))],
 )
 def test_stretching_keeps_the_other_end(dragged, to, expected):
-    assert tuple(stretched((0.0, 1.0, 2.0), dragged, to).values()) == pytest.approx(expected)
+    assert tuple(stretch_times((0.0, 1.0, 2.0), dragged, to).values()) == pytest.approx(expected)
 
 
 def test_playing_goes_on_and_starts_over(player, pinned, clock):
-    player.play()
+    player.toggle_playing()
     clock.now += 0.5
     player.advance()
-    assert player.at == pytest.approx(0.5)
+    assert player.time == pytest.approx(0.5)
     clock.now += 0.75
     player.advance()
-    assert player.at == pytest.approx(0.25)
+    assert player.time == pytest.approx(0.25)
     player.loop = False
     clock.now += 9
     player.advance()
-    assert player.at == 1.0
-    assert not player.playing
+    assert player.time == 1.0
+    assert not player.is_playing
 
 
 def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, drawing):
@@ -175,6 +180,6 @@ def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, dra
 
 def test_a_document_with_poses_and_keyframes_is_recorded_from_its_start(player, pinned, drawing):
     gestures.add_pose(pinned.editor, "Bent")
-    player.ease("out", general=True)
+    player.set_default_easing("out")
     opened = Session(new_document(drawing).with_state(pinned.session.present))
     assert bits(replayed_state(opened.recording, drawing)) == bits(opened.state)

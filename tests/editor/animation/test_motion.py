@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from akap_editor.editor.animation.motion import LONGEST_MOVE, Motion, shorten_pauses
+from akap_editor.editor.animation.motion import MAX_MOVE_SECONDS, Motion, shorten_pauses
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import SetPins, SetPose
@@ -73,7 +73,9 @@ def test_what_moved_after_a_pause_moved_in_the_last_of_it(slow, drawing):
         slow.header, [{**e, "t": e["t"] + (10 if e["t"] > 0.99 * slow.duration else 0)} for e in slow.events]
     )
     end = late.duration
-    still, almost, moved = poses(late, drawing, [end - LONGEST_MOVE - 1, end - LONGEST_MOVE, end - 0.1])
+    still, almost, moved = poses(
+        late, drawing, [end - MAX_MOVE_SECONDS - 1, end - MAX_MOVE_SECONDS, end - 0.1]
+    )
     np.testing.assert_array_equal(still, almost)
     assert np.abs(moved - still).max() > 0.1
 

@@ -2,22 +2,22 @@
 
 import pytest
 
-from akap_editor.editor.animation.time_view import SHORTEST, VisibleRange
+from akap_editor.editor.animation.playback import MIN_VISIBLE_SECONDS, VisibleRange
 
 
 def test_zoom_keeps_its_moment_in_place_and_ends_at_all_there_is():
     view = VisibleRange(10.0)
     view.zoom(2.0, 4.0)
     assert (view.start, view.seconds) == (2.0, 5.0)
-    assert view.zoomed
+    assert view.is_zoomed
     view.zoom(2.0, 2.0)
     assert (view.start, view.seconds) == (2.0, 2.5)
     view.zoom(1000.0, 3.0)
-    assert view.seconds == SHORTEST
+    assert view.seconds == MIN_VISIBLE_SECONDS
     assert (3.0 - view.start) / view.seconds == pytest.approx(0.4)
     view.zoom(0.001, 3.0)
     assert (view.start, view.seconds) == (0.0, 10.0)
-    assert not view.zoomed
+    assert not view.is_zoomed
 
 
 def test_it_goes_along_to_both_ends_and_to_a_moment():
