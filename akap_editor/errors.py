@@ -6,23 +6,23 @@ from pathlib import Path
 
 
 class AkapError(Exception):
-    """Base of every error this package raises on purpose; the message is one sentence for the user."""
+    """Base of the errors that this package raises itself; the message is one sentence for the user."""
 
 
 class InputError(AkapError, ValueError):
-    """The user's data is unusable; says what was expected and what came."""
+    """The user's data is unusable; the message says what was expected and what came."""
 
 
 class SolverError(AkapError, ArithmeticError):
-    """The numbers gave no finite answer; the last good pose is still valid."""
+    """A computation has no finite result; the pose before it is still valid."""
 
 
 class DisplayError(AkapError):
-    """There is no display to open a window on."""
+    """No display is available to open a window on."""
 
 
 class GraphicsError(AkapError):
-    """There is no OpenGL 3.3."""
+    """OpenGL 3.3 is not available."""
 
 
 @contextmanager

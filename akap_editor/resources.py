@@ -1,4 +1,4 @@
-"""Finds shaders and assets, in a checkout and in an installed wheel alike."""
+"""Paths of bundled shaders and assets, in a checkout and in an installed wheel."""
 
 from pathlib import Path
 
@@ -6,10 +6,10 @@ _PACKAGE = Path(__file__).resolve().parent
 
 
 def resource(*parts: str) -> Path:
-    """Path of a bundled file or folder, e.g. ``resource("assets", "drawings", "cat.png")``.
+    """The path of a bundled file or folder, e.g. ``resource("assets", "drawings", "cat.png")``.
 
-    A wheel carries ``shaders`` and ``assets`` inside the package, a checkout beside it.
-    Raises FileNotFoundError where neither holds it: the installation is damaged.
+    A wheel has ``shaders`` and ``assets`` inside the package, a checkout beside it.
+    Raises FileNotFoundError if neither has the file: the installation is damaged.
     """
     for root in (_PACKAGE, _PACKAGE.parent):
         path = root.joinpath(*parts)
@@ -19,5 +19,5 @@ def resource(*parts: str) -> Path:
 
 
 def bundled_drawings() -> list[Path]:
-    """The drawings that come with the program, as paths of PNG files in order of name."""
+    """The paths of the bundled drawings, PNG files, in alphabetical order."""
     return sorted(resource("assets", "drawings").glob("*.png"))

@@ -58,11 +58,11 @@ def shared_data() -> Path:
 
 @pytest.fixture(params=SHAPES)
 def shape_name(request: pytest.FixtureRequest) -> str:
-    """The name of each shape of tests/support/shapes.py in turn."""
+    """The name of each shape of `tests.support.shapes` in turn."""
     return request.param
 
 
 @pytest.fixture
 def mesh(shape_name: str) -> TriMesh:
-    """Each shape in turn."""
+    """Each shape of `tests.support.shapes` in turn."""
     return SHAPES[shape_name]

@@ -17,7 +17,7 @@ from ..editor.session.session import Session
 from ..errors import InputError
 from ..geometry.distortion import Distortion, distortion
 from ..geometry.mesh import MeshPoints
-from ..geometry.validation import Floats, frozen
+from ..geometry.validation import Floats, freeze
 
 WAY_BACK = 60  # steps of the way back
 JUMP = 30  # steps towards targets that were set at once
@@ -105,9 +105,9 @@ def run(recording: Recording, drawing: Drawing, spec: str) -> Run:
     return Run(
         spec=spec,
         drawing=drawing,
-        times=frozen(np.array(bent.times)),
+        times=freeze(np.array(bent.times)),
         trace=_traced(drawing, [(state.positions, state.points, state.targets) for state in bent.states]),
-        step_seconds=frozen(np.array(bent.seconds)),
+        step_seconds=freeze(np.array(bent.seconds)),
         setup_seconds=setup,
         pins_seconds=pins,
         points=points,
@@ -175,7 +175,7 @@ def _traced(drawing: Drawing, moments: list[tuple[Floats, MeshPoints, Floats]]) 
         [float(after.flipped) for after in found],
         errors,
     )
-    return Trace(*(frozen(np.array(column)) for column in columns))
+    return Trace(*(freeze(np.array(column)) for column in columns))
 
 
 def _pin_error(drawing: Drawing, points: MeshPoints, targets: Floats, pose: Floats) -> float:

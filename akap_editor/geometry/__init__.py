@@ -1,1 +1,1 @@
-"""Pure functions on arrays: outlines, meshes, differential operators, distortion."""
+"""Pure functions on arrays: triangle meshes, differential operators, distortion, validation."""

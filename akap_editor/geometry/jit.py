@@ -1,7 +1,6 @@
-"""Loops over faces and edges as machine code; the only caller of numba.
+"""Just-in-time compilation of loops over faces and edges; the only importer of numba.
 
-Where numpy would stream a dozen temporary arrays through the caches, a loop reads each face once. Functions
-are compiled at their first call, and kept on disk for later runs where a folder for that can be written.
+In numpy such a loop would write and read a dozen temporary arrays; compiled, it reads each face once.
 """
 
 from collections.abc import Callable
@@ -13,13 +12,14 @@ F = TypeVar("F", bound=Callable[..., object])
 
 
 def compiled(function: F) -> F:
-    """The same function of numbers and arrays, compiled; as in numpy, a division by zero raises nothing.
+    """Compile a function of numbers and arrays when it is first called.
 
-    Other threads go on meanwhile.
+    The machine code is cached on disk if a folder for it is writable. Division by zero gives infinity or NaN,
+    as in numpy. Other threads run meanwhile, because the function releases the global interpreter lock.
     """
     options = {"nogil": True, "error_model": "numpy"}
     try:
-        made: F = numba.njit(function, cache=True, **options)
-    except RuntimeError:  # neither the package's folder nor the user's cache can be written
-        made = numba.njit(function, **options)
-    return made
+        machine_code: F = numba.njit(function, cache=True, **options)
+    except RuntimeError:  # neither the package's folder nor the user's cache is writable
+        machine_code = numba.njit(function, **options)
+    return machine_code

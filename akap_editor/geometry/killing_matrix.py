@@ -1,4 +1,8 @@
-"""The Killing matrix of a mesh at a pose, and other sums over faces with the same nonzeros."""
+"""The Killing matrix of a mesh at a pose, and other sums over faces with the same nonzeros.
+
+The matrices are symmetric, 2n × 2n, with interleaved unknowns: 2 i and 2 i + 1 are x and y of vertex i. The
+2 × 2 block of a vertex couples its own x and y; the block of an edge couples those of its two vertices.
+"""
 
 from typing import NamedTuple
 
@@ -9,42 +13,42 @@ from .mesh import TriMesh
 from .validation import Complexes, Floats, Ints
 
 
-class Slots(NamedTuple):
-    """Where the nonzeros are that a loop over faces adds to, all int32.
+class Slots(NamedTuple):  # numba's caches on disk refer to this name: renamed, they fail to load
+    """Indices into the nonzeros at which a loop over faces adds to the blocks, all int32.
 
-    own (n, 2): the first nonzero of a vertex's own block, in either column; edges (e, 2): the same for the
-    block of an edge; sides (m, 3): which edge leads from each corner of a face to the next, as 2 e, or as
-    2 e + 1 where to a lower number.
+    vertices: (n, 2) first nonzero of each column of a vertex's block; edges: (e, 2) the same for the block of
+    an edge; face_edges: (m, 3) the edge from each corner of a face to the next, as 2 e, or as 2 e + 1 if the
+    next corner has the lower number.
     """
 
-    own: Ints
+    vertices: Ints
     edges: Ints
-    sides: Ints
+    face_edges: Ints
 
 
 class VertexBlocks:
-    """The nonzeros of a symmetric 2n × 2n matrix that couples x and y of each vertex and of its neighbors.
+    """The sparsity pattern: one block for each vertex and each edge of a mesh.
 
-    Unknowns are interleaved: 2 i and 2 i + 1 are x and y of vertex i. Nonzeros are those of the lower
-    triangle, column by column: below the block of a vertex come those of its neighbors with higher numbers.
+    Nonzeros are those of the lower triangle, column by column: first the block of the vertex itself, then the
+    blocks of its neighbors with higher numbers.
 
-    rows, columns: (z,) int32 of the nonzeros; slots: how a face finds its own.
+    rows, columns: (z,) int32 of the nonzeros; slots: where a face adds to them.
     """
 
     def __init__(self, mesh: TriMesh) -> None:
         n, low, high = len(mesh.vertices), *mesh.edges.T.astype(np.int64)
-        above = np.bincount(low, minlength=n)
-        ends = np.cumsum(3 + 4 * above)
-        first = ends - (3 + 4 * above)
-        below = np.arange(len(low)) - (np.cumsum(above) - above)[low]  # in the order of the sorted edges
-        own = np.stack([first, first + 2 + 2 * above], axis=1)
-        edges = np.stack([first[low] + 2, own[low, 1] + 1], axis=1) + 2 * below[:, None]
+        higher_neighbors = np.bincount(low, minlength=n)
+        ends = np.cumsum(3 + 4 * higher_neighbors)
+        first = ends - (3 + 4 * higher_neighbors)
+        rank = np.arange(len(low)) - (np.cumsum(higher_neighbors) - higher_neighbors)[low]  # edges are sorted
+        vertices = np.stack([first, first + 2 + 2 * higher_neighbors], axis=1)
+        edges = np.stack([first[low] + 2, vertices[low, 1] + 1], axis=1) + 2 * rank[:, None]
         self.rows, self.columns = np.empty((2, ends[-1]), dtype=np.int32)
-        each = 2 * np.arange(n)
+        x = 2 * np.arange(n)
         for slots, row, column in [
-            (own[:, 0], each, each),
-            (own[:, 0] + 1, each + 1, each),
-            (own[:, 1], each + 1, each + 1),
+            (vertices[:, 0], x, x),
+            (vertices[:, 0] + 1, x + 1, x),
+            (vertices[:, 1], x + 1, x + 1),
             (edges[:, 0], 2 * high, 2 * low),
             (edges[:, 0] + 1, 2 * high + 1, 2 * low),
             (edges[:, 1], 2 * high, 2 * low + 1),
@@ -52,85 +56,97 @@ class VertexBlocks:
         ]:
             self.rows[slots], self.columns[slots] = row, column
         start, end = mesh.faces.astype(np.int64), mesh.faces[:, [1, 2, 0]].astype(np.int64)
-        number = np.searchsorted(low * n + high, np.minimum(start, end) * n + np.maximum(start, end))
-        sides = 2 * number + (start > end)
-        self.slots = Slots(*(indices.astype(np.int32) for indices in (own, edges, sides)))
+        edge = np.searchsorted(low * n + high, np.minimum(start, end) * n + np.maximum(start, end))
+        face_edges = 2 * edge + (start > end)
+        self.slots = Slots(*(indices.astype(np.int32) for indices in (vertices, edges, face_edges)))
 
 
 class KillingMatrix:
-    """K = Pᵀ P of a mesh at any pose (paper, eqs. 5-7, App. A); symmetric, 2n × 2n, x and y interleaved.
+    """K = Pᵀ P of a mesh at any pose (paper, eqs. 5–7 and Appendix A).
 
-    Rows of P per face, each weighted by the root of its area: 2 ∂x U1, √2 (∂y U1 + ∂x U2), 2 ∂y U2. Unlike in
-    the printed eq. 6, the gradient is split into ∂x and ∂y: the whole stacked G would penalize rotations.
+    P has three rows per face, each weighted by the root of its area: 2 ∂x U1, √2 (∂y U1 + ∂x U2), 2 ∂y U2.
+    The printed eq. 6 stacks the whole gradient G instead of ∂x and ∂y, which would penalize rotations.
     Written out, the entry of component a at corner i and b at corner j is 2 A (∂b hᵢ ∂a hⱼ + δ_ab ∇hᵢ·∇hⱼ).
 
-    blocks: where its nonzeros are.
+    blocks: the sparsity pattern of K.
     """
 
     def __init__(self, mesh: TriMesh) -> None:
         self.blocks = VertexBlocks(mesh)
         self._faces = mesh.faces.copy()
-        self._alike, self._free = np.ones(len(mesh.faces)), np.zeros(len(mesh.faces))
+        self._ones, self._zeros = np.ones(len(mesh.faces)), np.zeros(len(mesh.faces))
 
     def nonzeros(
-        self, positions: Complexes, stiffness: Floats | None = None, spin: Floats | None = None
+        self,
+        positions: Complexes,
+        stiffness: Floats | None = None,
+        rotation_weights: Floats | None = None,
     ) -> Floats:
-        """The nonzeros (z,) at a pose (n,); not finite where a face has collapsed.
+        """The nonzeros (z,) of K at a pose (n,); not finite if a face has collapsed.
 
-        stiffness: (m,) factors of the faces' energies; spin: (m,) weights c of further energies c A ω², where
-        ω = (∂x U2 − ∂y U1) / 2 is how fast a field turns on a face.
+        stiffness: (m,) factors of the faces' energies, 1 by default. rotation_weights: (m,) weights c of
+        further energies c A ω², where ω = (∂x U2 − ∂y U1) / 2 is the rate at which a field rotates a face; 0
+        by default.
         """
-        stiff = self._alike if stiffness is None else stiffness
-        free = self._free if spin is None else spin
+        factors = self._ones if stiffness is None else stiffness
+        weights = self._zeros if rotation_weights is None else rotation_weights
         result = np.zeros(len(self.blocks.rows))
-        _add_faces(positions, self._faces, stiff, free, self.blocks.slots, result)
+        _add_faces(positions, self._faces, factors, weights, self.blocks.slots, result)
         return result
 
 
 @compiled
 def _add_faces(
-    positions: Complexes, faces: Ints, stiffness: Floats, spin: Floats, slots: Slots, result: Floats
+    positions: Complexes,
+    faces: Ints,
+    stiffness: Floats,
+    rotation_weights: Floats,
+    slots: Slots,
+    result: Floats,
 ) -> None:
-    own, edges, sides = slots
+    vertices, edges, face_edges = slots
     for f in range(len(faces)):
         p, q, r = positions[faces[f, 0]], positions[faces[f, 1]], positions[faces[f, 2]]
-        # gradients of the hat functions, turned by 90° and times twice the area
+        # gradients of the hat functions, rotated by 90° and times twice the area
         a, b, c = r - q, p - r, q - p
-        twice = abs(a.real * b.imag - a.imag * b.real)
-        weight, turning = stiffness[f] / twice, 0.125 * spin[f] / twice
+        double_area = abs(a.real * b.imag - a.imag * b.real)
+        weight, rotation = stiffness[f] / double_area, 0.125 * rotation_weights[f] / double_area
         for k in range(3):
             xx, yy = a.imag * a.imag, a.real * a.real
-            block, comparison = own[faces[f, k], 0], own[faces[f, k], 1]
-            result[block] += weight * (2 * xx + yy) + turning * yy
-            result[block + 1] += (turning - weight) * a.real * a.imag
-            result[comparison] += weight * (xx + 2 * yy) + turning * xx
+            first, second = vertices[faces[f, k], 0], vertices[faces[f, k], 1]
+            result[first] += weight * (2 * xx + yy) + rotation * yy
+            result[first + 1] += (rotation - weight) * a.real * a.imag
+            result[second] += weight * (xx + 2 * yy) + rotation * xx
             # component a of this corner with b of the next: ∂b here times ∂a there, and more where a = b
             xx, yy = a.imag * b.imag, a.real * b.real
-            upper, lower = (turning - weight) * a.real * b.imag, (turning - weight) * a.imag * b.real
-            if sides[f, k] & 1 == 0:  # the row is that of the next corner
+            upper, lower = (rotation - weight) * a.real * b.imag, (rotation - weight) * a.imag * b.real
+            if face_edges[f, k] & 1 == 0:  # the row is that of the next corner
                 upper, lower = lower, upper
-            block, comparison = edges[sides[f, k] >> 1, 0], edges[sides[f, k] >> 1, 1]
-            result[block] += weight * (2 * xx + yy) + turning * yy
-            result[block + 1] += lower
-            result[comparison] += upper
-            result[comparison + 1] += weight * (xx + 2 * yy) + turning * xx
+            first, second = edges[face_edges[f, k] >> 1, 0], edges[face_edges[f, k] >> 1, 1]
+            result[first] += weight * (2 * xx + yy) + rotation * yy
+            result[first + 1] += lower
+            result[second] += upper
+            result[second + 1] += weight * (xx + 2 * yy) + rotation * xx
             a, b, c = b, c, a
 
 
 @compiled
 def add_face(result: Floats, f: int, corners: Ints, matrix: Floats, slots: Slots) -> None:
-    """Add the matrix (6, 6) of the face ``f`` over x0 y0 x1 ... of its ``corners`` to the nonzeros."""
-    own, edges, sides = slots
+    """Add the matrix of face ``f`` to the nonzeros (z,).
+
+    corners: (3,) vertices of the face; matrix: (6, 6) symmetric, over x0 y0 x1 y1 x2 y2 of the corners.
+    """
+    vertices, edges, face_edges = slots
     for k in range(3):
-        here, there = own[corners[k], 0], own[corners[k], 1]
-        result[here] += matrix[2 * k, 2 * k]
-        result[here + 1] += matrix[2 * k + 1, 2 * k]
-        result[there] += matrix[2 * k + 1, 2 * k + 1]
+        first, second = vertices[corners[k], 0], vertices[corners[k], 1]
+        result[first] += matrix[2 * k, 2 * k]
+        result[first + 1] += matrix[2 * k + 1, 2 * k]
+        result[second] += matrix[2 * k + 1, 2 * k + 1]
         row, column = 2 * k, 2 * ((k + 1) % 3)
-        if sides[f, k] & 1 == 0:
+        if face_edges[f, k] & 1 == 0:
             row, column = column, row
-        here, there = edges[sides[f, k] >> 1, 0], edges[sides[f, k] >> 1, 1]
-        result[here] += matrix[row, column]
-        result[here + 1] += matrix[row + 1, column]
-        result[there] += matrix[row, column + 1]
-        result[there + 1] += matrix[row + 1, column + 1]
+        first, second = edges[face_edges[f, k] >> 1, 0], edges[face_edges[f, k] >> 1, 1]
+        result[first] += matrix[row, column]
+        result[first + 1] += matrix[row + 1, column]
+        result[second] += matrix[row, column + 1]
+        result[second + 1] += matrix[row + 1, column + 1]

@@ -1,4 +1,4 @@
-"""The triangle mesh of a drawing, and points on it."""
+"""The triangle mesh of a drawing at rest, and points on it."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,13 +10,13 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
 
 from ..errors import InputError
-from .validation import Floats, Ints, as_indices, as_points, frozen
+from .validation import Floats, Ints, as_indices, as_points, freeze
 
-_ROUNDING = 1e-12  # share by which a point may lie beyond a face and still be on it
+_ROUNDING = 1e-12  # barycentric weight below zero that still counts as on the face
 
 
 def signed_areas(positions: Floats, faces: Ints) -> Floats:
-    """Signed area of each face in square pixels, (m,); positive as stored in a `TriMesh` (y down)."""
+    """Signed area of each face in square pixels, (m,), at ``positions`` (n, 2); positive in a `TriMesh`."""
     corners = np.ascontiguousarray(positions, dtype=np.float64).view(np.complex128)[:, 0].take(faces)
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     return 0.5 * (a.real * b.imag - a.imag * b.real)
@@ -24,10 +24,11 @@ def signed_areas(positions: Floats, faces: Ints) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class MeshPoints:
-    """Points of the drawing, wherever they are: a face and three weights each.
+    """Points on a mesh by face and barycentric weights, so that they move with any pose.
 
-    faces: (k,) int32; weights: (k, 3) float64 barycentric, each row sums to 1. A point at a vertex is the
-    special case (1, 0, 0). The paper pins vertices only; weights inside one face change no sparsity pattern.
+    faces: (k,) int32; weights: (k, 3) float64, each row sums to 1; a point at a vertex has the weights
+    (1, 0, 0). The paper pins vertices only; weights inside one face change no sparsity pattern.
+    Arrays are read-only. Raises InputError if the weights of a row do not sum to 1.
     """
 
     faces: Ints
@@ -38,8 +39,8 @@ class MeshPoints:
         weights = as_points(self.weights, "weights", len(faces), columns=3)
         if not np.allclose(weights.sum(axis=1), 1.0, atol=1e-9):
             raise InputError("weights: expected barycentric weights that sum to 1 in each row")
-        object.__setattr__(self, "faces", frozen(faces))
-        object.__setattr__(self, "weights", frozen(weights))
+        object.__setattr__(self, "faces", freeze(faces))
+        object.__setattr__(self, "weights", freeze(weights))
 
     def __len__(self) -> int:
         return len(self.faces)
@@ -47,13 +48,14 @@ class MeshPoints:
 
 @dataclass(frozen=True, eq=False)
 class TriMesh:
-    """A triangle mesh in drawing units (image pixels, x right, y down, origin at the top left corner).
+    """A triangle mesh in its rest pose, in drawing units: image pixels, x right, y down.
 
-    vertices: (n, 2) float64, every one used, none twice; faces: (m, 3) int32, every signed area positive, at
-    most one on each side of an edge. Parts that touch share an edge: in a single point they could turn about
-    it freely. Arrays are read-only. Raises InputError where that does not hold.
-    tied: whether a part without a pin rides with the part nearest to it, see `deform.riding`; else it holds
-    still.
+    vertices: (n, 2) float64, each used by a face, no two at one place.
+    faces: (m, 3) int32, each with a positive signed area, at most one on each side of an edge. No two faces
+    meet in a vertex only, because they could rotate freely about it.
+    tied: whether a component without pins moves with the nearest one that has pins, see `deform.islands`;
+    otherwise it stays where it is.
+    Arrays are read-only. Raises InputError if one of these conditions is violated.
     """
 
     vertices: Floats
@@ -78,8 +80,8 @@ class TriMesh:
         if same.any():
             first = int(np.argmax(same))
             raise InputError(f"vertices: {order[first]} and {order[first + 1]} are at the same place")
-        object.__setattr__(self, "vertices", frozen(vertices))
-        object.__setattr__(self, "faces", frozen(faces))
+        object.__setattr__(self, "vertices", freeze(vertices))
+        object.__setattr__(self, "faces", freeze(faces))
         self._check_edges()
 
     def _check_edges(self) -> None:
@@ -97,29 +99,29 @@ class TriMesh:
 
     @cached_property
     def _half_edges(self) -> Ints:
-        """(3m, 2) directed edges, in the order of the faces."""
+        """(3m, 2) int32, directed edges in the order of the faces."""
         return self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
 
     @cached_property
     def _boundary_half_edges(self) -> Ints:
-        """(b, 2) directed edges without a face on their other side."""
+        """(b, 2) int32, directed edges without a face on their other side."""
         _, inverse, counts = np.unique(self._edge_keys, return_inverse=True, return_counts=True)
         return self._half_edges[counts[inverse] == 1]
 
     @cached_property
     def _edge_keys(self) -> Ints:
-        """(3m,) one number for each edge, the same for both its directions."""
+        """(3m,) int64, a number for each directed edge that is the same in both directions."""
         return np.sort(self._half_edges, axis=1) @ np.array([len(self.vertices), 1], dtype=np.int64)
 
     @cached_property
     def edges(self) -> Ints:
-        """(e, 2) int32, each edge once, smaller index first."""
+        """(e, 2) int32, each edge once, the smaller index first, in lexicographic order."""
         keys = np.unique(self._edge_keys)
-        return frozen(np.stack(np.divmod(keys, len(self.vertices)), axis=1).astype(np.int32))
+        return freeze(np.stack(np.divmod(keys, len(self.vertices)), axis=1).astype(np.int32))
 
     @cached_property
     def boundary_loops(self) -> tuple[Ints, ...]:
-        """Closed loops of boundary vertices, outer contours and holes alike, each (q,) int32."""
+        """Closed loops of boundary vertices, outer contours and holes, each (q,) int32."""
         following: dict[int, int] = dict(self._boundary_half_edges.tolist())
         loops = []
         while following:
@@ -127,22 +129,22 @@ class TriMesh:
             while at in following:
                 loop.append(at)
                 at = following.pop(at)
-            loops.append(frozen(np.array(loop, dtype=np.int32)))
+            loops.append(freeze(np.array(loop, dtype=np.int32)))
         return tuple(loops)
 
     @cached_property
     def boundary_vertices(self) -> Ints:
-        """(b,) int32, ascending: vertices of all boundary loops, holes included (the paper's B in eq. 8)."""
-        return frozen(np.unique(np.concatenate(self.boundary_loops)).astype(np.int32))
+        """(b,) int32, ascending: vertices of all boundary loops (the paper's B in eq. 8)."""
+        return freeze(np.unique(np.concatenate(self.boundary_loops)).astype(np.int32))
 
     @cached_property
     def component(self) -> Ints:
-        """(n,) int32: number of the connected component of each vertex."""
-        return frozen(connected_components(self.edge_graph, directed=False)[1].astype(np.int32))
+        """(n,) int32: number of each vertex's connected component, from 0."""
+        return freeze(connected_components(self.edge_graph, directed=False)[1].astype(np.int32))
 
     @cached_property
     def edge_graph(self) -> csr_array:
-        """(n, n) symmetric: lengths of the rest edges in pixels, as `scipy.sparse.csgraph` takes them."""
+        """(n, n) symmetric: lengths of the rest edges in pixels, a graph for `scipy.sparse.csgraph`."""
         return self._graph(self.edges)
 
     @cached_property
@@ -157,26 +159,27 @@ class TriMesh:
 
     @cached_property
     def gaps(self) -> Ints:
-        """(g, 2) int32, the narrowest first: the nearest vertices of two parts that are side by side.
+        """(g, 2) int32, the narrowest first: the nearest vertices of each two adjacent components.
 
-        An edge of the Delaunay triangulation joins each set of points with the point nearest to it, so that
-        no other pairs need to be looked at.
+        Only edges of the Delaunay triangulation are candidates: it joins each set of points to the point
+        nearest to the set.
         """
         if not self.component.any():
             return np.zeros((0, 2), dtype=np.int32)
-        rim = self.boundary_vertices
-        corners = rim[Delaunay(self.vertices[rim] - self.vertices[rim].mean(axis=0)).simplices]
+        boundary = self.boundary_vertices
+        centered = self.vertices[boundary] - self.vertices[boundary].mean(axis=0)
+        corners = boundary[Delaunay(centered).simplices]
         pairs = corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
         pairs = pairs[self.component[pairs[:, 0]] < self.component[pairs[:, 1]]]
         widths = np.linalg.norm(self.vertices[pairs[:, 0]] - self.vertices[pairs[:, 1]], axis=1)
         pairs = pairs[np.argsort(widths, kind="stable")]
         _, first = np.unique(self.component[pairs], axis=0, return_index=True)
-        return frozen(pairs[np.sort(first)])
+        return freeze(pairs[np.sort(first)])
 
     @cached_property
     def rest_areas(self) -> Floats:
-        """(m,) areas of the rest faces, square pixels."""
-        return frozen(signed_areas(self.vertices, self.faces))
+        """(m,) areas of the faces at rest, square pixels."""
+        return freeze(signed_areas(self.vertices, self.faces))
 
     @cached_property
     def length(self) -> float:
@@ -186,75 +189,78 @@ class TriMesh:
     def find(
         self, point: ArrayLike, positions: ArrayLike | None = None, order: Ints | None = None
     ) -> MeshPoints | None:
-        """The point of the drawing seen at ``point`` in the pose ``positions`` (default: at rest), or None.
+        """The point of the mesh that is visible at ``point`` (2,), or None if no face covers it.
 
-        Where faces overlap, the one drawn last is seen: order (m,) are the faces as they are drawn, by
-        default by their index.
+        positions: (n, 2) the pose, by default at rest; order: (m,) the faces in the order in which they are
+        drawn, by default by index: the last one that covers the point is visible. Raises InputError.
         """
         q = as_points([point], "point", 1)[0]  # type: ignore[arg-type]
-        return self._find(q, self._pose(positions), order)
+        return self._find(q, self._as_pose(positions), order)
 
-    def _pose(self, positions: ArrayLike | None) -> Floats:
+    def _as_pose(self, positions: ArrayLike | None) -> Floats:
         return self.vertices if positions is None else as_points(positions, "positions", len(self.vertices))
 
     @cached_property
     def _corners(self) -> Ints:
-        """(3, m) the faces again, as numpy looks things up fastest."""
+        """(3, m) the transposed faces, in the layout and dtype that numpy indexes with fastest."""
         return np.ascontiguousarray(self.faces.T, dtype=np.intp)
 
     def _find(self, point: Floats, pose: Floats, order: Ints | None = None) -> MeshPoints | None:
         margin = _ROUNDING * np.abs(point).max()
-        bits = np.zeros(len(pose), dtype=np.uint8)  # on which sides of the point a corner is
+        sides = np.zeros(len(pose), dtype=np.uint8)  # bits: left, right, above, below the point
         for axis in (0, 1):
-            bits |= (pose[:, axis] <= point[axis] + margin).view(np.uint8) << np.uint8(2 * axis)
-            bits |= (pose[:, axis] >= point[axis] - margin).view(np.uint8) << np.uint8(2 * axis + 1)
+            sides |= (pose[:, axis] <= point[axis] + margin).view(np.uint8) << np.uint8(2 * axis)
+            sides |= (pose[:, axis] >= point[axis] - margin).view(np.uint8) << np.uint8(2 * axis + 1)
         a, b, c = self._corners
-        inside = np.flatnonzero((bits.take(a) | bits.take(b) | bits.take(c)) == 0b1111)
-        weights = barycentric(pose[self.faces[inside]], point)
+        candidates = np.flatnonzero((sides.take(a) | sides.take(b) | sides.take(c)) == 0b1111)
+        weights = barycentric(pose[self.faces[candidates]], point)
         hits = np.flatnonzero(weights.min(axis=1) >= -_ROUNDING)
         if not len(hits):
             return None
         if order is not None:
             rank = np.empty(len(order), dtype=np.int64)
             rank[order] = np.arange(len(order))
-            hits = hits[np.argsort(rank[inside[hits]])]
-        return MeshPoints(inside[hits[-1:]], weights[hits[-1:]])
+            hits = hits[np.argsort(rank[candidates[hits]])]
+        return MeshPoints(candidates[hits[-1:]], weights[hits[-1:]])
 
     def locate(self, points: ArrayLike, positions: ArrayLike | None = None) -> MeshPoints:
-        """`MeshPoints` of ``points`` (k, 2) in the pose ``positions`` (n, 2) (default: at rest).
+        """The points of the mesh that are visible at ``points`` (k, 2), see `find`.
 
-        Raises InputError for a point outside the mesh.
+        positions: (n, 2) the pose, by default at rest. Raises InputError for a point outside the mesh.
         """
-        wanted, pose = as_points(points, "points"), self._pose(positions)
+        pose = self._as_pose(positions)
         faces, weights = [], []
-        for index, q in enumerate(wanted):
+        for index, q in enumerate(as_points(points, "points")):
             hit = self._find(q, pose)
             if hit is None:
-                near = pose[int(np.argmin(((pose - q) ** 2).sum(axis=1)))]
+                nearest = pose[int(np.argmin(((pose - q) ** 2).sum(axis=1)))]
                 raise InputError(
                     f"points: point {index} at ({q[0]:g}, {q[1]:g}) lies outside the drawing; "
-                    f"the nearest vertex is at ({near[0]:.1f}, {near[1]:.1f})"
+                    f"the nearest vertex is at ({nearest[0]:.1f}, {nearest[1]:.1f})"
                 )
             faces.append(hit.faces[0])
             weights.append(hit.weights[0])
         return MeshPoints(np.array(faces, dtype=np.int32), np.array(weights).reshape(-1, 3))
 
     def evaluate(self, points: MeshPoints, values: Floats) -> Floats:
-        """Values at ``points`` of a function given at the vertices, (n, 2) to (k, 2): e.g. where pins are.
+        """Interpolate ``values`` (n, 2) at the vertices to ``points``, (k, 2): e.g. the positions of pins.
 
-        Raises InputError for points of another mesh.
+        Raises InputError for points with faces that the mesh does not have.
         """
         as_indices(points.faces, "points.faces", None, len(self.faces))
         return np.einsum("kc,kcd->kd", points.weights, values[self.faces[points.faces]])
 
 
 def barycentric(corners: Floats, point: Floats) -> Floats:
-    """Barycentric weights (m, 3) in triangles ``corners`` (m, 3, 2) of a ``point``, (2,) or (m, 2)."""
+    """Barycentric weights (m, 3) of ``point``, (2,) or (m, 2), in triangles ``corners`` (m, 3, 2).
+
+    Triangles without area get weights of -1, as if the point were outside.
+    """
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    u, v, w = b - a, c - a, point - a
+    u, v, offset = b - a, c - a, point - a
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         scale = 1.0 / (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-        second = (w[:, 0] * v[:, 1] - w[:, 1] * v[:, 0]) * scale
-        third = (u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]) * scale
+        second = (offset[:, 0] * v[:, 1] - offset[:, 1] * v[:, 0]) * scale
+        third = (u[:, 0] * offset[:, 1] - u[:, 1] * offset[:, 0]) * scale
         weights = np.stack([1.0 - second - third, second, third], axis=1)
     return np.where(np.isfinite(weights), weights, -1.0)

@@ -1,4 +1,8 @@
-"""Checks of array arguments at the public border: what was expected, what came."""
+"""Array types, and validators of array arguments.
+
+A validator returns the argument as an array of its type, or raises InputError with the argument's name, what
+was expected and what came.
+"""
 
 from typing import Any
 
@@ -8,23 +12,16 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.signedinteger[Any]]  # int32 where public, int64 where it came out of numpy
+Ints = NDArray[np.signedinteger[Any]]  # int32 in public arrays, int64 where numpy made them
 Complexes = NDArray[np.complex128]
 
 
-def _array(value: Any, name: str) -> NDArray[Any]:
-    try:
-        return np.asarray(value)
-    except (ValueError, TypeError) as error:
-        raise InputError(f"{name}: expected an array of numbers, got {type(value).__name__}") from error
-
-
 def as_points(value: ArrayLike, name: str, count: int | None = None, columns: int = 2) -> Floats:
-    """A copy of ``value`` as a finite (n, columns) float64 array; n must equal ``count`` where given.
+    """Copy ``value`` to a finite (n, columns) float64 array; if ``count`` is given, n must equal it.
 
-    Raises InputError on a wrong shape, a dtype that is not a real one, or NaN and infinity.
+    Raises InputError on another shape, a dtype that is not real, NaN or infinity.
     """
-    array = _array(value, name)
+    array = _as_array(value, name)
     rows = "n" if count is None else str(count)
     if array.size == 0 and count in (None, 0):
         array = array.reshape(0, columns)
@@ -39,34 +36,85 @@ def as_points(value: ArrayLike, name: str, count: int | None = None, columns: in
     return array
 
 
-def as_indices(value: ArrayLike, name: str, columns: int | None, limit: int) -> Ints:
-    """``value`` as int32 indices in [0, limit), shape (m, columns), or (m,) if ``columns`` is None.
+def as_numbers(
+    value: ArrayLike,
+    name: str,
+    count: int,
+    low: float = -np.inf,
+    high: float = np.inf,
+    allow_nan: bool = False,
+) -> Floats:
+    """Copy ``value`` to a (count,) float64 array of finite numbers from ``low`` to ``high``.
 
-    Raises InputError on a wrong shape, a dtype that is not an integer one, or an index out of range.
+    allow_nan: NaN is valid, too; so is None, which becomes NaN. Raises InputError.
     """
-    array = _array(value, name)
-    wanted = "(m,)" if columns is None else f"(m, {columns})"
-    if array.size == 0:
-        array = array.reshape((0,) if columns is None else (0, columns)).astype(np.int32)
-    if array.ndim != (1 if columns is None else 2) or (columns is not None and array.shape[1] != columns):
-        raise InputError(f"{name}: expected shape {wanted}, got {array.shape}")
-    if array.dtype.kind not in "iu":
-        raise InputError(f"{name}: expected integer indices, got dtype {array.dtype}")
-    if array.size and (array.min() < 0 or array.max() >= limit):
-        bad = int(array.min() if array.min() < 0 else array.max())
-        raise InputError(f"{name}: expected indices from 0 to {limit - 1}, got {bad}")
-    return array.astype(np.int32)
+    bounds = "" if np.isinf([low, high]).all() else f" from {low:g} to {high:g}"
+    expected = f"{name}: expected {count} numbers{bounds}{' or NaN' if allow_nan else ''}"
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{expected}, got {type(value).__name__}") from error
+    if array.shape != (count,):
+        raise InputError(f"{expected}, got shape {array.shape}")
+    valid = np.isfinite(array) & (array >= low) & (array <= high)
+    if allow_nan:
+        valid |= np.isnan(array)
+    if not valid.all():
+        raise InputError(f"{expected}, got {array[~valid][0]:g}")
+    return array
 
 
 def as_number(value: Any, name: str, low: float, high: float) -> float:
-    """``value`` as a float from ``low`` to ``high``. Raises InputError."""
+    """Return ``value`` as a float from ``low`` to ``high``. Raises InputError."""
     if not isinstance(value, (int, float, np.integer, np.floating)) or not low <= value <= high:
         raise InputError(f"{name}: expected a number from {low:g} to {high:g}, got {value!r}")
     return float(value)
 
 
-def frozen(array: NDArray[Any]) -> NDArray[Any]:
-    """The array itself, made read-only and contiguous."""
+def as_indices(value: ArrayLike, name: str, columns: int | None, limit: int) -> Ints:
+    """Copy ``value`` to int32 indices in [0, limit), shape (m, columns), or (m,) if ``columns`` is None.
+
+    Raises InputError on another shape, a dtype that is not an integer one, or an index out of range.
+    """
+    array = _as_array(value, name)
+    expected = "(m,)" if columns is None else f"(m, {columns})"
+    if array.size == 0:
+        array = array.reshape((0,) if columns is None else (0, columns)).astype(np.int32)
+    if array.ndim != (1 if columns is None else 2) or (columns is not None and array.shape[1] != columns):
+        raise InputError(f"{name}: expected shape {expected}, got {array.shape}")
+    if array.dtype.kind not in "iu":
+        raise InputError(f"{name}: expected integer indices, got dtype {array.dtype}")
+    if array.size and (array.min() < 0 or array.max() >= limit):
+        index = int(array.min() if array.min() < 0 else array.max())
+        raise InputError(f"{name}: expected indices from 0 to {limit - 1}, got {index}")
+    return array.astype(np.int32)
+
+
+def as_picture(value: Any, name: str) -> NDArray[np.uint8]:
+    """Return ``value`` as an RGBA picture (h, w, 4) uint8 with at least one pixel. Raises InputError."""
+    image = np.asarray(value)
+    if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8 or not image.size:
+        raise InputError(f"{name}: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
+    return image
+
+
+def as_channel(value: Any, name: str) -> NDArray[np.uint8]:
+    """Return ``value`` as one channel (h, w) uint8 with at least one pixel. Raises InputError."""
+    channel = np.asarray(value)
+    if channel.ndim != 2 or channel.dtype != np.uint8 or not channel.size:
+        raise InputError(f"{name}: expected shape (h, w) uint8, got {channel.shape} {channel.dtype}")
+    return channel
+
+
+def freeze(array: NDArray[Any]) -> NDArray[Any]:
+    """Make an array read-only, and contiguous if it is not (then the result is a copy)."""
     array = np.ascontiguousarray(array)
     array.flags.writeable = False
     return array
+
+
+def _as_array(value: Any, name: str) -> NDArray[Any]:
+    try:
+        return np.asarray(value)
+    except (ValueError, TypeError) as error:
+        raise InputError(f"{name}: expected an array of numbers, got {type(value).__name__}") from error

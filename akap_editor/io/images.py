@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from ..errors import InputError
+from ..geometry.validation import as_picture
 from .atomic import read_file, write_atomic
 
 Picture = NDArray[np.uint8]
@@ -138,7 +139,7 @@ def encode_png(image: Picture) -> bytes:
     One filter (each row minus the one above) and zlib's run-length strategy: for cartoons as small as the
     usual search through filters, and a third of the time. Raises InputError on another shape or dtype.
     """
-    check_picture(image, "image")
+    image = as_picture(image, "image")
     height, width = image.shape[:2]
     rows = np.empty((height, 1 + 4 * width), dtype=np.uint8)
     rows[:, 0] = 2  # filter type "up"
@@ -160,9 +161,3 @@ def _png_chunk(kind: bytes, content: bytes) -> bytes:
 def write_png(path: str | Path, image: Picture) -> None:
     """Write ``image``, (h, w, 4) uint8, straight alpha, to a PNG file. On InputError the old file is kept."""
     write_atomic(path, encode_png(image))
-
-
-def check_picture(image: Picture, name: str) -> None:
-    """Raise InputError where ``image`` is not (h, w, 4) uint8."""
-    if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8 or not image.size:
-        raise InputError(f"{name}: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")

@@ -6,7 +6,7 @@ from scipy.ndimage import label
 from scipy.spatial import cKDTree
 
 from ..errors import InputError
-from ..geometry.validation import Floats, as_number
+from ..geometry.validation import Floats, as_number, as_picture
 
 DEFAULT_TOLERANCE = 0.125
 
@@ -20,9 +20,7 @@ def background_color(image: NDArray[np.uint8]) -> Floats:
 
     Raises InputError where the border is transparent, or the picture is no RGBA picture.
     """
-    image = np.asarray(image)
-    if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8 or not image.size:
-        raise InputError(f"image: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
+    image = as_picture(image, "image")
     border = np.concatenate([image[0], image[-1], image[:, 0], image[:, -1]])
     colors = border[border[:, 3] > 0, :3]
     if not len(colors):

@@ -9,7 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
-from ..geometry.validation import Floats, as_points, frozen
+from ..geometry.validation import Floats, as_channel, as_points, freeze
 from .contours import contours
 
 SMALLEST_PART = 10.0  # square pixels; anything less is a speck
@@ -92,8 +92,8 @@ def cut_out(
     expansion joins them to others; holes below `SMALLEST_HOLE` are filled.
     Rings never meet, not even in a point. Raises InputError where the picture has no visible part.
     """
-    alpha = np.asarray(alpha)
-    _check(alpha, threshold, expand, tolerance)
+    alpha = as_channel(alpha, "alpha")
+    _check(threshold, expand, tolerance)
     height, width = alpha.shape
     rings = contours(alpha, 255 * threshold)
     if not rings:
@@ -131,9 +131,7 @@ def _shape_of(cut: CutOut, most_points: float) -> tuple[int, int]:
     return len(cut.parts), int((np.array(areas) > smallest).sum())
 
 
-def _check(alpha: NDArray[np.uint8], threshold: float, expand: float, tolerance: float) -> None:
-    if alpha.ndim != 2 or alpha.dtype != np.uint8 or not alpha.size:
-        raise InputError(f"alpha: expected shape (h, w) uint8, got {alpha.shape} {alpha.dtype}")
+def _check(threshold: float, expand: float, tolerance: float) -> None:
     if not 0 < threshold < 1:
         raise InputError(f"threshold: expected a share between 0 and 1, got {threshold:g}")
     for name, value in (("expand", expand), ("tolerance", tolerance)):
@@ -240,4 +238,4 @@ def _ring(points: ArrayLike, name: str) -> Floats:
     ring = as_points(points, name)
     if len(ring) < 3:
         raise InputError(f"{name}: expected at least 3 points, got {len(ring)}")
-    return frozen(ring)
+    return freeze(ring)

@@ -1,5 +1,7 @@
 """Meshes of cartoons."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -11,11 +13,11 @@ from akap_editor.resources import resource
 
 
 @pytest.fixture(scope="session")
-def cartoon_mesh(request: pytest.FixtureRequest):
+def cartoon_mesh(request: pytest.FixtureRequest) -> Callable[..., TriMesh]:
     """Makes meshes of cartoons by name: "cat" is a bundled one, "noto/cat" a real one."""
     meshes: dict[tuple[str, int], TriMesh] = {}
 
-    def mesh_of(name: str, vertices: int = 800) -> TriMesh:
+    def make_mesh(name: str, vertices: int = 800) -> TriMesh:
         if (name, vertices) not in meshes:
             shared = "/" in name
             folder = request.getfixturevalue("shared_data") if shared else resource("assets", "drawings")
@@ -25,4 +27,4 @@ def cartoon_mesh(request: pytest.FixtureRequest):
             meshes[name, vertices] = triangulate(outlines(alpha), vertices)
         return meshes[name, vertices]
 
-    return mesh_of
+    return make_mesh

@@ -10,7 +10,6 @@ from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
-from akap_editor.geometry.area_bounds import bound_face_areas
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io.images import read_image
@@ -97,19 +96,6 @@ def test_a_straight_mix_of_the_two_poses_would_shrink(mesh):
     spiral = distortion(mesh, PoseInterpolation(mesh).between(mesh.vertices, end)(0.5)).area
     assert mixed > 2.2
     assert spiral < 2.01
-
-
-def test_bounding_moves_little_and_only_what_is_beyond(mesh):
-    pose = mesh.vertices.copy()
-    np.testing.assert_array_equal(bound_face_areas(mesh, pose, 1.5), pose)
-    pose[50] += [0.9, 0.0]
-    ratios = lambda p: distortion(mesh, p).face_determinant  # noqa: E731
-    assert ratios(pose).min() < 0.5
-    mended = bound_face_areas(mesh, pose, 2.0)
-    assert ratios(mended).min() >= 0.99 / 2
-    assert ratios(mended).max() <= 2 * 1.01
-    far = np.abs(mesh.vertices - mesh.vertices[50]).max(axis=1) > 3
-    np.testing.assert_array_equal(mended[far], pose[far])
 
 
 def test_ways_are_prepared_once_and_are_those_of_in_betweens(mesh, monkeypatch):

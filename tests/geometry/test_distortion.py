@@ -6,7 +6,6 @@ import pytest
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import TriMesh
-from tests.support import shapes
 
 TURN = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
 
@@ -72,7 +71,7 @@ def test_collapsed_faces_are_infinitely_distorted(mesh, matrix):
 
 def test_renumbering_changes_nothing(mesh):
     pose = mesh.vertices + np.random.default_rng(9).normal(scale=3.0, size=mesh.vertices.shape)
-    other, order, _ = shapes.renumbered(mesh, 1)
+    other, order, _ = renumbered(mesh, 1)
     before, after = distortion(mesh, pose), distortion(other, pose[order])
     assert (after.area, after.angle, after.flipped) == (
         close(before.area),

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from akap_editor.geometry.killing_matrix import KillingMatrix, VertexBlocks, add_face
-from akap_editor.geometry.operators import killing_energy, to_complex
+from akap_editor.geometry.operators import to_complex
 from tests.support import dense
+from tests.support.dense import killing_energy
 
 
 def filled(blocks, nonzeros):
@@ -66,13 +67,13 @@ def test_stiff_faces_count_more(mesh):
 
 def test_turning_costs_by_its_rate_whatever_the_stiffness(mesh):
     rng = np.random.default_rng(4)
-    stiffness, spin = rng.uniform(0.5, 100, (2, len(mesh.faces)))
+    stiffness, rotation = rng.uniform(0.5, 100, (2, len(mesh.faces)))
     plain = assembled(mesh, mesh.vertices, stiffness=stiffness)
-    both = assembled(mesh, mesh.vertices, stiffness=stiffness, spin=spin)
+    both = assembled(mesh, mesh.vertices, stiffness=stiffness, rotation_weights=rotation)
     for turn, move in [(0.3, 0.0), (-2.0, 5.0)]:
         field = mesh.vertices @ [[0.0, turn], [-turn, 0.0]] + move
         cost = field.ravel() @ (both - plain) @ field.ravel()
-        assert cost == pytest.approx(turn**2 * (spin @ mesh.rest_areas), rel=1e-9)
+        assert cost == pytest.approx(turn**2 * (rotation @ mesh.rest_areas), rel=1e-9)
 
 
 def test_null_space_is_the_rigid_motions_of_each_part(mesh):
@@ -97,3 +98,25 @@ def test_flipped_faces_count_by_their_size(mesh):
     assert killing_energy(mirrored, mesh.faces, field * [-1.0, 1.0]) == pytest.approx(energy, rel=1e-12)
     rows = dense.killing_rows(mirrored, mesh.faces)
     assert np.abs(assembled(mesh, mirrored) - rows.T @ rows).max() < 1e-11
+
+
+@pytest.mark.parametrize("turn", [0.0, 1.0, -3.0])
+def test_rigid_fields_have_no_energy(mesh, turn):
+    field = mesh.vertices @ [[0.0, turn], [-turn, 0.0]] + [4.0, 9.0]
+    assert killing_energy(mesh.vertices, mesh.faces, field) < 1e-20 * mesh.rest_areas.sum()
+
+
+@pytest.mark.parametrize(
+    ("jacobian", "density"),
+    [
+        ([[1, 0], [0, 0]], 4),  # ‖J + Jᵀ‖² of stretch in x, of stretch in both, of shear, of a mixture
+        ([[1, 0], [0, 1]], 8),
+        ([[0, 1], [0, 0]], 2),
+        ([[2, 3], [-1, 0.5]], 16 + 2 * 4 + 1),
+    ],
+)
+def test_energy_of_linear_fields(mesh, jacobian, density):
+    field = mesh.vertices @ np.transpose(jacobian)
+    expected = pytest.approx(density * mesh.rest_areas.sum(), rel=1e-12)
+    assert killing_energy(mesh.vertices, mesh.faces, field) == expected
+    assert field.ravel() @ assembled(mesh, mesh.vertices) @ field.ravel() == expected

@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from akap_editor.errors import InputError
-from akap_editor.geometry.validation import as_indices, as_number, as_points, frozen
+from akap_editor.geometry.validation import (
+    as_channel,
+    as_indices,
+    as_number,
+    as_numbers,
+    as_picture,
+    as_points,
+    freeze,
+)
 
 
 @pytest.mark.parametrize(
@@ -62,8 +70,53 @@ def test_what_is_no_number_in_the_range_is_refused(value):
         as_number(value, "share", 0, 1)
 
 
+def test_arrays_of_numbers_are_copied_to_float64():
+    value = np.array([1, 5, 3], dtype=np.int16)
+    numbers = as_numbers(value, "stiffness", 3, 1, 5)
+    assert numbers.dtype == np.float64
+    assert numbers.tolist() == [1.0, 5.0, 3.0]
+    same = np.array([1.0, 2.0])
+    assert not np.shares_memory(as_numbers(same, "stiffness", 2), same)
+    assert as_numbers([], "angles", 0).shape == (0,)
+    assert np.isnan(as_numbers([0.5, None, np.nan], "angles", 3, allow_nan=True)).tolist() == [
+        False,
+        True,
+        True,
+    ]
+
+
+@pytest.mark.parametrize("value", [[1.0], [1, 2, 3], [[1, 2]], [0.5, 2], [1, 5.5], [1, np.nan], [1, np.inf]])
+def test_numbers_of_another_count_or_out_of_range_are_refused(value):
+    with pytest.raises(InputError, match=r"^stiffness: expected 2 numbers from 1 to 5, got "):
+        as_numbers(value, "stiffness", 2, 1, 5)
+
+
+@pytest.mark.parametrize("value", ["many", [1, "a"], [1, [2, 3]], 1j, {"x": 1}, [np.inf, 0.0]])
+def test_what_are_no_finite_numbers_is_refused(value):
+    with pytest.raises(InputError, match=r"^angles: expected 2 numbers or NaN, got "):
+        as_numbers(value, "angles", 2, allow_nan=True)
+
+
+@pytest.mark.parametrize(
+    "value", [np.zeros((2, 3, 3), np.uint8), np.zeros((2, 3, 4)), np.zeros((0, 3, 4), np.uint8), [[1]], "a"]
+)
+def test_pictures_have_four_channels_of_bytes(value):
+    picture = np.zeros((2, 3, 4), dtype=np.uint8)
+    assert as_picture(picture, "image") is picture
+    with pytest.raises(InputError, match=r"^image: expected shape \(h, w, 4\) uint8, got \("):
+        as_picture(value, "image")
+
+
+@pytest.mark.parametrize("value", [np.zeros((2, 3)), np.zeros((0, 3), np.uint8), np.zeros(3, np.uint8), None])
+def test_channels_are_two_dimensional_bytes(value):
+    channel = np.zeros((2, 3), dtype=np.uint8)
+    assert as_channel(channel, "mask") is channel
+    with pytest.raises(InputError, match=r"^mask: expected shape \(h, w\) uint8, got \("):
+        as_channel(value, "mask")
+
+
 def test_frozen_arrays_cannot_be_written():
-    array = frozen(np.zeros((2, 4))[:, ::2])
+    array = freeze(np.zeros((2, 4))[:, ::2])
     assert array.flags.c_contiguous
     with pytest.raises(ValueError, match="read-only"):
         array[0] = 1.0

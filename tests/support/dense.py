@@ -5,6 +5,16 @@ import cmath
 import numpy as np
 
 
+def killing_energy(positions, faces, field):
+    """∫‖J + Jᵀ‖² of a vector field (n, 2) on a mesh at ``positions`` (paper, eq. 2)."""
+    corners = positions[faces]
+    edges = np.linalg.inv(np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=1))
+    values = field[faces]
+    gradients = edges @ np.stack([values[:, 1] - values[:, 0], values[:, 2] - values[:, 0]], axis=1)
+    areas = 0.5 / np.abs(np.linalg.det(edges))
+    return float(areas @ ((gradients + gradients.transpose(0, 2, 1)) ** 2).sum(axis=(1, 2)))
+
+
 def killing_rows(positions, faces):
     """P of eq. 6 with the gradient split into ∂x and ∂y, rows weighted by √area; columns x0 y0 x1 y1 ..."""
     rows = np.zeros((3 * len(faces), 2 * len(positions)))

@@ -12,7 +12,7 @@ from ...errors import InputError, SolverError
 from ...geometry.jit import compiled
 from ...geometry.mesh import MeshPoints, TriMesh, signed_areas
 from ...geometry.operators import to_complex, to_points
-from ...geometry.validation import Complexes, Floats, Ints, as_indices, as_number, as_points
+from ...geometry.validation import Complexes, Floats, Ints, as_indices, as_number, as_numbers, as_points
 from ..cholesky import SparseCholesky
 from ..deformer import Deformer, StepReport, StepResult
 from .killing_field import KillingSystem
@@ -108,7 +108,9 @@ class AkapDeformer(Deformer):
         if max_step is None:
             max_step = _MAX_STEP_WITH_MEMORY if memory else _MAX_STEP
         as_number(max_step, "max_step", 1e-4, math.inf)
-        stiff = None if stiffness is None else _as_stiffness(stiffness, len(mesh.faces))
+        stiff = None
+        if stiffness is not None:
+            stiff = as_numbers(stiffness, "stiffness", len(mesh.faces), _SOFTEST, _STIFFEST)
         self._mesh = mesh
         self._dirichlet = bool(dirichlet)
         length = mesh.length
@@ -180,7 +182,9 @@ class AkapDeformer(Deformer):
         started = time.perf_counter()
         pose = to_complex(as_points(positions, "positions", len(self._mesh.vertices)))
         goals = to_complex(as_points(targets, "targets", len(self._points)))
-        wanted = _as_angles(angles, len(goals))
+        wanted = np.full(len(goals), np.nan)
+        if angles is not None:
+            wanted = as_numbers(angles, "angles", len(goals), allow_nan=True)
         if (np.isfinite(wanted) != self._holding).any():
             self._hold(np.isfinite(wanted))
         way = [_Substep(pose, np.zeros_like(pose), 1.0, pose)]
@@ -378,27 +382,3 @@ def _keeps_faces(before: Complexes, after: Complexes, faces: Ints, least: Floats
         if was > 0 and not is_now > min(least[f], 0.9 * was):
             return False
     return True
-
-
-def _as_angles(angles: ArrayLike | None, count: int) -> Floats:
-    if angles is None:
-        return np.full(count, np.nan)
-    try:
-        values = np.asarray(angles, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"angles: expected {count} numbers or NaN, got {angles!r}") from error
-    if values.shape != (count,) or np.isinf(values).any():
-        raise InputError(f"angles: expected {count} finite numbers or NaN, got shape {values.shape}")
-    return values
-
-
-def _as_stiffness(stiffness: ArrayLike, count: int) -> Floats:
-    try:
-        values = np.asarray(stiffness, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"stiffness: expected {count} numbers, got {stiffness!r}") from error
-    if values.shape != (count,) or not ((values >= _SOFTEST) & (values <= _STIFFEST)).all():
-        raise InputError(
-            f"stiffness: expected {count} numbers from {_SOFTEST:g} to {_STIFFEST:g}, got {values}"
-        )
-    return values

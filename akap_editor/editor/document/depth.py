@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from ...errors import InputError
 from ...geometry.mesh import MeshPoints, TriMesh
-from ...geometry.validation import Floats, Ints, frozen
+from ...geometry.validation import Floats, Ints, freeze
 from .pin import Pin
 
 MAX_DEPTH = 999  # in front of the drawing or behind it
@@ -51,7 +51,7 @@ def _pin_depths(pins: Sequence[Pin]) -> _PinDepths:
 @lru_cache(maxsize=8)
 def _face_order(mesh: TriMesh, pins: _PinDepths) -> Ints:
     levels = np.rint(LEVELS_PER_DEPTH * _vertex_depths(mesh, pins)[mesh.faces].mean(axis=1))
-    return frozen(np.argsort(levels, kind="stable"))
+    return freeze(np.argsort(levels, kind="stable"))
 
 
 def _vertex_depths(mesh: TriMesh, pins: _PinDepths) -> Floats:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry.mesh import MeshPoints
-from ...geometry.validation import Floats, Ints, frozen
+from ...geometry.validation import Floats, Ints, freeze
 from .depth import face_order
 from .drawing import Drawing
 from .keyframes import NO_ANIMATION, Animation
@@ -34,9 +34,9 @@ class EditState:
     animation: Animation = NO_ANIMATION
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "positions", frozen(np.asarray(self.positions, dtype=np.float64)))
+        object.__setattr__(self, "positions", freeze(np.asarray(self.positions, dtype=np.float64)))
         if self.stiffness is not None:
-            object.__setattr__(self, "stiffness", frozen(np.asarray(self.stiffness, dtype=np.float64)))
+            object.__setattr__(self, "stiffness", freeze(np.asarray(self.stiffness, dtype=np.float64)))
 
     @property
     def points(self) -> MeshPoints:

@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import as_points, frozen
+from ...geometry.validation import as_channel, as_picture, as_points, freeze
 from ...meshing.background import remove_background
 from ...meshing.picture_mesh import mesh_picture
 
@@ -48,12 +47,12 @@ class Drawing:
     original: NDArray[np.uint8] | None = None
 
     def __post_init__(self) -> None:
-        image = _as_image(self.image)
+        image = as_picture(self.image, "image")
         uv = as_points(self.uv, "uv", len(self.mesh.vertices)).astype(np.float32)
         if image.flags.writeable or not image.flags.owndata:
-            image = frozen(image.copy())
+            image = freeze(image.copy())
         object.__setattr__(self, "image", image)
-        object.__setattr__(self, "uv", frozen(uv))
+        object.__setattr__(self, "uv", freeze(uv))
 
     @cached_property
     def is_opaque(self) -> bool:
@@ -81,7 +80,7 @@ def make_drawing(
     for the other arguments see `Meshing`. The parts of the mesh are tied: a part without pins moves with the
     nearest part that has one. Raises InputError on bad arguments, or if nothing of the picture is visible.
     """
-    image = _as_image(image)
+    image = as_picture(image, "image")
     if mask is not None:
         image = apply_mask(image, mask)
     return remove_background_and_mesh(image, Meshing(vertices, expand, threshold, background), name)
@@ -94,7 +93,7 @@ def remove_background_and_mesh(image: NDArray[np.uint8], meshing: Meshing, name:
     """
     if meshing.background is None:
         return mesh_drawing(image, meshing, name)
-    original = image if not image.flags.writeable else frozen(image.copy())
+    original = image if not image.flags.writeable else freeze(image.copy())
     return mesh_drawing(remove_background(image, meshing.background), meshing, name, original)
 
 
@@ -117,19 +116,10 @@ def apply_mask(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> NDArray[np.
 
     Raises InputError if their sizes differ.
     """
-    mask = np.asarray(mask)
-    if mask.ndim != 2 or mask.dtype != np.uint8:
-        raise InputError(f"mask: expected shape (h, w) uint8, got {mask.shape} {mask.dtype}")
+    mask = as_channel(mask, "mask")
     if mask.shape != image.shape[:2]:
         sizes = [f"{shape[1]} x {shape[0]}" for shape in (image.shape, mask.shape)]
         raise InputError(f"mask: expected the size of the picture, {sizes[0]} pixels, got {sizes[1]}")
     result = image.copy()
     result[..., 3] = (image[..., 3].astype(np.uint16) * mask + 127) // 255
     return result
-
-
-def _as_image(value: Any) -> NDArray[np.uint8]:
-    image = np.asarray(value)
-    if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8 or not image.size:
-        raise InputError(f"image: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
-    return image

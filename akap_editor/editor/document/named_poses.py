@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import InputError
-from ...geometry.validation import Floats, as_points, frozen
+from ...geometry.validation import Floats, as_points, freeze
 
 MAX_POSE_NAME = 80  # characters
 
@@ -21,7 +21,7 @@ def as_pose(value: ArrayLike, name: str, count: int | None = None) -> Floats:
     pose = as_points(value, name, count)
     if isinstance(value, np.ndarray) and value.dtype == np.float64 and not value.flags.writeable:
         return value
-    return frozen(pose)
+    return freeze(pose)
 
 
 @dataclass(frozen=True, eq=False)

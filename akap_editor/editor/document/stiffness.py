@@ -5,9 +5,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...errors import InputError
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import Floats, as_number, as_points
+from ...geometry.validation import Floats, as_number, as_numbers, as_points
 
 MIN_STIFFNESS, MAX_STIFFNESS = 1.0, 1000.0  # factors of the energy of a face; 1 leaves it as it is
 _FULL_STRENGTH = 0.5  # share of a brush's radius inside which a dab covers fully
@@ -16,17 +15,7 @@ _DECIMALS = 2  # of a factor: few, so that files and recordings stay small
 
 def as_stiffness(values: ArrayLike, faces: int) -> Floats:
     """``values`` as factors (faces,) float64. Raises InputError on another shape or factors out of range."""
-    try:
-        factors = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"stiffness: expected {faces} numbers, got something else") from error
-    if factors.shape != (faces,):
-        raise InputError(f"stiffness: expected {faces} numbers, got shape {factors.shape}")
-    out_of_range = factors[~((factors >= MIN_STIFFNESS) & (factors <= MAX_STIFFNESS))]
-    if len(out_of_range):
-        expected = f"factors from {MIN_STIFFNESS:g} to {MAX_STIFFNESS:g}"
-        raise InputError(f"stiffness: expected {expected}, got {out_of_range[0]:g}")
-    return factors
+    return as_numbers(values, "stiffness", faces, MIN_STIFFNESS, MAX_STIFFNESS)
 
 
 def stroke_coverage(mesh: TriMesh, dabs: ArrayLike, radius: float) -> Floats:

@@ -14,7 +14,7 @@ from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing, Meshing
 from ...errors import InputError, error_context
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import Floats, as_number, frozen
+from ...geometry.validation import Floats, as_number, freeze
 from ..atomic import read_file, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
 from .archive import Archive, Entry, pack
@@ -247,4 +247,4 @@ def _picture(archive: Archive, name: str, width: int, height: int) -> NDArray[np
         image = decode_image(content, ("PNG",), (width, height))
         if image.shape[:2] != (height, width):
             raise InputError("expected a picture that stands upright, got one turned by its EXIF data")
-    return frozen(image)
+    return freeze(image)

@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Iterator
 
 from ...errors import InputError
-from ..images import Picture, check_picture
+from ...geometry.validation import as_picture
+from ..images import Picture
 
 
 def checked_frames(frames: Iterable[Picture]) -> Iterator[Picture]:
@@ -13,7 +14,7 @@ def checked_frames(frames: Iterable[Picture]) -> Iterator[Picture]:
     """
     first = None
     for number, image in enumerate(frames):
-        check_picture(image, f"frame {number}")
+        as_picture(image, f"frame {number}")
         first = image.shape if first is None else first
         if image.shape != first:
             expected, came = (f"{width} x {height}" for height, width, _ in (first, image.shape))

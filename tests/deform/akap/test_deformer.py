@@ -8,11 +8,11 @@ from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.errors import InputError, SolverError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
-from akap_editor.geometry.operators import killing_energy
 from akap_editor.meshing.outline import outlines
 from akap_editor.meshing.triangulate import triangulate
 from akap_editor.resources import bundled_drawings
 from tests.support import dense, shapes
+from tests.support.dense import killing_energy
 
 DRAWINGS = {path.stem: path for path in bundled_drawings()}
 WHOLE = float("inf")  # max_step: one field for the whole way

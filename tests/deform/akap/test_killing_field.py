@@ -6,8 +6,9 @@ import pytest
 from akap_editor.deform.akap.killing_field import KillingSystem
 from akap_editor.errors import SolverError
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
-from akap_editor.geometry.operators import killing_energy, to_complex, to_points
+from akap_editor.geometry.operators import to_complex, to_points
 from tests.support import dense, shapes
+from tests.support.dense import killing_energy
 
 WEIGHT = 30.0
 

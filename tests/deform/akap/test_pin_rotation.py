@@ -35,7 +35,7 @@ def test_turning_fields_cost_what_the_matrix_says(mesh):
     turning.place(pose)
     killing = KillingMatrix(mesh)
     there = to_complex(pose)
-    difference = killing.nonzeros(there, spin=turning.spin) - killing.nonzeros(there)
+    difference = killing.nonzeros(there, rotation_weights=turning.spin) - killing.nonzeros(there)
     matrix = np.zeros((2 * len(pose),) * 2)
     matrix[killing.blocks.rows, killing.blocks.columns] = difference
     matrix += np.tril(matrix, -1).T

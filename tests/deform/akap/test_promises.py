@@ -9,8 +9,9 @@ from akap_editor.deform.deformer import StepReport, StepResult
 from akap_editor.errors import InputError, SolverError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, signed_areas
-from akap_editor.geometry.operators import killing_energy, to_complex, to_points
+from akap_editor.geometry.operators import to_complex, to_points
 from tests.support import dense, shapes
+from tests.support.dense import killing_energy
 
 WHOLE = float("inf")  # max_step: one field for the whole way
 

@@ -53,7 +53,7 @@ def test_angles_and_stiffness_come_back_and_are_left_out_where_there_are_none(ma
 def test_stiffness_out_of_range_is_refused(make_document, picture, factor):
     plain = make_document(picture)
     factors = np.full(len(plain.drawing.mesh.faces), factor)
-    with pytest.raises(InputError, match="stiffness: expected factors from 1 to 1000"):
+    with pytest.raises(InputError, match="stiffness: expected 2 numbers from 1 to 1000"):
         encode_document(plain.with_state(replace(plain.state, stiffness=factors)))
 
 
