@@ -6,6 +6,7 @@ import pytest
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import TriMesh
+from tests.support.shapes import renumbered
 
 TURN = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
 
