@@ -15,6 +15,7 @@ FILE = re.compile(r"`([\w./<>]+\.(?:py|md|toml))`")  # <name> stands for any nam
 
 
 def tool(name):
+    """Import a script of tools/."""
     pytest.importorskip("imgui_bundle")
     spec = importlib.util.spec_from_file_location(name, ROOT / "tools" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
@@ -63,12 +64,12 @@ def test_every_screenshot_is_on_a_page():
     assert not [name for name in tool("make_screenshots").SHOTS if f"images/{name}.png" not in pages]
 
 
-def test_the_page_of_keys_is_that_of_the_program():
+def test_the_shortcuts_page_is_current():
     """If this fails, run python tools/make_shortcuts.py."""
     assert (ROOT / "docs" / "shortcuts.md").read_text("utf-8") == tool("make_shortcuts").page()
 
 
-def test_presets_of_the_paper_have_their_names_of_the_screen():
+def test_presets_of_the_paper_have_their_labels():
     page = (ROOT / "docs" / "methods.md").read_text("utf-8")
     assert not [
         preset.label

@@ -1,4 +1,4 @@
-"""The package as a library, as its documentation shows it, with and without what windows need."""
+"""The package as a library: the examples of its documentation, with and without OpenGL."""
 
 import os
 import shutil
@@ -53,7 +53,7 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def example(folder):
-    """The names that the example leaves."""
+    """The variables of the example after it ran."""
     names: dict[str, Any] = {}
     exec(EXAMPLE, names)
     return names
@@ -68,14 +68,14 @@ def test_the_example_bends_the_cat(example):
     before = drawing.mesh.evaluate(points, drawing.mesh.vertices)
     after = drawing.mesh.evaluate(points, pose)
     targets = np.array([[150.0, 110.0], [300.0, 410.0]])
-    near = np.linalg.norm(before - [[140.0, 120.0], [300.0, 410.0]], axis=1) < 1e-6
-    assert near.all(), "both places lie on the cat"
+    on_pins = np.linalg.norm(before - [[140.0, 120.0], [300.0, 410.0]], axis=1) < 1e-6
+    assert on_pins.all(), "both points lie on the cat"
     assert (
         np.linalg.norm(after - targets, axis=1).max() < 0.5 * np.linalg.norm(before - targets, axis=1).max()
     )
 
 
-def test_distortion_is_above_2_where_something_bends_and_2_at_rest(example):
+def test_distortion_is_2_at_rest_and_more_in_a_bent_pose(example):
     bent = example["distortion"]
     assert bent.area >= 2.0
     assert bent.angle > 2.0
@@ -93,14 +93,14 @@ def test_a_vector_field_is_one_velocity_per_vertex(example):
     assert np.isfinite(field).all()
 
 
-def test_pins_that_turn_together_turn_the_whole_drawing(example):
-    def turning(places):
-        return (places - [200.0, 300.0]) @ [[0.0, 0.01], [-0.01, 0.0]] + [1.0, 2.0]
+def test_pins_that_rotate_together_rotate_the_whole_drawing(example):
+    def rotation(points):
+        return (points - [200.0, 300.0]) @ [[0.0, 0.01], [-0.01, 0.0]] + [1.0, 2.0]
 
     mesh, pose = example["drawing"].mesh, example["pose"]
-    velocities = turning(mesh.evaluate(example["points"], pose))
+    velocities = rotation(mesh.evaluate(example["points"], pose))
     field = example["deformer"].vector_field(pose, velocities)
-    np.testing.assert_allclose(field, turning(pose), atol=1e-5 * abs(field).max())
+    np.testing.assert_allclose(field, rotation(pose), atol=1e-5 * abs(field).max())
 
 
 def test_the_example_in_the_package_runs(monkeypatch):
@@ -114,20 +114,20 @@ def test_the_example_in_the_package_runs(monkeypatch):
     assert (names["pose"] != rest).any()
 
 
-def test_the_example_runs_where_windows_and_opengl_are_missing(folder):
+def test_the_example_runs_without_windows_and_opengl(folder):
     program = f"{BLOCKED}{EXAMPLE}\nprint(pose.shape == drawing.mesh.vertices.shape)"
     command = [sys.executable, "-c", program]
     result = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment())
     assert (result.stdout, result.stderr, result.returncode) == ("True\n", "", 0)
 
 
-def test_every_public_name_is_there():
+def test_every_public_name_exists():
     for name in akap.__all__:
         assert getattr(akap, name) is not None
 
 
 def environment():
-    """This process's, with the checkout on the path, so that the current folder may be any."""
+    """This process's environment, with the checkout on the path, whatever the current folder is."""
     return {**os.environ, "PYTHONPATH": str(ROOT)}
 
 
