@@ -111,6 +111,28 @@ def test_no_circle_of_imports() -> None:
     TopologicalSorter(imports).prepare()
 
 
+# -- tests mirror the package --------------------------------------------------------------------------------
+
+# Test files about no module of the package.
+OVERALL = {
+    "test_architecture",
+    "test_docs",
+    "test_library",
+    "io/test_fuzz",  # runs benchmarks/fuzz_files.py
+}
+
+
+def test_every_test_file_names_a_module() -> None:
+    """It is called test_<module> or test_<module>_<topic>, in the folder of the module or package."""
+    unknown = set()
+    for path in (ROOT / "tests").rglob("test_*.py"):
+        folder, name = path.relative_to(ROOT / "tests").parent, path.stem.removeprefix("test_")
+        modules = {module.stem for module in (PACKAGE / folder).iterdir()} | {folder.name}
+        if not any(name == module or name.startswith(f"{module}_") for module in modules - {""}):
+            unknown.add((folder / path.stem).as_posix())
+    assert unknown == OVERALL
+
+
 # -- OpenGL --------------------------------------------------------------------------------------------------
 
 # Run with module names as arguments: blocks OpenGL and windows, then imports the modules one by one.

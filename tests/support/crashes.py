@@ -1,4 +1,4 @@
-"""Saves that are stopped, run by test_crashes.py in a process of its own, because it forks and kills.
+"""Saves that are stopped, run by test_atomic_crashes.py in a process of its own, because it forks and kills.
 
 Each case saves a new version of the file named on the command line over an old one and is stopped at its n-th
 chance, for n = 1, 2, ... until it gets through. Each time the file must hold one of the two versions, whole.

@@ -1,4 +1,4 @@
-"""What the deformer promises of whole drags, on real cartoons."""
+"""Whole drags of `AkapDeformer`, on cartoons."""
 
 import numpy as np
 import pytest

@@ -17,7 +17,7 @@ from akap_editor.io import atomic
 from akap_editor.io.akap.project import load, save
 from akap_editor.io.atomic import write_atomic
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[2]
 
 posix = pytest.mark.skipif(os.name != "posix", reason="forks, signals and limits of file sizes are POSIX")
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(akap_editor.__file__).parents[1])}

@@ -1,4 +1,4 @@
-"""What the deformer promises on any mesh: hard pins, fields beside steps, the way of a step, no flips."""
+"""Laws of `AkapDeformer` on any mesh: hard pins, fields beside steps, the path of a step, no flips."""
 
 import numpy as np
 import pytest
