@@ -172,7 +172,7 @@ class Soak:
         assert drawing.meshing is not None
         meshing = replace(drawing.meshing, vertices=int(self.rng.integers(80, 200)))
         self.editor.cancel()
-        remesh = Remesh.to(remesh_drawing(drawing, meshing))
+        remesh = Remesh.from_drawing(remesh_drawing(drawing, meshing))
         self.session.begin("Change Density")
         self.session.apply(remesh)
         self.session.commit()

@@ -127,7 +127,7 @@ class BackgroundRemesh:
         is_at_start = session.state is gesture.start_state
         session.begin(HISTORY_LABEL)
         try:
-            session.apply(Remesh.to(drawing, state if is_at_start else None))
+            session.apply(Remesh.from_drawing(drawing, state if is_at_start else None))
         except Exception:
             session.abort()
             raise

@@ -144,7 +144,7 @@ class NudgeSeries:
         joins = entry is not None and entry is session.history.last and last_pins == pins
         session.begin("Nudge" if len(pins) == 1 else f"Nudge {len(pins)} pins")
         try:
-            pin_edits.hold_pins(session)
+            pin_edits.hold_stopped_pins(session)
             moved = (session.state.pin(pin) for pin in sorted(pins))
             targets = {pin.id: (pin.target[0] + dx, pin.target[1] + dy) for pin in moved}
             session.apply(SetTargets(targets))

@@ -229,9 +229,9 @@ def test_in_a_folded_pose_the_last_of_all_faces_that_hold_a_point_is_found(mesh)
     pose = mesh.vertices + rng.normal(0, 0.1 * np.ptp(mesh.vertices), mesh.vertices.shape)
     order = rng.permutation(len(mesh.faces))
     for point in rng.uniform(pose.min(axis=0), pose.max(axis=0), (30, 2)):
-        with_held_angles = barycentric(pose[mesh.faces[order]], point).min(axis=1) >= 0
+        is_hit = barycentric(pose[mesh.faces[order]], point).min(axis=1) >= 0
         found = mesh.find(point, pose, order)
-        assert ([] if found is None else found.faces.tolist()) == order[with_held_angles][-1:].tolist()
+        assert ([] if found is None else found.faces.tolist()) == order[is_hit][-1:].tolist()
 
 
 @pytest.mark.parametrize("shift", [0.1, 1 / 3, 1000.7])

@@ -99,7 +99,7 @@ def become_nobody() -> None:
         os.setuid(NOBODY)
 
 
-def pins_fixed_at_pose(prepare: Callable[[int], None], chance: int) -> bool:
+def save_is_stopped(prepare: Callable[[int], None], chance: int) -> bool:
     """Save in a child process; whether it was stopped or refused."""
     child = os.fork()
     if child == 0:
@@ -142,7 +142,7 @@ def run(prepare: Callable[[int], None], most: int) -> dict[str, int]:
         path.unlink(missing_ok=True)
         path.write_bytes(old_bytes)
         path.chmod(0o666)
-        was_stopped = pins_fixed_at_pose(prepare, chance)
+        was_stopped = save_is_stopped(prepare, chance)
         path.parent.chmod(0o777)
         found = path.read_bytes()
         assert found in (old_bytes, new_bytes), f"{prepare.__name__} {chance}: {len(found)} bytes"

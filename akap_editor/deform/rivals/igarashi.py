@@ -79,12 +79,12 @@ class IgarashiDeformer(RestBasedDeformer):
 
     def _moved(self, pose: Complexes, goals: Complexes) -> Complexes:
         # Displacements from rest are solved for: they keep their precision, and nothing moves by itself.
-        grow_faces = self._pull * (self._weights.T @ (goals - self._pins))
-        similar = self._rest + to_complex(self._first.solve(to_points(grow_faces).ravel()).reshape(-1, 2))
+        pin_force = self._pull * (self._weights.T @ (goals - self._pins))
+        similar = self._rest + to_complex(self._first.solve(to_points(pin_force).ravel()).reshape(-1, 2))
         turn = self._fit @ similar
         size = np.abs(turn)
         turn = np.divide(turn, size, out=np.ones_like(turn), where=size > 0)
-        right = grow_faces + self._edges.T @ (np.repeat(turn - 1, 3) * self._rest_edges)
+        right = pin_force + self._edges.T @ (np.repeat(turn - 1, 3) * self._rest_edges)
         x, y = (self._second.solve(np.ascontiguousarray(part)) for part in (right.real, right.imag))
         shift = product(self._shift, goals - self._pins)
         return self._rest + np.where(self._turned, x + 1j * y, shift)

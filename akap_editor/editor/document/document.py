@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...geometry.mesh import MeshPoints
+from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.validation import Floats, Ints, freeze
 from .depth import face_order
 from .drawing import Drawing
@@ -52,6 +52,18 @@ class EditState:
     def angles(self) -> Floats:
         """The angles that the pins hold, (k,) radians, in order; NaN for pins that rotate freely."""
         return np.array([np.nan if pin.angle is None else pin.angle for pin in self.pins])
+
+    def pin_positions(self, mesh: TriMesh) -> Floats:
+        """Where the pins are in the pose of ``mesh``, (k, 2) pixels, in order."""
+        return mesh.evaluate(self.points, self.positions)
+
+    def pin_offsets(self, mesh: TriMesh) -> Floats:
+        """Offsets from the pins in the pose of ``mesh`` to their targets, (k, 2) pixels, in order."""
+        return self.targets - self.pin_positions(mesh)
+
+    def pin_error(self, mesh: TriMesh) -> float:
+        """The largest distance of a pin from its target, pixels; 0 without pins."""
+        return float(np.linalg.norm(self.pin_offsets(mesh), axis=1).max(initial=0.0))
 
     def pin(self, pin_id: int) -> Pin:
         """The pin with this id. Raises KeyError on an unknown id."""

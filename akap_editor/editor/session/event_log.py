@@ -1,4 +1,4 @@
-"""A long list of small events in little memory."""
+"""The log of a session's events, compressed in memory."""
 
 import json
 import zlib
@@ -11,37 +11,37 @@ Event = dict[str, Any]
 
 
 class EventLog(Sequence[Event]):
-    """What happened, in order, as JSON; all but the newest events are compressed.
+    """A sequence of events, stored as JSON; all but the newest ones are compressed.
 
     Two hours of dragging are some hundred thousand events: hundreds of megabytes as dictionaries, a few here.
-    Each reading gives an event anew, so what is in the log never changes.
+    Each access decodes an event anew, so changing it does not change the log.
     """
 
     def __init__(self) -> None:
-        self._packs: list[bytes] = []
-        self._lines: list[str] = []
+        self._packs: list[bytes] = []  # PACK_SIZE lines each, compressed
+        self._lines: list[str] = []  # the events after those of the packs
 
     def append(self, event: Event) -> None:
-        """Add an event, of values that JSON can hold."""
-        self._lines.append(json.dumps(event, separators=(",", ":")))
+        """Add an event; its values must be JSON."""
+        self._lines.append(_to_line(event))
         if len(self._lines) == PACK_SIZE:
-            self._packs.append(_packed(self._lines))
+            self._packs.append(_compress(self._lines))
             self._lines.clear()
 
     def replace(self, index: int, event: Event) -> None:
-        """Put an event in the place of another one. Raises IndexError."""
-        number, line = divmod(range(len(self))[index], PACK_SIZE)
-        lines = self._pack(number)
-        lines[line] = json.dumps(event, separators=(",", ":"))
-        if number < len(self._packs):
-            self._packs[number] = _packed(lines)
+        """Replace the event at an index. Raises IndexError."""
+        pack, line = divmod(range(len(self))[index], PACK_SIZE)
+        lines = self._lines_of(pack)
+        lines[line] = _to_line(event)
+        if pack < len(self._packs):
+            self._packs[pack] = _compress(lines)
 
     def __len__(self) -> int:
         return PACK_SIZE * len(self._packs) + len(self._lines)
 
     def __iter__(self) -> Iterator[Event]:
-        for number in range(len(self._packs) + 1):
-            yield from map(json.loads, self._pack(number))
+        for pack in range(len(self._packs) + 1):
+            yield from map(json.loads, self._lines_of(pack))
 
     @overload
     def __getitem__(self, index: int) -> Event: ...
@@ -51,19 +51,23 @@ class EventLog(Sequence[Event]):
         if isinstance(index, slice):
             return [self[each] for each in range(*index.indices(len(self)))]
         pack, line = divmod(range(len(self))[index], PACK_SIZE)
-        return json.loads(self._pack(pack)[line])
+        return json.loads(self._lines_of(pack)[line])
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Sequence) and list(self) == list(other)
 
     __hash__ = None  # type: ignore[assignment]
 
-    def _pack(self, number: int) -> list[str]:
-        """The lines of one pack; those that are not packed yet come last."""
-        if number == len(self._packs):
+    def _lines_of(self, pack: int) -> list[str]:
+        """The lines of a pack by its index; the index after the last pack gives the uncompressed lines."""
+        if pack == len(self._packs):
             return self._lines
-        return zlib.decompress(self._packs[number]).decode().split("\n")
+        return zlib.decompress(self._packs[pack]).decode().split("\n")
 
 
-def _packed(lines: list[str]) -> bytes:
+def _to_line(event: Event) -> str:
+    return json.dumps(event, separators=(",", ":"))
+
+
+def _compress(lines: list[str]) -> bytes:
     return zlib.compress("\n".join(lines).encode(), 1)

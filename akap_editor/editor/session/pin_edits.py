@@ -9,20 +9,23 @@ from ..document.depth import check_depths, depth_at
 from ..document.pin import Pin
 from ..document.pin_angles import with_held_angles
 from .edits import SetPins, SetTargets
-from .edits.pins import Target
 from .session import Session
 from .stepper import PIN_TOLERANCE
 
 
-def add_pin(session: Session, at: Target) -> int | None:
-    """Add a pin to what is seen at ``at`` (pixels) in the current pose; its id, None beside the drawing."""
+def add_pin(session: Session, position: tuple[float, float]) -> int | None:
+    """Add a pin at a position of the current pose, pixels; returns its id, None outside the drawing.
+
+    Where parts overlap it goes to the front one, and gets the depth of its surroundings. Raises InputError if
+    the position is not finite, SolverError if a pending step failed.
+    """
     session.finish_step()
     mesh, pins = session.drawing.mesh, session.state.pins
-    point = mesh.find(at, session.state.positions, session.document.face_order)
+    point = mesh.find(position, session.state.positions, session.document.face_order)
     if point is None:
         return None
     pin_id = 1 + max((pin.id for pin in pins), default=0)
-    target = np.array(at, dtype=np.float64)
+    target = np.array(position, dtype=np.float64)
     depth = depth_at(mesh, pins, point)
     session.apply(SetPins((*pins, Pin(pin_id, int(point.faces[0]), point.weights[0], target, depth))))
     return pin_id
@@ -35,21 +38,24 @@ def remove_pins(session: Session, ids: Iterable[int]) -> None:
 
 
 def set_depths(session: Session, depths: Mapping[int, int]) -> None:
-    """Bring pins, by id, to the front or back. Raises InputError on depths out of range."""
+    """Set the depths of pins, by id; unknown ids are ignored. Raises InputError on a depth out of range."""
     check_depths(depths)
     pins = (replace(pin, depth=depths.get(pin.id, pin.depth)) for pin in session.state.pins)
     session.apply(SetPins(tuple(pins)))
 
 
 def hold_angles(session: Session, ids: Iterable[int], hold: bool = True) -> None:
-    """Let pins hold the angles that they have now, or with ``hold`` false rotate freely again."""
+    """Let pins hold their current angles, or rotate freely if not ``hold``; unknown ids are ignored."""
     session.finish_step()
     mesh, state = session.drawing.mesh, session.state
     session.apply(SetPins(with_held_angles(mesh, state.pins, state.positions, set(ids), hold)))
 
 
-def hold_pins(session: Session) -> None:
-    """Before a new drag, fix pins where they are if undo or Escape stopped them on the way."""
+def hold_stopped_pins(session: Session) -> None:
+    """Set the targets of pins to their positions if the motion was stopped before they arrived.
+
+    Undo and Escape stop a motion. Without this, the next drag would let all pins move on.
+    """
     session.finish_step()
     if not session.is_moving and session.pin_error() > PIN_TOLERANCE:
         positions = session.pin_positions().tolist()

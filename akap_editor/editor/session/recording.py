@@ -1,4 +1,4 @@
-"""What was done in a session, as a list that can be done again."""
+"""Recordings: the events of a session, written and read as one JSON object a line."""
 
 import hashlib
 import json
@@ -32,7 +32,7 @@ VERSION = 1
 MAX_TIME = 1e9  # seconds
 
 # Events that are not edits, with the values that each must have besides its time.
-SESSION_EVENTS: dict[str, tuple[str, ...]] = {
+_SESSION_EVENTS: dict[str, tuple[str, ...]] = {
     "begin": ("label",),
     "label": ("label",),
     "commit": (),
@@ -42,15 +42,15 @@ SESSION_EVENTS: dict[str, tuple[str, ...]] = {
     "step": (),
     "return": ("line",),
 }
-_FIELDS = {**SESSION_EVENTS, **{name: edit.fields for name, edit in EDITS.items()}}
+_EVENT_FIELDS = {**_SESSION_EVENTS, **{name: edit.fields for name, edit in EDITS.items()}}
 
 
 @dataclass(eq=False)
 class Recording:
-    """A session's pin edits, targets and settings with times.
+    """The events of a session, in order.
 
-    header: the drawing that it was made on (see `drawing_header`), in a file also the drawing itself; events:
-    dictionaries with "t" (seconds since the start), "do" (what was done) and that event's values.
+    header: describes the drawing (see `drawing_header`); in a file it also holds the drawing; events:
+    dictionaries with "t" (seconds since the start), "do" (the name of the event) and the event's values;
     docs/file-format.md describes them.
     """
 
@@ -63,21 +63,21 @@ class Recording:
         return float(self.events[-1]["t"]) if self.events else 0.0
 
     def to_text(self) -> str:
-        """One JSON object a line, the header first."""
-        head = {"format": "akap-recording", "version": VERSION, "drawing": self.header}
-        lines = chain([head], self.events)
+        """The recording as text: one JSON object a line, the header first."""
+        first_line = {"format": "akap-recording", "version": VERSION, "drawing": self.header}
+        lines = chain([first_line], self.events)
         return "".join(json.dumps(line, separators=(",", ":")) + "\n" for line in lines)
 
 
 def mesh_digest(mesh: TriMesh) -> str:
-    """A short name for exactly this mesh, to tell whether face numbers of a recording fit."""
+    """A hash of the vertices and faces: a recording's face indices are valid on an equal mesh only."""
     digest = hashlib.sha256(mesh.vertices.astype("<f8").tobytes())
     digest.update(mesh.faces.astype("<i4").tobytes())
     return digest.hexdigest()[:32]
 
 
 def drawing_header(drawing: Drawing) -> dict[str, Any]:
-    """What a recording says about its drawing."""
+    """The description of a drawing in the header of its recordings: name, size in pixels, and mesh."""
     header = {
         "name": drawing.name,
         "size": list(drawing.size),
@@ -88,7 +88,7 @@ def drawing_header(drawing: Drawing) -> dict[str, Any]:
 
 
 def opening_edits(document: Document) -> list[Edit]:
-    """The edits that lead from a drawing at rest to a document that was opened."""
+    """The edits that lead from a document in its rest pose, without pins, to ``document``."""
     state, mesh = document.state, document.drawing.mesh
     edits: list[Edit] = [SetSettings(state.settings)]
     if state.stiffness is not None:
@@ -107,9 +107,9 @@ def opening_edits(document: Document) -> list[Edit]:
 
 
 def parse_recording(text: str) -> Recording:
-    """Read what `to_text` wrote. A last line that was cut off is left out.
+    """Read the text of `Recording.to_text`; an incomplete last line is ignored.
 
-    Raises InputError with the line's number.
+    Raises InputError with the number of the bad line.
     """
     lines = text.removesuffix("\n").split("\n")
     parsed: list[dict[str, Any]] = []
@@ -118,9 +118,9 @@ def parse_recording(text: str) -> Recording:
             value = json.loads(line)
         except (ValueError, RecursionError) as error:
             if number == 1:
-                came = repr(line[:40]) if line else "nothing"
+                actual = repr(line[:40]) if line else "nothing"
                 raise InputError(
-                    f"recording line 1: expected the header of a recording, got {came}"
+                    f"recording line 1: expected the header of a recording, got {actual}"
                 ) from error
             if number == len(lines) and not text.endswith("\n"):
                 break  # the writer was stopped in the middle of a line
@@ -130,30 +130,32 @@ def parse_recording(text: str) -> Recording:
         if parsed:
             _check_event(value, number, parsed[-1]["t"] if len(parsed) > 1 else 0.0)
         else:
-            _check_head(value)
+            _check_first_line(value)
         parsed.append(value)
     return Recording(parsed[0]["drawing"], parsed[1:])
 
 
-def _check_head(head: dict[str, Any]) -> None:
-    if head.get("format") != "akap-recording" or not isinstance(head.get("drawing"), dict):
+def _check_first_line(value: dict[str, Any]) -> None:
+    if value.get("format") != "akap-recording" or not isinstance(value.get("drawing"), dict):
         raise InputError("recording line 1: expected the header of a recording, got something else")
-    version = head.get("version")
+    version = value.get("version")
     if version != VERSION:
         raise InputError(f"recording line 1: expected version {VERSION}, got {reprlib.repr(version)}")
 
 
-def _check_event(event: dict[str, Any], number: int, previous: float) -> None:
-    do, when = event.get("do"), event.get("t")
-    if not isinstance(do, str) or do not in _FIELDS:
-        came = reprlib.repr(do)
-        raise InputError(f"recording line {number}: expected one of {', '.join(_FIELDS)}, got {came}")
-    if isinstance(when, bool) or not isinstance(when, int | float) or not previous <= when <= MAX_TIME:
-        came = reprlib.repr(when)
-        raise InputError(f"recording line {number}: expected a time of {previous:g} s or later, got {came}")
-    for name in _FIELDS[do]:
-        if name not in event:
-            raise InputError(f"recording line {number}: expected a value {name!r} in {do!r}, got none")
-    if do == "return" and not (type(event["line"]) is int and 2 <= event["line"] < number):
-        came = reprlib.repr(event["line"])
-        raise InputError(f"recording line {number}: expected an earlier line to return to, got {came}")
+def _check_event(event: dict[str, Any], number: int, previous_time: float) -> None:
+    """Raise InputError if line ``number`` is not an event, or earlier than the one before."""
+
+    def bad(expected: str, actual: str) -> InputError:
+        return InputError(f"recording line {number}: expected {expected}, got {actual}")
+
+    name, time = event.get("do"), event.get("t")
+    if not isinstance(name, str) or name not in _EVENT_FIELDS:
+        raise bad(f"one of {', '.join(_EVENT_FIELDS)}", reprlib.repr(name))
+    if isinstance(time, bool) or not isinstance(time, int | float) or not previous_time <= time <= MAX_TIME:
+        raise bad(f"a time of {previous_time:g} s or later", reprlib.repr(time))
+    for field_name in _EVENT_FIELDS[name]:
+        if field_name not in event:
+            raise bad(f"a value {field_name!r} in {name!r}", "none")
+    if name == "return" and not (type(event["line"]) is int and 2 <= event["line"] < number):
+        raise bad("an earlier line to return to", reprlib.repr(event["line"]))

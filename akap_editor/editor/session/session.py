@@ -27,8 +27,9 @@ from .stepper import INLINE, Stepper
 class Preview:
     """A state that is shown in place of the present one; see `Session.preview`.
 
-    present: the state to return to; steps_left: of its motion; shown: the state that is shown; line: of the
-    recording, after which that state was there; takes_pose: whether the next gesture starts from its pose.
+    present: the state to return to; steps_left: of its motion; shown: the previewed state; line: of the
+    recording, the one after which the previewed state was the present one, or None; takes_pose: whether the
+    next gesture starts from the previewed pose.
     """
 
     present: EditState
@@ -64,7 +65,7 @@ class Session:
         self._saved_state: EditState | None = document.state
         self._preview: Preview | None = None
         self._taken_pose: EditState | None = None  # the state after the open gesture took a previewed pose
-        self._pending_line = 0  # of the recording: where the pending step is
+        self._pending_line = 0  # index of the pending step in the recording
         self._clock, self._started = clock, clock() if started is None else started
         self._log = EventLog()
         self.recording = Recording(drawing_header(document.drawing), self._log)
@@ -107,12 +108,12 @@ class Session:
         return not np.array_equal(self.state.positions, self.drawing.mesh.vertices)
 
     def pin_positions(self) -> Floats:
-        """(k, 2) where the pins are now, as opposed to their targets, pixels."""
-        return self.drawing.mesh.evaluate(self.state.points, self.state.positions)
+        """Where the pins are in the current pose, (k, 2) pixels."""
+        return self.state.pin_positions(self.drawing.mesh)
 
     def pin_error(self) -> float:
-        """Largest distance of a pin from its target, pixels."""
-        return float(np.linalg.norm(self.state.targets - self.pin_positions(), axis=1).max(initial=0.0))
+        """The largest distance of a pin from its target, pixels."""
+        return self.state.pin_error(self.drawing.mesh)
 
     def pin_angle(self, pin_id: int) -> float:
         """Rotation of the drawing around a pin since the rest pose, radians in (−π, π].
@@ -132,7 +133,7 @@ class Session:
 
     @property
     def has_visually_arrived(self) -> bool:
-        """Whether the pins are so near to their goals that an eye sees no difference."""
+        """Whether the pins are so near to their targets and angles that no difference is visible."""
         return self._stepper.has_visually_arrived(self.state)
 
     @property
@@ -152,7 +153,7 @@ class Session:
 
     @property
     def last_motion(self) -> tuple[Floats, Floats] | None:
-        """Of the last step that moved pins: the pose before, (n, 2), and the pins' velocities, (k, 2)."""
+        """The pose before the last step that moved pins, (n, 2), and the velocities of its pins, (k, 2)."""
         return self._stepper.last_motion
 
     def vector_fields(self) -> tuple[Floats, Floats] | None:
@@ -160,7 +161,7 @@ class Session:
         return self._stepper.vector_fields()
 
     def start_step(self, executor: Executor) -> Future[StepResult] | None:
-        """Start the next step towards the current targets; its future, or None if one is pending already."""
+        """Start the next step towards the current targets; returns its future, None if a step is pending."""
         if self._stepper.has_pending_step:
             return None
         self._record("step")
@@ -180,7 +181,7 @@ class Session:
         try:
             self._set_state(self._stepper.finish(self.state))
         except Exception:
-            # A replay must not fail where the session went on: an edit without pins takes the step's line.
+            # A replay must not fail where the session went on: an edit without effect replaces the step.
             event = self._log[self._pending_line]
             self._log.replace(self._pending_line, {"t": event["t"], "do": "targets", "targets": {}})
             raise
@@ -199,7 +200,7 @@ class Session:
             self.step()
 
     def stop_motion(self) -> None:
-        """Leave the pose as it is, even if pins have not arrived. Raises SolverError if a step failed."""
+        """Stop the motion, even if pins have not arrived. Raises SolverError if a pending step failed."""
         self.finish_step()
         self._stepper.stop()
 
@@ -237,7 +238,7 @@ class Session:
             stepper.aim(state)
 
     def return_to(self, state: EditState, line: int) -> None:
-        """Take over the state after an earlier ``line`` of the recording; what came after it stays there."""
+        """Restore the state after an earlier ``line`` of the recording; later lines stay in it."""
         self.finish_step()
         self._restore(state)
         self._record("return", line=line)
@@ -263,18 +264,18 @@ class Session:
             self._taken_pose = self.state
 
     def rename(self, label: str) -> None:
-        """Give the open gesture a better label, once it is clear what it does."""
+        """Replace the label of the open gesture."""
         self.history.rename(label)
         self._record("label", label=label)
 
     def commit(self, join: bool = False) -> None:
-        """End the gesture as one undo entry, or none if nothing changed; the pose may go on to settle.
+        """End the gesture as one undo entry, or none if nothing changed; the pose goes on settling.
 
-        join: add it to the entry before.
+        join: merge it into the entry before.
         """
         if self._is_unchanged():
             self.finish_step()  # a pending step may be the only change
-        if self.state is self._taken_pose:  # the gesture only looked at the previewed pose
+        if self.state is self._taken_pose:  # nothing was edited after the previewed pose was taken over
             self.abort()
             return
         self._taken_pose = None
@@ -328,11 +329,11 @@ class Session:
         positions: Floats | None = None,
         takes_pose: bool = False,
     ) -> None:
-        """Show a state without editing or recording anything; `end_preview`, undo and redo return.
+        """Show a state without editing or recording anything, until `end_preview`, undo or redo.
 
-        line: of the recording, after which the state was there: the next gesture then continues from it.
-        Without a line the next gesture continues from the present; with takes_pose it first takes over the
-        previewed pose. positions: a pose (n, 2) to show in place of the state's.
+        line: of the recording, if the state was the present one after it; the next gesture then continues
+        from the previewed state. Without a line it continues from the present; with takes_pose it first takes
+        over the previewed pose. positions: a pose (n, 2) to show in place of the state's.
         """
         self.finish_step()
         previous = self._preview
@@ -340,7 +341,7 @@ class Session:
         steps_left = self._stepper.steps_left if previous is None else previous.steps_left
         self._preview = Preview(present, steps_left, state, line, takes_pose)
         self._set_state(state if positions is None else replace(state, positions=positions))
-        # The stepper stays that of the present: what it has cached decides on the last bits of later steps.
+        # The stepper keeps the present state, because its caches decide on the last bits of later steps.
         self._stepper.stop()
 
     def end_preview(self) -> None:

@@ -114,7 +114,7 @@ class Stepper:
         self.steps_left = MAX_SETTLING_STEPS + int(self._least_steps(state))
 
     def stop(self) -> None:
-        """Leave the pose as it is, even if pins have not arrived."""
+        """Stop the motion, even if pins have not arrived."""
         self.steps_left = 0
 
     def reset_full_turns(self) -> None:
@@ -128,33 +128,25 @@ class Stepper:
         """Whether pins have not arrived, or the drawing around them has not settled."""
         return self.steps_left > 0
 
-    def pin_offsets(self, state: EditState) -> Floats:
-        """(k, 2) pixels from each pin to its target."""
-        return state.targets - self._mesh.evaluate(state.points, state.positions)
-
     def angle_errors(self, state: EditState) -> Floats:
-        """(k,) radians that each pin still has to rotate, with full turns; NaN for pins without an angle."""
-        wanted = state.angles
-        if not self._deformer.holds_angles or not np.isfinite(wanted).any():
-            return np.full(len(wanted), np.nan)
+        """Radians that each pin still has to rotate, with full turns, (k,); NaN for pins without an angle."""
+        goals = state.angles
+        if not self._deformer.holds_angles or not np.isfinite(goals).any():
+            return np.full(len(goals), np.nan)
         angles = pin_angles(self._mesh, state.pins, state.positions)
-        return wanted - self._full_turns.unwrap(state.pins, angles)
-
-    def pin_error(self, state: EditState) -> float:
-        """Largest distance of a pin from its target, pixels."""
-        return float(np.linalg.norm(self.pin_offsets(state), axis=1).max(initial=0.0))
+        return goals - self._full_turns.unwrap(state.pins, angles)
 
     def angle_error(self, state: EditState) -> float:
-        """Largest angle that a pin still has to rotate, radians."""
+        """The largest angle that a pin still has to rotate, radians."""
         return float(np.nan_to_num(np.abs(self.angle_errors(state))).max(initial=0.0))
 
     def has_visually_arrived(self, state: EditState) -> bool:
-        """Whether the pins are so near to their targets and angles that an eye sees no difference."""
-        return self.pin_error(state) < VISIBLE_OFFSET and self.angle_error(state) < VISIBLE_ROTATION
+        """Whether the pins are so near to their targets and angles that no difference is visible."""
+        return state.pin_error(self._mesh) < VISIBLE_OFFSET and self.angle_error(state) < VISIBLE_ROTATION
 
     def _least_steps(self, state: EditState) -> float:
         """The number of steps in which the pins can arrive if nothing holds them back."""
-        travel = self.pin_error(state) / self._max_travel
+        travel = state.pin_error(self._mesh) / self._max_travel
         return max(travel, self.angle_error(state) / MAX_PIN_ROTATION)
 
     # -- steps ---------------------------------------------------------------------------------------------
@@ -171,7 +163,7 @@ class Stepper:
         """
         assert self._pending is None, "a step is already pending"
         step = self._make_step(state)
-        offsets = self.pin_offsets(state)
+        offsets = state.pin_offsets(self._mesh)
         self._pending = PendingStep(state, offsets, executor.submit(step))
         return self._pending.result
 
@@ -198,7 +190,7 @@ class Stepper:
             self.last_motion = before, pending.pin_offsets
         aimed_meanwhile = state.pins is not pending.start.pins
         state = replace(state, positions=result.positions)
-        arrived = self.pin_error(state) < PIN_TOLERANCE and self.angle_error(state) < ANGLE_TOLERANCE
+        arrived = state.pin_error(self._mesh) < PIN_TOLERANCE and self.angle_error(state) < ANGLE_TOLERANCE
         moved = float(np.abs(result.positions - before).max())
         # Pins that something holds back approach in ever smaller steps, so only a tenth counts as settled.
         settled = moved < (SETTLED_MOTION if arrived else 0.1 * SETTLED_MOTION) and not aimed_meanwhile
@@ -208,9 +200,9 @@ class Stepper:
 
     def _make_step(self, state: EditState) -> Callable[[], StepResult]:
         """One step from a state towards its targets and angles, to be called in any thread."""
-        here, errors = self._mesh.evaluate(state.points, state.positions), self.angle_errors(state)
+        pin_positions, errors = state.pin_positions(self._mesh), self.angle_errors(state)
         share = 1.0 / max(1.0, self._least_steps(state))
-        targets = state.targets if share == 1.0 else here + share * (state.targets - here)
+        targets = state.targets if share == 1.0 else pin_positions + share * (state.targets - pin_positions)
         angles = (state.angles - (1.0 - share) * errors,) if np.isfinite(errors).any() else ()
 
         def step() -> StepResult:

@@ -6,7 +6,7 @@ from ..camera import Point
 from ..events import PointerEvent
 from ..gestures import remove_pins
 from ..session.edits import SetTargets
-from ..session.pin_edits import add_pin, hold_pins
+from ..session.pin_edits import add_pin, hold_stopped_pins
 from .base import Cursor, IdleTool, Markers, PinGesture, Pointing, Tool, ToolContext
 from .rotate import PointingRotationRing, pin_with_ring, ring_at, rotation_ring
 
@@ -171,7 +171,7 @@ class DraggingPin(PinGesture):
         else:
             count = len(context.selection)
             session.begin("Bend" if count == 1 else f"Bend with {count} pins")
-        hold_pins(session)
+        hold_stopped_pins(session)
         positions = zip(session.state.pins, session.pin_positions(), strict=True)
         self._positions_before = {pin.id: (x, y) for pin, (x, y) in positions if pin.id in context.selection}
 

@@ -5,7 +5,7 @@ import math
 from ..camera import Point
 from ..events import PointerEvent
 from ..session.edits import SetAngles
-from ..session.pin_edits import hold_pins
+from ..session.pin_edits import hold_stopped_pins
 from .base import Markers, PinGesture, Pointing, RotationRing, ToolContext, distance
 
 RING_RADIUS = 28.0  # points of the screen
@@ -77,7 +77,7 @@ class RotatingPin(PinGesture):
         self._direction = self._direction_to(start)
         context.select({pin})
         self.session.begin("Turn")
-        hold_pins(self.session)
+        hold_stopped_pins(self.session)
 
     @property
     def hint(self) -> str:

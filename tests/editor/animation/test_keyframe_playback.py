@@ -169,7 +169,9 @@ def test_playing_goes_on_and_starts_over(player, pinned, clock):
 def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, drawing):
     session = pinned.session
     session.begin("Mesh")
-    session.apply(Remesh.to(remesh_drawing(drawing, replace(drawing.meshing or Meshing(), vertices=300))))
+    session.apply(
+        Remesh.from_drawing(remesh_drawing(drawing, replace(drawing.meshing or Meshing(), vertices=300)))
+    )
     session.commit()
     keys = session.state.animation.keyframes
     assert [len(key.positions) for key in keys] == [len(session.drawing.mesh.vertices)] * 2

@@ -43,7 +43,9 @@ def bent(figure):
 
 def remesh(session, **changes):
     session.begin("Change mesh")
-    session.apply(Remesh.to(remesh_drawing(session.drawing, replace(session.drawing.meshing, **changes))))
+    session.apply(
+        Remesh.from_drawing(remesh_drawing(session.drawing, replace(session.drawing.meshing, **changes)))
+    )
     session.commit()
 
 
@@ -110,8 +112,8 @@ def test_pins_and_pose_stay_and_undo_takes_it_back(bent, changes):
 def test_escape_restores_the_mesh_bit_for_bit(bent):
     state, drawing = bent.state, bent.drawing
     bent.begin("Change mesh")
-    bent.apply(Remesh.to(remesh_drawing(drawing, Meshing(100))))
-    bent.apply(Remesh.to(remesh_drawing(bent.drawing, Meshing(500))))
+    bent.apply(Remesh.from_drawing(remesh_drawing(drawing, Meshing(100))))
+    bent.apply(Remesh.from_drawing(remesh_drawing(bent.drawing, Meshing(500))))
     bent.abort()
     assert bent.state is state
     assert bent.drawing is drawing

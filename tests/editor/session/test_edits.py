@@ -171,7 +171,7 @@ def test_pose_names_that_do_not_fit_are_refused(session, edit):
 
 def test_a_prepared_mesh_is_taken_over(session):
     drawing = remesh_drawing(session.drawing, replace(session.drawing.meshing or Meshing(), vertices=200))
-    apply_in_gesture(session, Remesh.to(drawing))
+    apply_in_gesture(session, Remesh.from_drawing(drawing))
     assert session.drawing is drawing
 
 

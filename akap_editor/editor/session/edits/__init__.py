@@ -1,4 +1,4 @@
-"""Edits as values, and the table of all of them: a new undoable feature is one class and one row here."""
+"""Edits as values, and the table of them: a new undoable feature is one class and one row."""
 
 from .edit import Edit, Effect, ReplayTarget
 from .keyframes import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop

@@ -32,8 +32,8 @@ class Effect(Enum):
 class ReplayTarget:
     """The drawing that a recording is replayed on.
 
-    mesh: the one at the start; same_mesh: whether the recording was made on it; scale: the size of its
-    picture divided by that of the recorded one.
+    mesh: of the drawing when the replay starts; same_mesh: whether the recording started with an equal mesh;
+    scale: size of the drawing's picture divided by the size of the recorded one.
     """
 
     mesh: TriMesh
@@ -41,21 +41,21 @@ class ReplayTarget:
     scale: float
 
     def points(self, values: Any, name: str, count: int) -> Floats:
-        """Recorded points (count, 2) in pixels of this drawing. Raises InputError."""
+        """Recorded points as (count, 2) pixels of this drawing. Raises InputError on bad ones."""
         return self.scale * as_points(values, name, count)
 
     def pose(self, values: Any, vertices: int) -> Floats:
-        """A recorded pose (vertices, 2). Raises InputError if it was made on another mesh."""
+        """A recorded pose (vertices, 2) of this drawing. Raises InputError if it is one of another mesh."""
         if not self.same_mesh:
             raise InputError("a pose fits only the mesh that it was made on")
         return as_points(values, "positions", vertices)
 
 
 class Edit(ABC):
-    """A change of the state as a value.
+    """A change of the state, as an immutable value.
 
-    name: in recordings ("do"); fields: the values that a recorded event must have; effect: on the motion;
-    may_overlap_step: whether it can be applied while a step is computed, so that the step need not finish.
+    name: of its event in recordings ("do"); fields: names of the values that the event must have; effect: on
+    the motion; may_overlap_step: whether it can be applied while a step is computed.
     """
 
     name: ClassVar[str]
@@ -65,34 +65,36 @@ class Edit(ABC):
 
     @abstractmethod
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        """The state after the edit; the same object if it changes nothing. Raises InputError."""
+        """The state after the edit; the same object if nothing changes.
+
+        Raises InputError on values that do not fit the state or the drawing.
+        """
 
     def to_json(self, drawing: Drawing) -> Json:
-        """The values of the recorded event; ``drawing`` is the one after the edit."""
+        """The values of the edit's event in a recording; ``drawing`` is the one after the edit."""
         return {name: getattr(self, name) for name in self.fields}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
-        """Read a recorded event for the current drawing of a replay.
+        """Read the edit of a recorded event; ``drawing`` is the current one of the replay.
 
-        Raises InputError on values that do not fit it, and KeyError, TypeError and ValueError on malformed
-        ones.
+        Raises InputError on values that do not fit it; KeyError, TypeError or ValueError on malformed values.
         """
         return cls(**{name: event[name] for name in cls.fields})
 
 
 def positions_to_json(positions: Any) -> Json:
-    """The optional pose (n, 2) of an edit, as an entry of its recorded event."""
+    """The optional pose (n, 2) of an edit, as a value of its event."""
     return {} if positions is None else {"positions": np.asarray(positions, dtype=np.float64).tolist()}
 
 
 def positions_from_json(event: Json, target: ReplayTarget, drawing: Drawing) -> Floats | None:
-    """The optional pose (n, 2) of a recorded event. Raises InputError."""
+    """The optional pose (n, 2) of an event, None if absent. Raises InputError on one of another mesh."""
     if "positions" not in event:
         return None
     return target.pose(event["positions"], len(drawing.mesh.vertices))
 
 
 def pose_or_current(positions: Any, state: EditState) -> Floats:
-    """The optional pose (n, 2) of an edit, by default that of the state. Raises InputError."""
+    """The optional pose (n, 2) of an edit, by default the current one. Raises InputError on a bad one."""
     return state.positions if positions is None else as_pose(positions, "positions", len(state.positions))

@@ -1,4 +1,4 @@
-"""Edits of the keyframes."""
+"""Edits of keyframes."""
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from .edit import Edit, Json, ReplayTarget, pose_or_current, positions_from_json
 
 
 class KeyframeEdit(Edit):
-    """An edit of the keyframes alone; no vertex moves."""
+    """An edit that changes the keyframes only."""
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         return replace(state, animation=self.animate(state.animation, state))
@@ -27,9 +27,10 @@ class KeyframeEdit(Edit):
 
 @dataclass(frozen=True, eq=False)
 class SetKeyframe(KeyframeEdit):
-    """Put a pose (n, 2), by default the current one, at a time in seconds; replaces a keyframe there.
+    """Make a keyframe of a pose (n, 2), by default the current one, at a time in seconds.
 
-    ease: a name of `easing.KEYFRAME_EASINGS`; None keeps the easing of a replaced keyframe.
+    Replaces a keyframe at this time. ease: a name of `easing.KEYFRAME_EASINGS`; None keeps the easing of a
+    replaced keyframe.
     """
 
     name = "key"
@@ -53,7 +54,7 @@ class SetKeyframe(KeyframeEdit):
 
 @dataclass(frozen=True)
 class DeleteKeyframes(KeyframeEdit):
-    """Delete the keyframes at some times, seconds."""
+    """Delete the keyframes at the given times, seconds."""
 
     name = "unkey"
     fields = ("times",)
@@ -69,9 +70,9 @@ class DeleteKeyframes(KeyframeEdit):
 
 @dataclass(frozen=True)
 class MoveKeyframes(KeyframeEdit):
-    """Move keyframes to other times, or copy them there; replaces keyframes that are there already.
+    """Move keyframes to other times, or copy them if ``copy``; replaces keyframes that are there already.
 
-    moves: old times and new ones, seconds.
+    moves: new times by old ones, seconds.
     """
 
     name = "rekey"
@@ -94,9 +95,9 @@ class MoveKeyframes(KeyframeEdit):
 
 @dataclass(frozen=True)
 class SetEasing(KeyframeEdit):
-    """Set the easing after the keyframes at ``times``; None: wherever a keyframe has none of its own.
+    """Set the easing after the keyframes at ``times``, seconds; times None sets that of the animation.
 
-    ease: a name of `easing.KEYFRAME_EASINGS`; None for keyframes that follow the easing of the animation.
+    ease: a name of `easing.KEYFRAME_EASINGS`; None lets keyframes follow the animation.
     """
 
     name = "ease"

@@ -38,7 +38,7 @@ class SetSettings(Edit):
 
 @dataclass(frozen=True, eq=False)
 class SetStiffness(Edit):
-    """Let faces bend less by factors (m,) from 1 to 1000; None is 1 everywhere. No vertex moves."""
+    """Stiffen faces by factors (m,) from 1 to 1000; None is 1 everywhere. No vertex moves."""
 
     name = "stiffness"
     fields = ("factors",)
@@ -62,10 +62,10 @@ class SetStiffness(Edit):
 
 @dataclass(frozen=True, eq=False)
 class PaintStiffness(Edit):
-    """Stiffen what a brush covers; no vertex moves.
+    """Stiffen the faces that a stroke of a brush covers; no vertex moves.
 
-    dabs: (d, 2) places of the brush in the rest pose, pixels; radius: pixels; factor: from 1, which erases,
-    to 1000.
+    dabs: (d, 2) centers of the brush in the rest pose, pixels; radius: of the brush, pixels; factor: from 1,
+    which erases, to 1000.
     """
 
     name = "paint"
@@ -77,8 +77,8 @@ class PaintStiffness(Edit):
     factor: float
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        covered = stroke_coverage(drawing.mesh, self.dabs, self.radius)
-        return replace(state, stiffness=apply_stroke(state.stiffness, covered, self.factor))
+        coverage = stroke_coverage(drawing.mesh, self.dabs, self.radius)
+        return replace(state, stiffness=apply_stroke(state.stiffness, coverage, self.factor))
 
     def to_json(self, drawing: Drawing) -> Json:
         return {"dabs": as_points(self.dabs, "dabs").tolist(), "radius": self.radius, "factor": self.factor}

@@ -1,4 +1,4 @@
-"""Edits of the poses with names."""
+"""Edits of named poses."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from .edit import Edit, Json, ReplayTarget, pose_or_current, positions_from_json
 
 @dataclass(frozen=True, eq=False)
 class AddPose(Edit):
-    """Keep a pose (n, 2), by default the current one, under a name; replaces one of the same name."""
+    """Add a pose (n, 2), by default the current one, with a name; replaces the pose of the same name."""
 
     name = "keep"
     fields = ("name",)
@@ -37,7 +37,7 @@ class AddPose(Edit):
 
 @dataclass(frozen=True)
 class DeletePose(Edit):
-    """Delete the pose with a name, if there is one."""
+    """Delete a named pose; an unknown name changes nothing."""
 
     name = "forget"
     fields = ("name",)
@@ -57,7 +57,7 @@ class DeletePose(Edit):
 
 @dataclass(frozen=True)
 class RenamePose(Edit):
-    """Give a pose another name. Raises InputError on an unknown name, or on one that is taken."""
+    """Rename a pose. Applying it raises InputError on an unknown name or if the new name is taken."""
 
     name = "rename"
     fields = ("name", "to")
@@ -66,10 +66,10 @@ class RenamePose(Edit):
     new_name: str
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        known = {pose.name for pose in state.poses}
-        if self.pose_name not in known:
-            raise InputError(f"pose: expected one of {sorted(known)}, got {self.pose_name!r}")
-        if self.new_name != self.pose_name and self.new_name in known:
+        names = {pose.name for pose in state.poses}
+        if self.pose_name not in names:
+            raise InputError(f"pose: expected one of {sorted(names)}, got {self.pose_name!r}")
+        if self.new_name != self.pose_name and self.new_name in names:
             raise InputError(f"pose: expected a name that is not taken, got {self.new_name!r}")
         poses = (
             replace(pose, name=self.new_name) if pose.name == self.pose_name else pose for pose in state.poses
@@ -86,7 +86,7 @@ class RenamePose(Edit):
 
 @dataclass(frozen=True)
 class ReorderPoses(Edit):
-    """Put the poses in the order of ``names``, each of which must occur once. Raises InputError."""
+    """Put the poses in the order of ``names``. Applying it raises InputError unless each occurs once."""
 
     name = "order"
     fields = ("names",)
@@ -94,10 +94,10 @@ class ReorderPoses(Edit):
     names: Sequence[str]
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        known, names = {pose.name: pose for pose in state.poses}, list(self.names)
-        if sorted(names) != sorted(known):
-            raise InputError(f"poses: expected each of {sorted(known)} once, got {names}")
-        return replace(state, poses=tuple(known[name] for name in names))
+        by_name, names = {pose.name: pose for pose in state.poses}, list(self.names)
+        if sorted(names) != sorted(by_name):
+            raise InputError(f"poses: expected each of {sorted(by_name)} once, got {names}")
+        return replace(state, poses=tuple(by_name[name] for name in names))
 
     def to_json(self, drawing: Drawing) -> Json:
         return {"names": list(self.names)}

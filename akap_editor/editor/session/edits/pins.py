@@ -16,7 +16,7 @@ from ...document.pin_angles import MAX_PIN_ANGLE
 from .edit import Edit, Effect, Json, ReplayTarget
 
 Target = tuple[float, float]
-SAME_POSITION = 1e-6  # pixels: a recorded pin nearer than this to its rest place sits on the same mesh
+REST_TOLERANCE = 1e-6  # pixels between the recorded and the actual rest position of a pin on an equal mesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,29 +33,27 @@ class SetPins(Edit):
         return replace(state, pins=self.pins)
 
     def fixed_at_pose(self, state: EditState, drawing: Drawing) -> "SetPins":
-        """The same edit in the middle of a motion: pins that stay get their current positions as targets."""
-        positions = drawing.mesh.evaluate(state.points, state.positions)
-        here = dict(zip((pin.id for pin in state.pins), positions, strict=True))
-        return SetPins(
-            tuple(replace(pin, target=here[pin.id]) if pin.id in here else pin for pin in self.pins)
-        )
+        """This edit with the current positions of existing pins as their targets, to stop a motion."""
+        ids = (pin.id for pin in state.pins)
+        positions = dict(zip(ids, state.pin_positions(drawing.mesh), strict=True))
+        return SetPins(tuple(replace(pin, target=positions.get(pin.id, pin.target)) for pin in self.pins))
 
     def to_json(self, drawing: Drawing) -> Json:
-        """Pins with face and weights, for exactly this mesh, and their place at rest, for any other."""
+        """The pins with face and weights, for an equal mesh, and their rest positions, for any other."""
         mesh = drawing.mesh
 
-        def rest(pin: Pin) -> list[float]:
-            place: list[float] = (pin.weights @ mesh.vertices[mesh.faces[pin.face]]).tolist()
-            return place
+        def rest_position(pin: Pin) -> list[float]:
+            position: list[float] = (pin.weights @ mesh.vertices[mesh.faces[pin.face]]).tolist()
+            return position
 
-        return {"pins": [{**pin.to_json(), "rest": rest(pin)} for pin in self.pins]}
+        return {"pins": [{**pin.to_json(), "rest": rest_position(pin)} for pin in self.pins]}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         pins, mesh = event["pins"], drawing.mesh
         if len({int(pin["id"]) for pin in pins}) < len(pins):
             raise InputError("expected pins with ids of their own, got one id twice")
-        if target.same_mesh and (mesh is target.mesh or _fits(pins, mesh)):
+        if target.same_mesh and (mesh is target.mesh or _lie_on(mesh, pins)):
             points = [(int(pin["face"]), pin["weights"]) for pin in pins]
         else:
             located = mesh.locate(target.points([pin["rest"] for pin in pins], "rest", len(pins)))
@@ -63,20 +61,20 @@ class SetPins(Edit):
         targets = target.points([pin["target"] for pin in pins], "target", len(pins))
         return cls(
             tuple(
-                Pin(int(pin["id"]), face, weights, place, int(pin.get("depth", 0)), _angle(pin.get("angle")))
-                for pin, (face, weights), place in zip(pins, points, targets, strict=True)
+                Pin(int(pin["id"]), face, weights, goal, int(pin.get("depth", 0)), _angle(pin.get("angle")))
+                for pin, (face, weights), goal in zip(pins, points, targets, strict=True)
             )
         )
 
 
-def _fits(pins: list[Any], mesh: TriMesh) -> bool:
-    """Whether faces and weights of recorded pins are valid on a mesh that was made anew."""
+def _lie_on(mesh: TriMesh, pins: list[Any]) -> bool:
+    """Whether faces and weights of recorded pins give their rest positions on a mesh from remeshing."""
     if any(not 0 <= int(pin["face"]) < len(mesh.faces) for pin in pins):
         return False
     weights = as_points([pin["weights"] for pin in pins], "weights", len(pins), columns=3)
     points = MeshPoints(np.array([int(pin["face"]) for pin in pins], dtype=np.int32), weights)
     rest = as_points([pin["rest"] for pin in pins], "rest", len(pins))
-    return bool(np.abs(mesh.evaluate(points, mesh.vertices) - rest).max(initial=0.0) < SAME_POSITION)
+    return bool(np.abs(mesh.evaluate(points, mesh.vertices) - rest).max(initial=0.0) < REST_TOLERANCE)
 
 
 def _angle(value: Any) -> float | None:
@@ -85,7 +83,7 @@ def _angle(value: Any) -> float | None:
 
 @dataclass(frozen=True, eq=False)
 class SetTargets(Edit):
-    """Give pins, by id, other targets in pixels; steps move them there."""
+    """Set the targets of pins, by id, in pixels; steps move the pins there."""
 
     name = "targets"
     fields = ("targets",)
@@ -113,9 +111,9 @@ class SetTargets(Edit):
 
 @dataclass(frozen=True, eq=False)
 class SetAngles(Edit):
-    """Let pins, by id, hold angles in radians from rest; steps rotate the drawing around them.
+    """Let pins, by id, hold angles in radians from the rest pose; steps rotate the drawing around them.
 
-    Within one gesture full turns count.
+    Within one gesture full turns count, up to `MAX_PIN_ANGLE`.
     """
 
     name = "angles"
@@ -140,8 +138,8 @@ class SetAngles(Edit):
         return cls({int(pin): angle for pin, angle in event["angles"].items()})
 
 
-def _check_ids(what: str, ids: Iterable[int], pins: Sequence[Pin]) -> None:
-    known = [pin.id for pin in pins]
+def _check_ids(name: str, ids: Iterable[int], pins: Sequence[Pin]) -> None:
+    known_ids = [pin.id for pin in pins]
     for pin_id in ids:
-        if pin_id not in known:
-            raise InputError(f"{what}: expected ids of pins {sorted(known)}, got {pin_id}")
+        if pin_id not in known_ids:
+            raise InputError(f"{name}: expected ids of pins {sorted(known_ids)}, got {pin_id}")

@@ -17,7 +17,7 @@ from .edit import Edit, Effect, Json, ReplayTarget
 
 @dataclass(frozen=True, eq=False)
 class SetPose(Edit):
-    """Take over a pose (n, 2) in pixels; the pins move with the drawing and stay there."""
+    """Set the pose (n, 2), pixels; the pins move with the drawing and stay there."""
 
     name = "pose"
     fields = ("positions",)
@@ -68,8 +68,8 @@ class SetRestPose(Edit):
 class Remesh(Edit):
     """Give the picture another mesh; pins and pose stay.
 
-    prepared: the drawing made by `remesh_drawing` and, if the state has not changed since, the result of
-    `transfer_state`; each is computed by `apply` if absent.
+    prepared: the drawing from `remesh_drawing` and the state from `transfer_state`, if they were computed
+    before; the state must have been transferred from the one that the edit is applied to.
     """
 
     name = "mesh"
@@ -80,14 +80,14 @@ class Remesh(Edit):
     prepared: tuple[Drawing, EditState | None] | None = None
 
     @classmethod
-    def to(cls, drawing: Drawing, carried: EditState | None = None) -> Self:
-        """The edit that leads to a drawing made by `remesh_drawing`."""
+    def from_drawing(cls, drawing: Drawing, transferred: EditState | None = None) -> Self:
+        """The edit that takes over a drawing from `remesh_drawing`, and a state from `transfer_state`."""
         assert drawing.meshing is not None, "expected a drawing whose mesh can be made again"
-        return cls(drawing.meshing, (drawing, carried))
+        return cls(drawing.meshing, (drawing, transferred))
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        made, carried = self.prepared or (remesh_drawing(drawing, self.meshing), None)
-        return carried or transfer_state(state, drawing.mesh, made)
+        remeshed, transferred = self.prepared or (remesh_drawing(drawing, self.meshing), None)
+        return transferred or transfer_state(state, drawing.mesh, remeshed)
 
     def to_json(self, drawing: Drawing) -> Json:
         return asdict(self.meshing)
