@@ -1,0 +1,367 @@
+"""The overlaps of a pose, each with the decision which of its two sheets is in front."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.jit import compiled
+from ..geometry.mesh import TriMesh
+from ..geometry.validation import Floats, Ints, frozen
+from .circles import face_levels, low_and_high, satisfies, without_circles
+from .common_area import common_areas
+from .face_pairs import FacePairs, no_face_pairs, overlapping_faces, pair_index
+from .least_cut import cut_signs, seam_pairs, spread_signs
+from .memory import carried_signs, tally
+from .rules import Rules
+from .topology import Topology, mesh_topology
+
+_JUMP = 0.15  # share of the mesh's length: a region that moved less far on both sheets is the same one
+_NEGLIGIBLE = 1e-4  # share of the mesh's area: of two decisions in one region the smaller is dropped
+_SEAM_TRAVEL = 2e-4  # share of the mesh's area that seams may pass over in one step
+_PULL = 50.0  # a pair turned over costs its area over this part of the mesh's length
+_GUESS = 0.3  # firmness of a sign that was inferred from a neighbor
+_WEAK = 0.1  # firmness of signs beside a limb that is brought to the front
+NO_ABOVE: Ints = frozen(np.zeros((0, 2), dtype=np.int32))
+
+
+@dataclass(frozen=True, eq=False)
+class Overlaps:
+    """The overlapping pairs of faces of one pose and which face of each is in front.
+
+    pairs: see `FacePairs`; signs: (p,) int8, 1 where the first face is in front, else −1; ages: (r,) rank of
+    each region, the oldest 0; levels: (m,) int32, faces of a higher level are drawn later, None without
+    overlaps; above: (s, 2) int32 upper and lower faces, from which `restored_overlaps` finds all signs again:
+    one pair of each region, the oldest first, and of a region with a seam all pairs along it.
+    """
+
+    pairs: FacePairs
+    signs: Ints
+    ages: Ints
+    levels: Ints | None
+    above: Ints
+
+    def __len__(self) -> int:
+        return len(self.pairs)
+
+    @property
+    def low_and_high(self) -> tuple[Ints, Ints]:
+        """The lower and the upper face of each pair, (p,) int32 each."""
+        low, high = low_and_high(self.pairs.first, self.pairs.second, self.signs)
+        return low, high
+
+
+def no_overlaps(mesh: TriMesh, above: Ints = NO_ABOVE) -> Overlaps:
+    """The overlaps of a pose that does not overlap, or that is crumpled beyond any order."""
+    none = np.zeros(0, dtype=np.int8)
+    return Overlaps(no_face_pairs(len(mesh.faces)), none, none.astype(np.int64), None, above)
+
+
+RulesSource = Callable[[], Rules]
+
+
+def next_overlaps(
+    mesh: TriMesh, pose: Floats, before: Overlaps, rules: RulesSource = Rules, other: Overlaps | None = None
+) -> Overlaps:
+    """The overlaps of a pose (n, 2) that follows another one, whose decisions stay.
+
+    A region takes the sign that its pairs had ``before``; where overlaps with different decisions have grown
+    together, both stay, with a seam between them. ``rules`` decide on regions that were not there; ``other``,
+    overlaps of a third pose of the mesh, goes before them. All but the levels depends on the arguments only,
+    and not on the levels ``before``.
+    """
+    topology = mesh_topology(mesh)
+    pairs = overlapping_faces(topology, pose, len(before))
+    if not len(pairs):
+        return no_overlaps(mesh)
+    if not pairs.is_complete:
+        return no_overlaps(mesh, before.above)
+    decision = _Decision(mesh, topology, pose, pairs)
+    decision.carry_over(before)
+    if other is not None:
+        decision.carry_over(other)
+    decision.decide_new(before, rules)
+    decision.part_contradictions()
+    return decision.result(before)
+
+
+def restored_overlaps(mesh: TriMesh, pose: Floats, above: Ints, rules: RulesSource = Rules) -> Overlaps:
+    """The overlaps of a pose (n, 2) with the decisions ``above`` (s, 2) of `Overlaps`.
+
+    ``rules`` decide on regions of which ``above`` has no pair.
+    """
+    topology = mesh_topology(mesh)
+    pairs = overlapping_faces(topology, pose)
+    if not len(pairs) or not pairs.is_complete:
+        return no_overlaps(mesh, NO_ABOVE if not len(pairs) else above)
+    decision = _Decision(mesh, topology, pose, pairs)
+    decision.take_over(np.asarray(above, dtype=np.int32).reshape(-1, 2))
+    decision.decide_new(no_overlaps(mesh), rules)
+    return decision.result(no_overlaps(mesh, above))
+
+
+def asked_overlaps(mesh: TriMesh, pose: Floats, overlaps: Overlaps, limb: Ints, to_front: bool) -> Overlaps:
+    """The same overlaps with a limb in front of, or behind, all that it overlaps.
+
+    limb: (m,) whether each face belongs to it. A region turns over as a whole if it only concerns the limb on
+    one of its sheets; else it is cut where the seam is seen least. The regions that changed count as the
+    oldest from now on, so that others give way to them.
+    """
+    pairs = overlaps.pairs
+    if not len(pairs):
+        return overlaps
+    decision = _Decision(mesh, mesh_topology(mesh), pose, pairs)
+    decision.signs = overlaps.signs.copy()
+    decision.known[:] = True
+    on_first, on_second = limb[pairs.first], limb[pairs.second]
+    wanted = (on_first.astype(np.int8) - on_second) * (1 if to_front else -1)
+    decision.ages = 1 + overlaps.ages
+    for region in range(decision.count):
+        members = decision.members(region)
+        asked = wanted[members]
+        if not asked.any():
+            continue
+        decision.ages[region] = 0
+        if asked.min() >= 0 or asked.max() <= 0:
+            decision.signs[members] = 1 if asked.max() > 0 else -1
+            continue
+        signs = decision.signs.copy()
+        signs[members] = np.where(asked, asked, signs[members])
+        firmness = np.where(wanted, 1.0, _WEAK) * _PULL / mesh.length
+        hidden = decision.hidden(region)
+        steps = len(members)  # the seam may be anywhere
+        decision.signs = cut_signs(decision.topology, pose, pairs, members, signs, firmness, hidden, steps)
+    return overlaps if np.array_equal(decision.signs, overlaps.signs) else decision.result(overlaps)
+
+
+def overlaps_by_depth(
+    mesh: TriMesh, pose: Floats, overlaps: Overlaps, before: Rules, after: Rules
+) -> Overlaps:
+    """The overlaps after depths of pins have changed: regions on which they say otherwise turn over."""
+    if not len(overlaps):
+        return overlaps
+    pairs = overlaps.pairs
+    decision = _Decision(mesh, mesh_topology(mesh), pose, pairs)
+    decision.signs, decision.ages = overlaps.signs.copy(), overlaps.ages
+    decision.known[:] = True
+    for region in range(decision.count):
+        members = decision.members(region)
+        sheets = pairs.first[members], pairs.second[members], decision.areas(members)
+        sign = after.depth_sign(*sheets)
+        if sign and sign != before.depth_sign(*sheets):
+            decision.signs[members] = sign
+    return overlaps if np.array_equal(decision.signs, overlaps.signs) else decision.result(overlaps)
+
+
+class _Decision:
+    """The signs of one pose's pairs while they are decided.
+
+    known: (p,) whether the sign is that of the same pair in the pose before; fresh: regions without memory.
+    """
+
+    def __init__(self, mesh: TriMesh, topology: Topology, pose: Floats, pairs: FacePairs) -> None:
+        self.mesh, self.topology, self.pose, self.pairs = mesh, topology, pose, pairs
+        self.count = pairs.region_count
+        self.signs = np.zeros(len(pairs), dtype=np.int8)
+        self.known = np.zeros(len(pairs), dtype=bool)
+        self.ages = np.zeros(self.count, dtype=np.int64)
+        self.contradictory: list[int] = []  # regions with both signs
+        self.ends = np.searchsorted(pairs.regions, np.arange(self.count + 1))
+
+    def members(self, region: int) -> Ints:
+        """Indices of the pairs of a region."""
+        return np.arange(self.ends[region], self.ends[region + 1])
+
+    @property
+    def arrays(self) -> tuple[Ints, Ints, Ints, Ints, Ints, Ints]:
+        """What the compiled functions read of the pairs."""
+        pairs = self.pairs
+        return pairs.first, pairs.second, self.topology.neighbors, pairs.heads, pairs.starts, pairs.links
+
+    def areas(self, members: Ints) -> Floats:
+        """The area that each of some pairs has in common, square pixels."""
+        first, second = self.pairs.first[members], self.pairs.second[members]
+        return common_areas(self.pose, self.topology.faces, first, second)
+
+    def carry_over(self, before: Overlaps) -> None:
+        """Give each region the sign of its pairs in the pose before."""
+        old, mesh = before.pairs, self.mesh
+        if not len(before):
+            return
+        signs, sources, known = carried_signs(
+            self.pairs.first,
+            self.pairs.second,
+            old.first,
+            old.second,
+            old.regions,
+            before.signs,
+            old.heads,
+            old.starts,
+            old.links,
+            face_centers(mesh),
+            mesh.length,
+        )
+        votes, guesses, self.ages = tally(self.pairs.regions, signs, known, sources, before.ages, self.count)
+        self.known = known
+        for region in range(self.count):
+            # Pairs that were there outvote all others; guesses speak where none was.
+            counts = votes[region] if votes[region].any() else guesses[region]
+            if not counts.any():
+                continue
+            begin, end = self.ends[region], self.ends[region + 1]
+            if not votes[region].min() and not guesses[region].min():
+                self.signs[begin:end] = 1 if counts[0] else -1
+                continue
+            mine = signs[begin:end]
+            minority = 1 if counts[0] < counts[1] else -1
+            members = begin + np.flatnonzero(mine == minority)
+            is_unanimous = votes[region].any() and not votes[region].min()
+            if is_unanimous or self.areas(members).sum() <= _NEGLIGIBLE * mesh.length**2:
+                self.signs[begin:end] = -minority
+            else:
+                self.signs[begin:end] = mine
+                self.contradictory.append(region)
+
+    def take_over(self, above: Ints) -> None:
+        """Give each pair the sign of the rows of ``above`` that are nearest to it within its region."""
+        self.ages[:] = len(above)
+        pairs, m = self.pairs, len(self.topology.faces)
+        above = above[((above >= 0) & (above < m)).all(axis=1)]
+        indices, signs = find_pairs(
+            above[:, 0], above[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
+        )
+        for row in range(len(above) - 1, -1, -1):
+            if indices[row] >= 0:
+                self.signs[indices[row]] = signs[row]
+                self.ages[pairs.regions[indices[row]]] = row
+        for region in np.unique(pairs.regions[indices[indices >= 0]]):
+            spread_signs(self.members(region), self.signs, *self.arrays)
+
+    def decide_new(self, before: Overlaps, rules: RulesSource) -> None:
+        """Give the regions without a sign one: of an old region nearby, else by the rules."""
+        fresh = [r for r in range(self.count) if not self.signs[self.ends[r] : self.ends[r + 1]].any()]
+        if not fresh:
+            return
+        old_sheets = _sheet_centers(self.mesh, before)
+        given = None
+        for region in fresh:
+            members = self.members(region)
+            first, second = self.pairs.first[members], self.pairs.second[members]
+            self.signs[members] = 1
+            centers = [face_centers(self.mesh)[np.unique(faces)].mean(axis=0) for faces in (first, second)]
+            near = [
+                (float(np.abs(np.stack(centers) - sheets[::step]).max()), step)
+                for sheets in old_sheets
+                for step in (1, -1)
+            ]
+            if near and min(near)[0] < _JUMP * self.mesh.length:
+                self.signs[members] = min(near)[1]
+                continue
+            given = rules() if given is None else given
+            self.signs[members] = given.sign(self.mesh, first, second, self.areas(members))
+
+    def part_contradictions(self) -> None:
+        """Cut the regions in which two decisions have met, along the least visible seams."""
+        if not self.contradictory:
+            return
+        allowed = _SEAM_TRAVEL * self.mesh.length**2 / len(self.contradictory)
+        for region in self.contradictory:
+            members = self.members(region)
+            spread_signs(members, self.signs, *self.arrays)
+            hidden = self.hidden(region)
+            wanted = self.signs
+            firmness = np.full(len(self.pairs), _PULL / self.mesh.length)
+            firmness[~self.known] *= _GUESS
+            for _ in range(4):
+                signs = cut_signs(self.topology, self.pose, self.pairs, members, wanted, firmness, hidden)
+                turned = np.flatnonzero((signs != wanted) & self.known)
+                if self.areas(turned).sum() <= allowed:
+                    self.signs = signs
+                    break
+                firmness[self.known] *= 16.0
+
+    def hidden(self, region: int) -> Ints:
+        """Whether each pair is below a third sheet."""
+        low, high = low_and_high(self.pairs.first, self.pairs.second, self.signs)
+        covered = np.zeros(len(self.topology.faces), dtype=bool)
+        covered[low[self.pairs.regions != region]] = True
+        hidden: Ints = covered[high]
+        return hidden
+
+    def result(self, before: Overlaps) -> Overlaps:
+        """The decisions without circles, with the pairs that restore them."""
+        pairs, m = self.pairs, len(self.topology.faces)
+        order = np.argsort(self.ages, kind="stable")
+        ages = np.empty(self.count, dtype=np.int64)
+        ages[order] = np.arange(self.count)
+        low, high = low_and_high(pairs.first, pairs.second, self.signs)
+        levels = before.levels
+        if levels is None or not satisfies(levels, low, high):
+            levels, placed = face_levels(m, low, high)
+            if not placed.all():
+                self.signs, levels = without_circles(
+                    m, pairs.first, pairs.second, pairs.regions, self.signs, ages, self.known
+                )
+        above = self._above(order, before.above)
+        return Overlaps(pairs, frozen(self.signs), ages, levels, above)
+
+    def _above(self, order: Ints, before: Ints) -> Ints:
+        """The pairs that restore all signs, by regions in ``order``; old ones where they still do."""
+        pairs = self.pairs
+        indices, signs = find_pairs(
+            before[:, 0], before[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
+        )
+        valid = (indices >= 0) & (self.signs[indices] == signs)
+        chosen = []
+        for region in order:
+            members = self.members(region)
+            if self.signs[members].min() != self.signs[members].max():
+                chosen.append(np.sort(seam_pairs(members, self.signs, *self.arrays, 0)))
+                continue
+            mine = indices[valid & (indices >= members[0]) & (indices <= members[-1])]
+            if len(mine):
+                chosen.append(mine[:1])
+                continue
+            candidates = members[:: max(1, len(members) // 32)]
+            chosen.append(candidates[np.argmax(self.areas(candidates))][None])
+        low, high = low_and_high(pairs.first, pairs.second, self.signs)
+        kept = np.concatenate(chosen)
+        above = np.stack([high[kept], low[kept]], axis=1).astype(np.int32)
+        return before if np.array_equal(above, before) else frozen(above)
+
+
+@compiled
+def find_pairs(first: Ints, second: Ints, seconds: Ints, heads: Ints, starts: Ints, links: Ints):  # type: ignore[no-untyped-def]
+    """Indices (s,) of pairs in either order, −1 for none, and whether they are in this order, 1 or −1."""
+    indices, signs = np.full(len(first), -1, dtype=np.int64), np.ones(len(first), dtype=np.int8)
+    for i in range(len(first)):
+        indices[i] = pair_index(first[i], second[i], seconds, heads, starts, links)
+        if indices[i] < 0:
+            indices[i] = pair_index(second[i], first[i], seconds, heads, starts, links)
+            signs[i] = -1
+    return indices, signs
+
+
+_centers: tuple[TriMesh, Floats] | None = None
+
+
+def face_centers(mesh: TriMesh) -> Floats:
+    """(m, 2) middles of the faces at rest; cached for the mesh last asked for."""
+    global _centers
+    cached = _centers
+    if cached is None or cached[0] is not mesh:
+        cached = _centers = mesh, np.ascontiguousarray(mesh.vertices[mesh.faces].mean(axis=1))
+    return cached[1]
+
+
+def _sheet_centers(mesh: TriMesh, overlaps: Overlaps) -> list[Floats]:
+    """For each region the middles of its upper and its lower sheet at rest, (2, 2)."""
+    if not len(overlaps):
+        return []
+    low, high = overlaps.low_and_high
+    result = []
+    for region in range(overlaps.pairs.region_count):
+        mine = overlaps.pairs.regions == region
+        sheets = [face_centers(mesh)[np.unique(faces[mine])].mean(axis=0) for faces in (high, low)]
+        result.append(np.stack(sheets))
+    return result
