@@ -10,10 +10,11 @@ from ..editor.document.document import Document
 from ..editor.document.settings import Settings
 from ..editor.session.session import Session
 from ..errors import InputError
+from ..io.akap.project import PROJECT_SUFFIX
 from ..io.akap.project import save as save_project
 from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.images import has_transparency, is_animation
-from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, PROJECT_SUFFIX, open_document
+from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document
 from ..resources import bundled_drawings
 from .app_state import AppState
 from .dialogs.file_dialog import FileRequest, UnsavedChangesQuestion

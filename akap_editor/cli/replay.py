@@ -14,9 +14,10 @@ from ..editor.document.easing import EASINGS
 from ..editor.document.settings import Settings
 from ..editor.session.replay import replay
 from ..errors import InputError, error_context
+from ..io.akap.project import PROJECT_SUFFIX
 from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.animation.formats import ANIMATION_FORMATS, MAX_PLAYS, animation_format, write_animation
-from ..io.open_document import PROJECT_SUFFIX, open_document
+from ..io.open_document import open_document
 from ..io.painter import paint_frames
 from .options import FILE, append_formats, check_png, color, make_folder_of, write_picture
 

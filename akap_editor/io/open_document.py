@@ -6,13 +6,12 @@ from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import make_drawing
 from ..editor.session.replay import Replay
 from ..errors import InputError, error_context
-from .akap.project import load
+from .akap.project import PROJECT_SUFFIX, load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
 from .images import read_image, read_mask
 from .mesh_files.mesh_drawing import read_mesh
 from .mesh_files.obj_off import PARSERS
 
-PROJECT_SUFFIX = ".akap"
 PICTURE_SUFFIXES = (".png", ".webp", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff")
 MESH_SUFFIXES = tuple(PARSERS)
 

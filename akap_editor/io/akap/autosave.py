@@ -16,10 +16,9 @@ from filelock import FileLock, Timeout
 from ...editor.document.document import Document, EditState
 from ...errors import InputError, error_context
 from ..atomic import read_file, write_atomic
-from ..open_document import PROJECT_SUFFIX
 from .archive import Archive
 from .json_records import parse_record, require
-from .project import decode_document, encode_document
+from .project import PROJECT_SUFFIX, decode_document, encode_document
 
 FOLDER_VARIABLE = "AKAP_EDITOR_STATE"  # environment: another folder, e.g. for tests
 SECONDS = 60.0

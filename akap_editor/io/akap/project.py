@@ -31,6 +31,7 @@ from .json_records import (
 from .pose_entries import keyframe_entries, named_pose_entries, read_keyframes, read_named_poses
 from .state_records import check_state, read_pins, read_settings
 
+PROJECT_SUFFIX = ".akap"
 MIMETYPE = b"application/x-akap"
 DOCUMENT_FORMAT = "akap"
 DOCUMENT_VERSION = 1
