@@ -7,7 +7,7 @@ import numpy as np
 
 from ..geometry.jit import compiled
 from ..geometry.mesh import TriMesh
-from ..geometry.validation import Floats, Ints, frozen
+from ..geometry.validation import Floats, Ints, freeze
 from .circles import face_levels, low_and_high, satisfies, without_circles
 from .common_area import common_areas
 from .face_pairs import FacePairs, no_face_pairs, overlapping_faces, pair_index
@@ -22,7 +22,7 @@ _SEAM_TRAVEL = 2e-4  # share of the mesh's area that seams may pass over in one 
 _PULL = 50.0  # a pair turned over costs its area over this part of the mesh's length
 _GUESS = 0.3  # firmness of a sign that was inferred from a neighbor
 _WEAK = 0.1  # firmness of signs beside a limb that is brought to the front
-NO_ABOVE: Ints = frozen(np.zeros((0, 2), dtype=np.int32))
+NO_ABOVE: Ints = freeze(np.zeros((0, 2), dtype=np.int32))
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,7 +303,7 @@ class _Decision:
                     m, pairs.first, pairs.second, pairs.regions, self.signs, ages, self.known
                 )
         above = self._above(order, before.above)
-        return Overlaps(pairs, frozen(self.signs), ages, levels, above)
+        return Overlaps(pairs, freeze(self.signs), ages, levels, above)
 
     def _above(self, order: Ints, before: Ints) -> Ints:
         """The pairs that restore all signs, by regions in ``order``; old ones where they still do."""
@@ -327,7 +327,7 @@ class _Decision:
         low, high = low_and_high(pairs.first, pairs.second, self.signs)
         kept = np.concatenate(chosen)
         above = np.stack([high[kept], low[kept]], axis=1).astype(np.int32)
-        return before if np.array_equal(above, before) else frozen(above)
+        return before if np.array_equal(above, before) else freeze(above)
 
 
 @compiled
