@@ -16,9 +16,12 @@ from pathlib import Path
 import numpy as np
 
 from akap_editor.app import files
-from akap_editor.app.app_state import AppState, Palette
+from akap_editor.app.app_state import AppState
+from akap_editor.app.commands.palette import Palette
+from akap_editor.app.commands.registry import PALETTE_ITEMS, SHORTCUTS
 from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
+from akap_editor.app.dialogs.first_steps import FirstSteps
 from akap_editor.app.preferences import Preferences
 from akap_editor.app.window import SIZE, Window
 from akap_editor.editor import gestures
@@ -89,19 +92,19 @@ def start(window: Window) -> None:
 def first_steps(window: Window) -> None:
     """The first steps for newcomers."""
     show_rest_pose(window)
-    window.state.first_steps = True
+    window.state.part(FirstSteps).is_open = True
 
 
 @shot("palette")
 def palette(window: Window) -> None:
     """The command palette after a few letters."""
-    window.state.palette = Palette("sho")
+    window.state.part(Palette).open(PALETTE_ITEMS, "sho")
 
 
 @shot("keys")
 def keys(window: Window) -> None:
     """The shortcuts page."""
-    window.state.keys = True
+    SHORTCUTS.run(window.state)
 
 
 @shot("pins")
@@ -188,7 +191,7 @@ def split(window: Window) -> None:
 @shot("export")
 def export(window: Window) -> None:
     """The export dialog."""
-    window.state.dialog(ExportPoseDialog).open(window.state)
+    window.state.part(ExportPoseDialog).open(window.state)
 
 
 def add_keyframes(window: Window) -> None:
@@ -236,7 +239,7 @@ def timeline(window: Window) -> None:
 def animation(window: Window) -> None:
     """The export dialog of the timeline."""
     add_keyframes(window)
-    window.state.dialog(ExportAnimationDialog).open(window.state)
+    window.state.part(ExportAnimationDialog).open(window.state)
 
 
 def take(window: Window, name: str, folder: Path) -> None:
@@ -245,7 +248,9 @@ def take(window: Window, name: str, folder: Path) -> None:
         imgui.internal.close_popup_to_level(0, False)
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
-    state = window.state = AppState(exporter=window.state.exporter, preferences=Preferences())
+    state = window.state = AppState(
+        exporter=window.state.exporter, thumbnails=window.state.thumbnails, preferences=Preferences()
+    )
     state.editor.ui_scale = window.scale
     files.show_document(state, posed_elephant())
     state.editor.mark_saved(Path("elephant.akap"))

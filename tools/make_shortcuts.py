@@ -5,6 +5,7 @@ Run from the project's root: python tools/make_shortcuts.py
 
 from pathlib import Path
 
+from akap_editor.app.commands.registry import COMMANDS, MENUS
 from akap_editor.app.commands.shortcuts_page import groups
 
 PAGE = Path("docs/shortcuts.md")
@@ -33,7 +34,7 @@ one, `Shift+F10` opens its menu, and `Esc` returns the focus to the drawing. Pin
 def page() -> str:
     """Return the page as Markdown."""
     parts = [HEAD]
-    for title, lines in groups():
+    for title, lines in groups(MENUS, COMMANDS):
         rows = "".join(f"| {keys.replace('|', chr(92) + '|')} | {action} |\n" for keys, action in lines)
         parts.append(f"\n## {title}\n\n| | |\n|---|---|\n{rows}")
     return "".join(parts)

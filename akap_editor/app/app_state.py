@@ -16,22 +16,22 @@ from ..editor.tools.stiffness_brush import Brush
 from ..errors import AkapError, InputError
 from ..geometry.distortion import Distortion, distortion
 from ..geometry.validation import Floats
-from ..io.akap.autosave import Autosave, RecoveryCopy
+from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from ..render.overlays import Overlays
 from .canvas.view_options import ViewOptions, skins
-from .dialogs.file_dialog import FileRequest, Palette, UnsavedChangesQuestion
 from .jobs.background_thread import BackgroundThread, Wake, no_window
 from .jobs.pose_export import PoseExportQueue
 from .jobs.task import Task
 from .panels.measurements import Measurements
 from .pending_values import PendingValues
 from .preferences import Preferences
+from .thumbnails import Thumbnails
 from .timeline.timeline import Timeline
 
 SWITCHES = ("show_mesh", "checker")  # fields that are remembered between runs
 
-D = TypeVar("D")
+P = TypeVar("P")
 
 
 @dataclass
@@ -57,40 +57,33 @@ class AppState:
     comparison: MethodComparison = field(default_factory=MethodComparison)
     notice: str = ""
     error: str = ""
-    about: bool = False
-    keys: bool = False
     closing: bool = False
-    question: UnsavedChangesQuestion | None = None
-    request: FileRequest | None = None
-    palette: Palette | None = None
     folder: Path = field(default_factory=Path.cwd)
     exporter: OffscreenRenderer = field(default_factory=OffscreenRenderer)
     writer: PoseExportQueue = field(init=False)
+    thumbnails: Thumbnails = field(default_factory=Thumbnails)
     preferences: Preferences = field(default_factory=Preferences)
     autosave: Autosave | None = None
-    lost: list[RecoveryCopy] = field(default_factory=list)  # unsaved work of programs that crashed
     pending_values: PendingValues = field(default_factory=PendingValues)
     view: ViewOptions = field(default_factory=ViewOptions)
     measurements: Measurements = field(default_factory=Measurements)
-    first_steps: bool = False  # whether newcomers are shown how to begin
-    steps_taken: int = 0  # of these
     remesher: BackgroundRemesh = field(init=False)
     _jobs: list[Callable[[], None]] = field(default_factory=list)
     _due: list[Callable[[], None]] = field(default_factory=list)
     _measured: tuple[Floats, Distortion] | None = None
-    _dialogs: dict[type, Any] = field(default_factory=dict)
+    _parts: dict[type, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.remesher = BackgroundRemesh(self.editor, BackgroundThread("mesh", self.wake))
         self.writer = PoseExportQueue(self.wake)
         self.timeline = Timeline(self.editor)
 
-    def dialog(self, kind: type[D]) -> D:
-        """The window's one dialog of a class, made on first use; it keeps its state while it is closed."""
-        if kind not in self._dialogs:
-            self._dialogs[kind] = kind()
-        dialog: D = self._dialogs[kind]
-        return dialog
+    def part(self, kind: type[P]) -> P:
+        """The window's one dialog, panel or other part of a class, made on first use."""
+        if kind not in self._parts:
+            self._parts[kind] = kind()
+        part: P = self._parts[kind]
+        return part
 
     # -- between runs ----------------------------------------------------------------------------------------
 
@@ -99,7 +92,6 @@ class AppState:
         """The state that the preferences remember; steps are computed in a thread."""
         editor = Editor(worker=BackgroundThread("engine", wake))
         state = cls(editor, wake, preferences=preferences, notice=preferences.problem)
-        state.first_steps = preferences.is_kept and not preferences.get("first steps done", False)
         for name in SWITCHES:
             setattr(state, name, preferences.get(name, getattr(state, name)))
         state.timeline.is_shown = preferences.get("show_timeline", False)

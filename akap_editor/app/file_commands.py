@@ -14,7 +14,7 @@ from ..io.images import read_image, read_mask
 from ..io.open_document import PICTURE_SUFFIXES
 from . import files
 from .app_state import AppState
-from .dialogs.file_dialog import FileRequest
+from .dialogs.file_dialog import FileDialog, FileRequest
 
 # -- masks --------------------------------------------------------------------------------------------------
 
@@ -38,7 +38,7 @@ def choose_mask(state: AppState) -> None:
 
         files.confirm_unsaved(state, lambda: state.run_after_frame(cut, f"Cutting out with {path.name} ..."))
 
-    state.request = FileRequest("Choose mask", PICTURE_SUFFIXES, state.folder, use)
+    state.part(FileDialog).ask(FileRequest("Choose mask", PICTURE_SUFFIXES, state.folder, use))
 
 
 def cut_out(document: Document, mask: Path) -> Document:
@@ -68,7 +68,9 @@ def choose_pose_to_save(state: AppState) -> None:
     if state.document is not None:
         name = f"{state.document.drawing.name}{POSE_SUFFIX}"
         use = partial(save_pose_file, state)
-        state.request = FileRequest("Save pose", (POSE_SUFFIX,), state.folder, use, name, saving=True)
+        state.part(FileDialog).ask(
+            FileRequest("Save pose", (POSE_SUFFIX,), state.folder, use, name, saving=True)
+        )
 
 
 def save_pose_file(state: AppState, path: Path) -> None:
@@ -81,7 +83,7 @@ def choose_pose_to_apply(state: AppState) -> None:
     """Ask for a pose file of this drawing, then apply it."""
     if state.document is not None:
         use = partial(apply_pose_file, state)
-        state.request = FileRequest("Apply pose", (POSE_SUFFIX,), state.folder, use)
+        state.part(FileDialog).ask(FileRequest("Apply pose", (POSE_SUFFIX,), state.folder, use))
 
 
 def apply_pose_file(state: AppState, path: Path) -> None:
@@ -103,8 +105,8 @@ def choose_recording_to_save(state: AppState) -> None:
     """Ask for a recording file, then write the session to it."""
     if state.document is not None:
         name, use = f"{state.document.drawing.name}{RECORDING_SUFFIX}", partial(save_recording_file, state)
-        state.request = FileRequest(
-            "Save recording", (RECORDING_SUFFIX,), state.folder, use, name, saving=True
+        state.part(FileDialog).ask(
+            FileRequest("Save recording", (RECORDING_SUFFIX,), state.folder, use, name, saving=True)
         )
 
 
@@ -129,4 +131,4 @@ def choose_reference(state: AppState) -> None:
     def use(path: Path) -> None:
         state.run_reporting_errors(lambda: state.view.set_reference(read_image(path), path))
 
-    state.request = FileRequest("Choose reference picture", PICTURE_SUFFIXES, state.folder, use)
+    state.part(FileDialog).ask(FileRequest("Choose reference picture", PICTURE_SUFFIXES, state.folder, use))

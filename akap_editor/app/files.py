@@ -17,7 +17,8 @@ from ..io.images import has_transparency, is_animation
 from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document
 from ..resources import bundled_drawings
 from .app_state import AppState
-from .dialogs.file_dialog import FileRequest, UnsavedChangesQuestion
+from .dialogs.file_dialog import FileDialog, FileRequest
+from .dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
 from .jobs.open_recording import open_recording
 
 # -- opening ------------------------------------------------------------------------------------------------
@@ -47,7 +48,9 @@ def show_document(state: AppState, document: Document) -> None:
 def choose_and_open(state: AppState) -> None:
     """Ask for a picture, drawing or recording, then open it."""
     suffixes = (PROJECT_SUFFIX, RECORDING_SUFFIX, *PICTURE_SUFFIXES, *MESH_SUFFIXES)
-    state.request = FileRequest("Open picture or drawing", suffixes, state.folder, partial(open_path, state))
+    state.part(FileDialog).ask(
+        FileRequest("Open picture or drawing", suffixes, state.folder, partial(open_path, state))
+    )
 
 
 def open_dropped(state: AppState, paths: list[Path]) -> None:
@@ -111,13 +114,15 @@ def save_as(state: AppState, then: Callable[[], None] | None = None) -> None:
     if state.document is None:
         return
     suggested = state.document.path or state.folder / f"{state.document.drawing.name}{PROJECT_SUFFIX}"
-    state.request = FileRequest(
-        "Save drawing",
-        (PROJECT_SUFFIX,),
-        suggested.resolve().parent,
-        lambda path: write_document(state, path, then),
-        suggested.name,
-        saving=True,
+    state.part(FileDialog).ask(
+        FileRequest(
+            "Save drawing",
+            (PROJECT_SUFFIX,),
+            suggested.resolve().parent,
+            lambda path: write_document(state, path, then),
+            suggested.name,
+            saving=True,
+        )
     )
 
 
@@ -140,10 +145,13 @@ def write_document(state: AppState, path: Path, then: Callable[[], None] | None 
 
 def confirm_unsaved(state: AppState, proceed: Callable[[], None]) -> None:
     """Call ``proceed`` at once, or after the user has decided what happens to unsaved changes."""
-    if state.editor.modified:
-        state.question = UnsavedChangesQuestion(proceed)
-    else:
+    document = state.document
+    if document is None or not state.editor.modified:
         proceed()
+        return
+    name = document.path.name if document.path is not None else document.drawing.name
+    question = UnsavedChangesQuestion(name, save=lambda: save(state, proceed), discard=proceed)
+    state.part(UnsavedChangesDialog).ask(question)
 
 
 def close_document(state: AppState) -> None:

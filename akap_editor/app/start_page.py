@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-import moderngl
+import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 from PIL import Image
 
-from ..io.images import read_image
+from ..io.images import Picture, read_image
 from ..resources import bundled_drawings
 from . import files, widgets
 from .app_state import AppState
@@ -24,82 +24,68 @@ _BY_KEYS = imgui.ButtonFlags_.enable_nav
 _WIDTH = 720  # of the column in the middle, in design points, as all sizes here
 _DROP_HEIGHT = 132
 _GAP = 12
+_MARGIN = 12  # around a thumbnail
 _DASH = 7
 
 
-class Welcome:
-    """Draws the page; owns the textures of its thumbnails, in the context ``ctx``."""
+def draw(state: AppState, scale: float, pixels_per_point: float) -> None:
+    """Draw the page over the whole canvas. scale: points per design point."""
+    left, top, right, bottom = state.editor.canvas
+    imgui.set_next_window_pos(ImVec2(left, top))
+    imgui.set_next_window_size(ImVec2(right - left, bottom - top))
+    column = min(_WIDTH * scale, right - left - 48 * scale)
+    imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+    imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+    imgui.push_style_var(
+        imgui.StyleVar_.window_padding, ImVec2((right - left - column) / 2, 0.06 * (bottom - top))
+    )
+    imgui.push_style_color(imgui.Col_.window_bg, ImVec4(*DARK))
+    imgui.begin("Start", None, _WINDOW)
+    imgui.pop_style_color()
+    imgui.pop_style_var(3)
+    _title()
+    _drop_zone(state, scale, column)
+    _heading("Bundled drawings")
+    _drawings(state, scale, column, pixels_per_point)
+    _heading("Recent files")
+    _recent(state, column)
+    imgui.end()
 
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
-        self._textures: dict[tuple[Path, int], moderngl.Texture] = {}
 
-    def release(self) -> None:
-        """Free the textures."""
-        for texture in self._textures.values():
-            texture.release()
-        self._textures.clear()
+def _drawings(state: AppState, scale: float, column: float, pixels_per_point: float) -> None:
+    """Draw a row of buttons that open the bundled drawings, each with its thumbnail and name."""
+    paths = bundled_drawings()
+    gap = _GAP * scale
+    side = round((column - gap * (len(paths) - 1)) / len(paths))
+    for path in paths:
+        _drawing(state, path, side, scale, pixels_per_point)
+        imgui.same_line(0, gap)
+    imgui.new_line()
 
-    def draw(self, state: AppState, scale: float, density: float) -> None:
-        """The page over the whole canvas. scale: points per design point; density: pixels per point."""
-        left, top, right, bottom = state.editor.canvas
-        imgui.set_next_window_pos(ImVec2(left, top))
-        imgui.set_next_window_size(ImVec2(right - left, bottom - top))
-        column = min(_WIDTH * scale, right - left - 48 * scale)
-        imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
-        imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
-        imgui.push_style_var(
-            imgui.StyleVar_.window_padding, ImVec2((right - left - column) / 2, 0.06 * (bottom - top))
-        )
-        imgui.push_style_color(imgui.Col_.window_bg, ImVec4(*DARK))
-        imgui.begin("Start", None, _WINDOW)
-        imgui.pop_style_color()
-        imgui.pop_style_var(3)
-        _title()
-        _drop_zone(state, scale, column)
-        _heading("Bundled drawings")
-        self._drawings(state, scale, column, density)
-        _heading("Recent files")
-        _recent(state, column)
-        imgui.end()
 
-    def _drawings(self, state: AppState, scale: float, column: float, density: float) -> None:
-        paths = bundled_drawings()
-        gap = _GAP * scale
-        side = round((column - gap * (len(paths) - 1)) / len(paths))
-        draw = imgui.get_window_draw_list()
-        for path in paths:
-            corner = imgui.get_cursor_screen_pos()
-            name_height = imgui.get_text_line_height() + 8 * scale
-            if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BY_KEYS):
-                _open(state, path)
-            hovered = imgui.is_item_hovered() or imgui.is_item_focused()
-            end = ImVec2(corner.x + side, corner.y + side)
-            draw.add_rect_filled(corner, end, packed(HOVER if hovered else PANEL), 8 * scale)
-            self._thumbnail(draw, path, corner, side, round(12 * scale), density)
-            name = path.stem.capitalize()
-            at = ImVec2(corner.x + (side - imgui.calc_text_size(name).x) / 2, end.y + 6 * scale)
-            draw.add_text(at, packed(TEXT if hovered else QUIET), name)
-            imgui.same_line(0, gap)
-        imgui.new_line()
+def _drawing(state: AppState, path: Path, side: int, scale: float, pixels_per_point: float) -> None:
+    """Draw a button that opens a drawing. side: of its square in points."""
+    corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
+    name_height = imgui.get_text_line_height() + 8 * scale
+    if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BY_KEYS):
+        _open(state, path)
+    is_hovered = imgui.is_item_hovered() or imgui.is_item_focused()
+    end = ImVec2(corner.x + side, corner.y + side)
+    draw.add_rect_filled(corner, end, packed(HOVER if is_hovered else PANEL), 8 * scale)
+    pixels = max(16, round((side - 2 * round(_MARGIN * scale)) * pixels_per_point))
+    state.thumbnails.draw(
+        (path, pixels), corner, side, lambda: _scaled_picture(path, pixels), pixels_per_point
+    )
+    name = path.stem.capitalize()
+    name_corner = ImVec2(corner.x + (side - imgui.calc_text_size(name).x) / 2, end.y + 6 * scale)
+    draw.add_text(name_corner, packed(TEXT if is_hovered else QUIET), name)
 
-    def _thumbnail(
-        self, draw: imgui.ImDrawList, path: Path, corner: ImVec2, side: float, margin: float, density: float
-    ) -> None:
-        """A picture in the middle of a square, pixel by pixel as it was scaled."""
-        texture = self._texture(path, max(16, round((side - 2 * margin) * density)))
-        width, height = texture.width / density, texture.height / density
-        low = ImVec2(round(corner.x + (side - width) / 2), round(corner.y + (side - height) / 2))
-        high = ImVec2(low.x + width, low.y + height)
-        draw.add_image(imgui.ImTextureRef(texture.glo), low, high)
 
-    def _texture(self, path: Path, pixels: int) -> moderngl.Texture:
-        if (path, pixels) not in self._textures:
-            picture = Image.fromarray(read_image(path))
-            picture.thumbnail((pixels, pixels), Image.Resampling.LANCZOS)
-            texture = self._ctx.texture(picture.size, 4, picture.tobytes(), alignment=1)
-            self._textures[path, pixels] = texture
-        return self._textures[path, pixels]
+def _scaled_picture(path: Path, pixels: int) -> Picture:
+    """The picture file, at most ``pixels`` a side."""
+    picture = Image.fromarray(read_image(path))
+    picture.thumbnail((pixels, pixels), Image.Resampling.LANCZOS)
+    return np.asarray(picture)
 
 
 def _open(state: AppState, path: Path) -> None:

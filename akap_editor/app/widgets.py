@@ -271,12 +271,6 @@ def enter_key_pressed() -> bool:
     return any(imgui.is_key_pressed(key, False) for key in keys)
 
 
-def close(state: AppState, field: str, value: object) -> None:
-    """Close the dialog that a field of the workspace has asked for."""
-    setattr(state, field, value)
-    close_popup()
-
-
 def close_popup() -> None:
     """Close the popup; keys belong to the canvas again."""
     imgui.close_current_popup()

@@ -19,7 +19,7 @@ from ..editor.document.document import Document
 from ..errors import AkapError, DisplayError, GraphicsError
 from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
-from . import files, theme, widgets
+from . import files, start_page, theme, widgets
 from . import glfw_key_order as key_order
 from .app_state import AppState
 from .canvas import split_view
@@ -27,14 +27,15 @@ from .canvas.pin_markers import draw_markers
 from .canvas.pointer_input import Canvas
 from .canvas.scene import Scene
 from .canvas.view_options import draw_legend
-from .commands import palette
 from .commands import registry as commands
 from .commands.focus_navigation import give_keys_to_panels
-from .dialogs.dialogs import Dialogs, has_native_dialogs
-from .dialogs.recovery import Recovery
+from .commands.palette import Palette
+from .dialogs import dialogs
+from .dialogs.file_dialog import FileDialog, has_native_dialogs
+from .dialogs.recovery import RecoveryDialog
 from .panels import side_panel as panels
 from .preferences import Preferences
-from .start_page import Welcome
+from .thumbnails import Thumbnails
 
 SIZE = (1280, 800)
 SMALLEST = (640, 400)
@@ -80,7 +81,8 @@ class Window:
         self.state = AppState.remembering(preferences or Preferences(), self.wake)
         self.state.autosave = autosave
         if autosave is not None:
-            self.state.lost = autosave.lost()
+            self.state.part(RecoveryDialog).copies = autosave.lost()
+        self.state.part(FileDialog).uses_native = has_native_dialogs() and not null
         self.frames = 0
         self.after_draw: list[Callable[[], None]] = []
         self._scale_wanted, self._in_frame, self._focused = scale, False, False
@@ -100,6 +102,7 @@ class Window:
         self.ctx = moderngl.create_context(require=330)
         self._picture = Scene(self.ctx)
         self.state.exporter = OffscreenRenderer(self.ctx)
+        self.state.thumbnails = Thumbnails(self.ctx)
         # Callbacks only queue: an exception in one would come out of poll_events. ImGui calls those it needs.
         glfw.set_key_callback(self.handle, key_order.on_key)
         glfw.set_drop_callback(self.handle, self._on_drop)  # type: ignore[arg-type]  # its stub is wrong
@@ -117,9 +120,6 @@ class Window:
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
         self._canvas = Canvas()
-        self._welcome = Welcome(self.ctx)
-        self._recovery = Recovery(self.ctx)
-        self._dialogs = Dialogs(has_native_dialogs() and not null, self._recovery)
 
     def __enter__(self) -> "Window":
         return self
@@ -134,8 +134,7 @@ class Window:
         self.remember()
         self.state.writer.close()
         self.state.exporter.__exit__()
-        self._welcome.release()
-        self._recovery.release()
+        self.state.thumbnails.release()
         self._picture.release()
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
@@ -209,10 +208,10 @@ class Window:
         """Sleep until an event, a `wake`, a due tooltip, a blink of a caret, or the answer of a dialog."""
         is_typing, tooltip_delay = imgui.get_io().want_text_input, widgets.tooltip_due()
         limit = tooltip_delay or (BLINK_SECONDS if is_typing else IDLE_SECONDS)
-        if self._dialogs.native_is_open:
+        if self.state.part(FileDialog).native_is_open:
             limit = min(limit, NATIVE_DIALOG_SECONDS)
         has_happened = self._wait(limit)
-        if has_happened or tooltip_delay or self._dialogs.native_is_answered:
+        if has_happened or tooltip_delay or self.state.part(FileDialog).native_is_answered:
             self._frames_due = SETTLE_FRAMES
         elif is_typing:
             self._frames_due = 1
@@ -277,9 +276,9 @@ class Window:
         modal = _popup_is_open()  # before as well as after: the key that closes one must not do more
         state.editor.canvas = split_view.draw(state, panels.draw(state, self.scale), self.scale)
         if state.document is None:
-            self._welcome.draw(state, self.scale, self._density)
-        palette.draw(state, self.scale)
-        self._dialogs.draw(state, self.scale)
+            start_page.draw(state, self.scale, self._density)
+        state.part(Palette).draw(state, self.scale)
+        dialogs.draw(state, self.scale)
         self._canvas.draw_popup(state, self.scale)
         modal = modal or _popup_is_open()
         if not imgui.get_io().want_text_input and not modal:

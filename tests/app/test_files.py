@@ -9,6 +9,7 @@ from PIL import Image
 
 from akap_editor.app.commands.command import CTRL, SHIFT, Key
 from akap_editor.app.dialogs.file_dialog import FileRequest
+from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.io.akap.project import load, save
@@ -48,7 +49,7 @@ def test_save_as_and_open_again_restore_every_bit(bent, tmp_path):
     before = bits(bent.session.state)
     bent.menu("File", "Save As...")
     bent.type_name(SAVE, "posed")
-    assert bent.state.request is None
+    assert bent.file_request is None
     assert bent.state.notice == "Saved posed.akap"
     assert not bent.editor.modified
     assert bent.state.title == "posed.akap - akap-editor"
@@ -57,7 +58,7 @@ def test_save_as_and_open_again_restore_every_bit(bent, tmp_path):
     bent.menu("Edit", "Undo")
     bent.menu("File", "Open...")
     bent.type_name(OPEN, "posed.akap")
-    assert bent.state.question is None, "undo has brought back what was saved"
+    assert not bent.state.part(UnsavedChangesDialog).is_open, "undo has brought back what was saved"
     finish(bent)
     assert bent.document.path == tmp_path / "posed.akap"
     assert bits(bent.session.state) == before
@@ -78,10 +79,10 @@ def enter_at(ui, item):
 @pytest.mark.parametrize(("button", "left"), [("Discard", False), ("Cancel", True)])
 def test_enter_uses_the_button_that_the_keyboard_is_at(bent, button, left):
     bent.key(CTRL | Key.w)
-    assert bent.state.question is not None
+    assert bent.state.part(UnsavedChangesDialog).is_open
     enter_at(bent, f"//{UNSAVED}###dialog {UNSAVED}/{button}")
-    assert bent.state.question is None
-    assert bent.state.request is None, "nothing is to be saved"
+    assert not bent.state.part(UnsavedChangesDialog).is_open
+    assert bent.file_request is None, "nothing is to be saved"
     assert (bent.state.document is not None) == left
 
 
@@ -91,9 +92,9 @@ def test_enter_goes_into_the_folder_that_the_keyboard_is_at(bent, tmp_path):
     save(bent.document, inner / "there.akap")
     bent.key(CTRL | Key.o)
     enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/###inner")
-    assert bent.state.request.folder == inner
+    assert bent.file_request.folder == inner
     enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/###there.akap")
-    assert bent.state.request is None
+    assert bent.file_request is None
     finish(bent)
 
 
@@ -104,7 +105,7 @@ def test_save_asks_once_and_then_writes_to_the_same_file(bent, tmp_path):
     assert bits(load(path).state) == bits(bent.session.state)
     bent.panel("Reset pose")
     bent.key(CTRL | Key.s)
-    assert bent.state.request is None
+    assert bent.file_request is None
     assert bits(load(path).state) == bits(bent.session.state)
     assert not bent.editor.modified
 
@@ -136,7 +137,7 @@ def test_the_file_dialog_goes_through_folders(bent, tmp_path):
     (tmp_path / "notes.txt").write_text("not listed")
     (tmp_path / ".hidden.png").write_bytes(b"")
     bent.menu("File", "Open...")
-    request = bent.state.request
+    request = bent.file_request
     assert request.entries() == [("inner", True), ("picture.png", False)]
 
     def open_(name):
@@ -165,12 +166,12 @@ def test_a_name_can_be_typed_at_once(bent, chord):
         hand.key_press(int(CTRL | Key.a))
         hand.key_chars("mine")
         hand.yield_(2)
-        typed.append(bent.state.request.name)
+        typed.append(bent.file_request.name)
         hand.key_press(Key.escape)
 
     bent.do(actions)
     assert typed == ["mine"]
-    assert bent.state.request is None
+    assert bent.file_request is None
 
 
 @pytest.mark.parametrize("saving", [False, True])
@@ -179,10 +180,10 @@ def test_no_name_that_can_be_typed_breaks_the_file_dialog(bent, tmp_path, saving
     state = bent.session.state
     bent.key(CTRL | SHIFT | Key.s if saving else CTRL | Key.o)
     for name in ("/", "~nobody-of-this-name/x", "..", "x" * 300, "\N{ELEPHANT}", "a/b/c", "\0"):
-        bent.state.request.name = name
+        bent.file_request.name = name
         bent.settle()
     bent.key(Key.escape)
-    assert bent.state.request is None
+    assert bent.file_request is None
     assert bent.session.state is state
     assert list(tmp_path.iterdir()) == []
 
@@ -281,7 +282,7 @@ def test_cancel_stays(bent, tmp_path, end, answer):
         bent.dialog(UNSAVED, "Cancel")
     finish(bent)
     assert not gone_on(bent)
-    assert bent.state.question is None
+    assert not bent.state.part(UnsavedChangesDialog).is_open
     assert bent.session.state is state
     assert bent.editor.modified
 

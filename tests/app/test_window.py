@@ -9,6 +9,7 @@ import pytest
 
 from akap_editor.app import files, widgets
 from akap_editor.app import window as window_module
+from akap_editor.app.dialogs.about import AboutDialog
 from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES, Window
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor.session.edits import SetTargets
@@ -160,7 +161,7 @@ def test_input_that_comes_with_the_last_frame_is_taken_in_whole(loop):
 
 
 def test_it_does_not_sleep_until_a_dialog_has_dimmed_the_rest(loop):
-    loop.ui.state.about = True
+    loop.ui.state.part(AboutDialog).open()
     loop.run(1)
     assert imgui.get_current_context().dim_bg_ratio == 1.0
 

@@ -9,8 +9,9 @@ import glfw
 import numpy as np
 import pytest
 
-from akap_editor.app import window as window_module
 from akap_editor.app.canvas import scene as picture_module
+from akap_editor.app.commands.registry import SHORTCUTS
+from akap_editor.app.commands.shortcuts_page import ShortcutsPage
 from akap_editor.app.window import SETTLE_FRAMES
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor import gestures
@@ -226,10 +227,10 @@ def test_view_changes_are_seen_in_the_very_next_frame(ui, press):
 
 def test_a_key_that_closes_a_page_does_nothing_else(pinned):
     pinned.editor.select({2})
-    pinned.state.keys = True
+    SHORTCUTS.run(pinned.state)
     pinned.settle()
-    pinned.key(window_module.commands.KEYS.chords[0])
-    assert not pinned.state.keys
+    pinned.key(SHORTCUTS.chords[0])
+    assert not pinned.state.part(ShortcutsPage).is_open
 
 
 @pytest.mark.parametrize("changed", [False, True])

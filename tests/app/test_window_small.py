@@ -9,7 +9,7 @@ import pytest
 from akap_editor.app import files, widgets
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
-from akap_editor.app.dialogs.file_dialog import UnsavedChangesQuestion
+from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
 from akap_editor.app.window import SMALLEST
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
@@ -27,15 +27,16 @@ def ask_save(state):
 
 
 def ask_export(state):
-    state.dialog(ExportPoseDialog).open(state)
+    state.part(ExportPoseDialog).open(state)
 
 
 def ask_question(state):
-    state.question = UnsavedChangesQuestion(lambda: None)
+    question = UnsavedChangesQuestion(state.document.drawing.name, lambda: None, lambda: None)
+    state.part(UnsavedChangesDialog).ask(question)
 
 
 def show_keys(state):
-    state.keys = True
+    commands.SHORTCUTS.run(state)
 
 
 def show_error(state):

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.commands.command import Command
+from akap_editor.app.dialogs.file_dialog import FileDialog, FileRequest
 from akap_editor.app.jobs.background_thread import BackgroundThread
 from akap_editor.app.jobs.task import Task
 from akap_editor.app.window import Window
@@ -62,7 +63,9 @@ class WindowDriver:
             imgui.internal.close_popup_to_level(0, False)
         wake = self.window.wake
         editor = Editor(clock, BackgroundThread("engine", wake))
-        self.window.state = AppState(editor, wake, exporter=self.window.state.exporter)
+        self.window.state = AppState(
+            editor, wake, exporter=self.window.state.exporter, thumbnails=self.window.state.thumbnails
+        )
         self.editor.ui_scale = self.window.scale
         files.show_document(self.state, document)
         self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.empty_place)))
@@ -90,6 +93,11 @@ class WindowDriver:
     @property
     def pins(self) -> tuple[Pin, ...]:
         return self.session.state.pins
+
+    @property
+    def file_request(self) -> FileRequest | None:
+        """The request that the file dialog shows."""
+        return self.state.part(FileDialog).request
 
     @property
     def tool(self) -> str:

@@ -81,6 +81,8 @@ class Submenu:
     files: Callable[[AppState], list[tuple[str, Path]]]
 
 
+Menu = tuple[str, tuple[Command | Submenu | None, ...]]  # its name and its lines; None: a separator
+
 _KEY_NAMES = {
     "_0": "0",
     "_1": "1",

@@ -1,6 +1,6 @@
 """The command palette: every command and bundled drawing, found by a few of its letters."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +10,6 @@ from .. import files, widgets
 from ..app_state import AppState
 from ..theme import ACCENT, QUIET, TEXT, packed
 from .command import Command, Submenu
-from .registry import COMMANDS, MENUS
 
 _NAME = "##palette"
 _FLAGS = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
@@ -40,14 +39,14 @@ class Entry:
 Found = tuple[Entry, tuple[int, ...]]
 
 
-def entries(state: AppState) -> list[Entry]:
-    """All that can be run, in the order of the menus."""
+def entries(state: AppState, items: Iterable[Command | Submenu]) -> list[Entry]:
+    """An entry for each command and each file of a submenu; only the last one of a label."""
     found = []
-    for item in (*(item for _, items in MENUS for item in items), *COMMANDS):
+    for item in items:
         if isinstance(item, Submenu):
             for name, path in item.files(state):
                 found.append(Entry(f"{item.label}: {name}", _opens(path)))
-        elif item is not None:
+        else:
             found.append(_entry(item, state))
     return list({entry.label: entry for entry in found}.values())
 
@@ -97,37 +96,52 @@ def ranked(query: str, found: list[Entry]) -> list[Found]:
     return [(entry, places) for _, places, entry in scored]
 
 
-def draw(state: AppState, scale: float) -> None:
-    """One frame of the palette, if it is open."""
-    palette = state.palette
-    if palette is None:
-        return
-    is_new = not palette.shown  # the key that opened it may be pressed still
-    palette.shown = True
-    if not _begin(is_new, scale):
-        state.palette = None
-        return
-    if is_new:
-        imgui.set_keyboard_focus_here()
-    imgui.set_next_item_width(-1)
-    changed, palette.query = imgui.input_text_with_hint("##query", _HINT, palette.query)
-    found = ranked(palette.query, entries(state))
-    steps = [step for key, step in _STEPS.items() if imgui.is_key_pressed(key)]
-    chosen = 0 if changed else palette.chosen + sum(steps)
-    palette.chosen = max(0, min(chosen, len(found) - 1))
-    picked = _list(found, palette.chosen, is_new or changed or bool(steps), scale)
-    if found and widgets.enter_key_pressed() and not is_new:
-        picked = found[palette.chosen][0]
-    if picked is not None and not picked.enabled:
-        picked = None
-    if picked is not None or (widgets.cancel_pressed() and not is_new):
-        widgets.close_popup()
-        state.palette = None
-    imgui.end_popup()
-    if picked is not None:
-        run = picked.run
-        state.notice = ""
-        state.run_reporting_errors(lambda: run(state))
+class Palette:
+    """The window's palette: what is typed, and which line is selected."""
+
+    def __init__(self) -> None:
+        self.is_open = False
+        self.query = ""
+        self._items: Sequence[Command | Submenu] = ()
+        self._selected = 0
+        self._is_new = False  # in its first frame, the key that opened it may still be pressed
+
+    def open(self, items: Sequence[Command | Submenu], query: str = "") -> None:
+        """Show the palette. items: all that it lists, in this order; query: the letters in its field."""
+        self.is_open = self._is_new = True
+        self.query, self._items, self._selected = query, items, 0
+
+    def draw(self, state: AppState, scale: float) -> None:
+        """Draw one frame, if it is open. scale: points per design point."""
+        if not self.is_open:
+            return
+        is_new, self._is_new = self._is_new, False
+        if not _begin(is_new, scale):
+            self.is_open = False
+            return
+        entry = self._draw_content(state, is_new, scale)
+        if entry is not None or (widgets.cancel_pressed() and not is_new):
+            widgets.close_popup()
+            self.is_open = False
+        imgui.end_popup()
+        if entry is not None:
+            state.notice = ""
+            state.run_reporting_errors(lambda: entry.run(state))
+
+    def _draw_content(self, state: AppState, is_new: bool, scale: float) -> Entry | None:
+        """Draw field and list; return the enabled entry that was chosen, if any."""
+        if is_new:
+            imgui.set_keyboard_focus_here()
+        imgui.set_next_item_width(-1)
+        is_changed, self.query = imgui.input_text_with_hint("##query", _HINT, self.query)
+        found = ranked(self.query, entries(state, self._items))
+        steps = [step for key, step in _STEPS.items() if imgui.is_key_pressed(key)]
+        selected = 0 if is_changed else self._selected + sum(steps)
+        self._selected = max(0, min(selected, len(found) - 1))
+        entry = _list(found, self._selected, is_new or is_changed or bool(steps), scale)
+        if found and widgets.enter_key_pressed() and not is_new:
+            entry = found[self._selected][0]
+        return entry if entry is not None and entry.enabled else None
 
 
 def _begin(is_new: bool, scale: float) -> bool:

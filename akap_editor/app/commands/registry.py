@@ -14,12 +14,14 @@ from ...resources import bundled_drawings
 from .. import file_commands, files
 from ..app_state import AppState
 from ..canvas.view_options import RANGES, Measure
+from ..dialogs.about import AboutDialog
 from ..dialogs.export_pose import ExportPoseDialog
-from ..dialogs.file_dialog import Palette
 from ..panels.method_parameters import with_default_values
 from . import keying
-from .command import CTRL, SHIFT, Command, Key, Submenu, always, has_drawing
+from .command import CTRL, SHIFT, Command, Key, Menu, Submenu, always, has_drawing
 from .keyboard_pointer import CROSSHAIR, MENU_HERE, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
+from .palette import Palette
+from .shortcuts_page import ShortcutsPage
 from .timeline import ANIMATION
 
 
@@ -77,8 +79,12 @@ def _remove(state: AppState) -> None:
         state.timeline.keyframe_playback.delete_keyframes()
 
 
-def _find(state: AppState) -> None:
-    state.palette = Palette()
+def _open_palette(state: AppState) -> None:
+    state.part(Palette).open(PALETTE_ITEMS)
+
+
+def _open_shortcuts(state: AppState) -> None:
+    state.part(ShortcutsPage).open(MENUS, COMMANDS, SHORTCUTS)
 
 
 def _actual_size(state: AppState) -> None:
@@ -149,8 +155,6 @@ _mesh, _mesh_on = _toggle("show_mesh")
 _pins, _pins_on = _toggle("show_pins")
 _checker, _checker_on = _toggle("checker")
 _split, _split_on = _toggle("split")
-_about, _ = _toggle("about")
-_keys, _ = _toggle("keys")
 
 OPEN = Command("Open...", files.choose_and_open, (CTRL | Key.o,), icons.ICON_FA_FOLDER_OPEN)
 MASK = Command("Cut Out with Mask...", file_commands.choose_mask, (), "", file_commands.can_mask)
@@ -158,7 +162,7 @@ SAVE = Command("Save", files.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, h
 SAVE_AS = Command("Save As...", files.save_as, (CTRL | SHIFT | Key.s,), "", has_drawing)
 EXPORT = Command(
     "Export...",
-    lambda state: state.dialog(ExportPoseDialog).open(state),
+    lambda state: state.part(ExportPoseDialog).open(state),
     (CTRL | Key.e,),
     icons.ICON_FA_FILE_EXPORT,
     has_drawing,
@@ -316,9 +320,9 @@ SHOW_REFERENCE = Command(
 )
 OVERLAYS = (SHOW_FIELD, SHOW_AREA, SHOW_ANGLE, SHOW_GHOST, SHOW_TRAILS)
 
-PALETTE = Command("Find Command...", _find, (CTRL | Key.k, Key.f3))
-KEYS = Command("Keys and Mouse", _keys, (Key.f1,), typed="?")
-ABOUT = Command("About akap-editor", _about)
+PALETTE = Command("Find Command...", _open_palette, (CTRL | Key.k, Key.f3))
+SHORTCUTS = Command("Keys and Mouse", _open_shortcuts, (Key.f1,), typed="?")
+ABOUT = Command("About akap-editor", lambda state: state.part(AboutDialog).open())
 
 OPEN_BUNDLED = Submenu(
     "Open Bundled Drawing", lambda state: [(path.stem.capitalize(), path) for path in bundled_drawings()]
@@ -327,8 +331,7 @@ OPEN_RECENT = Submenu("Open Recent", lambda state: [(path.name, path) for path i
 
 _EXPORTS = (EXPORT, SAVE_RECORDING)
 
-# None is a line between groups.
-MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
+MENUS: tuple[Menu, ...] = (
     (
         "File",
         (
@@ -386,7 +389,7 @@ MENUS: tuple[tuple[str, tuple[Command | Submenu | None, ...]], ...] = (
         ),
     ),
     ("Animation", ANIMATION),
-    ("Help", (PALETTE, KEYS, ABOUT)),
+    ("Help", (PALETTE, SHORTCUTS, ABOUT)),
 )
 COMMANDS = (
     *(command for _, group in MENUS for command in group if isinstance(command, Command)),
@@ -394,6 +397,9 @@ COMMANDS = (
     *(ERASE, SMALLER, LARGER),
     *PANNING,
 )
+
+
+PALETTE_ITEMS = (*(item for _, items in MENUS for item in items if item is not None), *COMMANDS)
 
 
 def run_pressed(state: AppState) -> None:

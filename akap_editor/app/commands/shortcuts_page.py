@@ -1,12 +1,13 @@
 """All keys and what the mouse does, on one page."""
 
+from collections.abc import Sequence
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACTIVE, QUIET, TEXT, packed
-from .command import Command, Key
-from .registry import COMMANDS, KEYS, MENUS
+from .command import Command, Key, Menu
 
 _MOUSE = (
     ("Click on the drawing", "add a pin"),
@@ -29,21 +30,22 @@ _MENUS = (
     ("F6, Shift+F6", "to another panel"),
     ("Tab, arrows, Enter", "walk and use a panel"),
 )
+Group = tuple[str, list[tuple[str, str]]]  # a title and its lines: keys, and what they do
 _COLUMN, _KEYS = 302, 158  # widths in design points
 _MOST_COLUMNS = 4
 _TOOLS_AT = 3  # among the groups: there the columns are of about one height
 _LINES = {Key.up_arrow: -1, Key.down_arrow: 1, Key.page_up: -10, Key.page_down: 10}  # that keys scroll
 
 
-def groups() -> list[tuple[str, list[tuple[str, str]]]]:
-    """Titles, each with its lines: keys, and what they do."""
+def groups(menus: Sequence[Menu], commands: Sequence[Command]) -> list[Group]:
+    """Titles, each with its lines: keys, and what they do. commands: those of the menus and others."""
     found = [("Mouse", list(_MOUSE))]
     in_menus: set[int] = set()
-    for name, items in MENUS:
+    for name, items in menus:
         listed = [item for item in items if isinstance(item, Command) and item.chords]
         in_menus.update(map(id, listed))
         found.append((name, [_line(command) for command in listed]))
-    tools = [command for command in COMMANDS if command.chords and id(command) not in in_menus]
+    tools = [command for command in commands if command.chords and id(command) not in in_menus]
     found[-1][1].extend(_MENUS)
     found.insert(_TOOLS_AT, ("Tools", [_line(command) for command in tools]))
     return [(title, lines) for title, lines in found if lines]
@@ -53,20 +55,43 @@ def _line(command: Command) -> tuple[str, str]:
     return command.key_name, command.label.rstrip(".")
 
 
-def draw(state: AppState, scale: float) -> None:
-    """The page as a dialog; ?, Esc or Enter closes it."""
-    if not widgets.begin_dialog("Keys and mouse"):
-        return
+class ShortcutsPage:
+    """The page as a dialog; Esc, Enter or the key that opened it closes it."""
+
+    def __init__(self) -> None:
+        self.is_open = False
+        self._groups: list[Group] = []
+        self._command: Command | None = None
+
+    def open(self, menus: Sequence[Menu], commands: Sequence[Command], command: Command) -> None:
+        """Show the page. menus, commands: those that it lists; command: the one that shows it."""
+        self.is_open, self._groups, self._command = True, groups(menus, commands), command
+
+    def draw(self, state: AppState, scale: float) -> None:
+        """Draw one frame. scale: points per design point."""
+        if not widgets.begin_dialog("Keys and mouse"):
+            return
+        _draw_groups(self._groups, scale)
+        is_closed = widgets.button("Close", primary=True) or widgets.cancel_pressed()
+        is_key_pressed = self._command is not None and self._command.is_pressed()
+        if is_closed or widgets.confirm_pressed() or is_key_pressed:
+            self.is_open = False
+            widgets.close_popup()
+        imgui.end_popup()
+
+
+def _draw_groups(groups: list[Group], scale: float) -> None:
+    """Draw all groups in as many columns as the window has room for; keys scroll them."""
     room = imgui.get_main_viewport().size  # ImGui makes no dialog larger
     count = max(1, min(_MOST_COLUMNS, int((room.x - 40 * scale) / (_COLUMN * scale))))
-    columns = _columns(groups(), count)
+    columns = columns_of(groups, count)
     lines = max(sum(len(lines) + 2 for _, lines in column) for column in columns)
     height = min(lines * imgui.get_text_line_height_with_spacing(), room.y - 140 * scale)
     width = len(columns) * _COLUMN * scale + imgui.get_style().scrollbar_size
     imgui.begin_child("##all", ImVec2(width, height), 0, imgui.WindowFlags_.no_nav_inputs)
-    by = sum(lines for key, lines in _LINES.items() if imgui.is_key_pressed(key))
-    if by:
-        imgui.set_scroll_y(imgui.get_scroll_y() + by * imgui.get_text_line_height_with_spacing())
+    scrolled = sum(lines for key, lines in _LINES.items() if imgui.is_key_pressed(key))
+    if scrolled:
+        imgui.set_scroll_y(imgui.get_scroll_y() + scrolled * imgui.get_text_line_height_with_spacing())
     if imgui.begin_table("##columns", len(columns)):
         imgui.table_next_row()
         for column in columns:
@@ -75,29 +100,23 @@ def draw(state: AppState, scale: float) -> None:
                 _group(title, rows, scale)
         imgui.end_table()
     imgui.end_child()
-    done = widgets.button("Close", primary=True)
-    if done or widgets.cancel_pressed() or widgets.confirm_pressed() or KEYS.is_pressed():
-        widgets.close(state, "keys", False)
-    imgui.end_popup()
 
 
-def _columns(
-    parts: list[tuple[str, list[tuple[str, str]]]], count: int
-) -> list[list[tuple[str, list[tuple[str, str]]]]]:
-    """The groups in order, cut where the tallest of ``count`` columns becomes least tall."""
-    heights = [len(lines) + 2 for _, lines in parts]
+def columns_of(groups: list[Group], count: int) -> list[list[Group]]:
+    """The groups in order, in at most ``count`` columns, the tallest of which is as short as possible."""
+    heights = [len(lines) + 2 for _, lines in groups]
     for limit in range(max(heights), sum(heights) + 1):
-        columns: list[list[tuple[str, list[tuple[str, str]]]]] = [[]]
-        used = 0
-        for part, height in zip(parts, heights, strict=True):
-            if used + height > limit:
+        columns: list[list[Group]] = [[]]
+        column_height = 0
+        for group, height in zip(groups, heights, strict=True):
+            if column_height + height > limit:
                 columns.append([])
-                used = 0
-            columns[-1].append(part)
-            used += height
+                column_height = 0
+            columns[-1].append(group)
+            column_height += height
         if len(columns) <= count:
             return columns
-    return [parts]
+    return [groups]
 
 
 def _group(title: str, rows: list[tuple[str, str]], scale: float) -> None:

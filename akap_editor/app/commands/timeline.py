@@ -77,7 +77,7 @@ ONION = Command(
 )
 EXPORT_ANIMATION = Command(
     "Export Animation...",
-    lambda state: state.dialog(ExportAnimationDialog).open(state),
+    lambda state: state.part(ExportAnimationDialog).open(state),
     (CTRL | SHIFT | Key.e,),
     icons.ICON_FA_FILM,
     keying.can_play,

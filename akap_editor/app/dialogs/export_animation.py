@@ -19,7 +19,7 @@ from ..jobs.frame_encoder import FrameEncoder
 from ..jobs.task import Progress, Steps, Task
 from ..preferences import Preferences
 from .export_widgets import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
-from .file_dialog import FileRequest
+from .file_dialog import FileDialog, FileRequest
 
 PREFERENCE = "animation"  # name of the stored options
 
@@ -167,7 +167,9 @@ def request_file(state: AppState, options: AnimationExportOptions) -> None:
         name = f"{state.document.drawing.name}-sheet.png"
     use = partial(export_animation, state, options)
     suffixes = (options.chosen_format.suffix,)
-    state.request = FileRequest("Export animation", suffixes, state.folder, use, name, saving=True)
+    state.part(FileDialog).ask(
+        FileRequest("Export animation", suffixes, state.folder, use, name, saving=True)
+    )
 
 
 def export_animation(state: AppState, options: AnimationExportOptions, path: Path) -> None:

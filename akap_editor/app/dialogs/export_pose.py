@@ -15,7 +15,7 @@ from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT
 from .export_widgets import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
-from .file_dialog import FileRequest
+from .file_dialog import FileDialog, FileRequest
 
 SCALES = (0.5, 1.0, 2.0, 4.0)
 SMALLEST_SCALE, LARGEST_SCALE = 0.01, 100.0
@@ -100,7 +100,7 @@ def request_file(state: AppState, options: PoseExportOptions) -> None:
     if state.document is not None:
         suffixes, name = (options.format.suffix,), options.file_name(state.document)
         use = partial(export_pose, state, replace(options))
-        state.request = FileRequest("Export to", suffixes, state.folder, use, name, saving=True)
+        state.part(FileDialog).ask(FileRequest("Export to", suffixes, state.folder, use, name, saving=True))
 
 
 def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None:

@@ -1,33 +1,37 @@
-"""What the user is asked: a question, a file, a command."""
+"""Asks for a file: with the system's dialog where there is one, otherwise with a list of the folder."""
 
 import os
+import shutil
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import portable_file_dialogs as native
+
+from .. import widgets
+from ..app_state import AppState
+from ..theme import ACCENT, QUIET
+
+_WIDTH, _HEIGHT = 520, 260  # of the list of files, in design points
+_OTHER_HEIGHT = 220  # of everything around the list in a low window, in design points
 
 
-@dataclass
-class UnsavedChangesQuestion:
-    """Unsaved changes stand in the way of ``go_on``."""
-
-    go_on: Callable[[], None]
-
-
-@dataclass
-class Palette:
-    """The command palette: what is typed, which line is chosen, and whether it has been on the screen."""
-
-    query: str = ""
-    chosen: int = 0
-    shown: bool = False
+def has_native_dialogs() -> bool:
+    """Whether the system can ask for a file. Without these programs, it would always answer “cancelled”."""
+    return sys.platform in ("win32", "darwin") or any(map(shutil.which, ("zenity", "kdialog", "qarma")))
 
 
 @dataclass
 class FileRequest:
-    """A file is to be chosen, and ``use`` gets its path.
+    """A file that the user is to choose.
 
-    suffixes: of the files that are meant, the first one is added to a name without any; folder, name: what is
-    in the dialog's fields; saving: whether the file is to be written.
+    title: of the dialog; suffixes: of the files that are listed, the first one is added to a name without
+    any; folder, name: content of the dialog's fields; use: is called with the chosen path; saving: whether
+    the file is to be written.
     """
 
     title: str
@@ -39,22 +43,160 @@ class FileRequest:
 
     @property
     def path(self) -> Path:
-        """The file that the fields name, or a folder that is there."""
-        # os.path, unlike Path, takes whatever may be typed: unknown users, names that are too long
+        """The file that the fields name, or an existing folder."""
+        # os.path, unlike Path, accepts whatever may be typed: unknown users, names that are too long
         path = self.folder / os.path.expanduser(self.name.strip())
         if self.saving and not path.suffix and not os.path.isdir(path):
             return path.with_name(path.name + self.suffixes[0])
         return path
 
     def entries(self) -> list[tuple[str, bool]]:
-        """Folders, then files that are meant, each with whether it is a folder; none if unreadable."""
+        """Names of folders, then of files with the suffixes; True for folders. Empty if unreadable."""
         try:
-            found = [(entry.name, entry.is_dir()) for entry in self.folder.iterdir()]
+            entries = [(entry.name, entry.is_dir()) for entry in self.folder.iterdir()]
         except OSError:
             return []
-        shown = [
+        listed = [
             (name, is_folder)
-            for name, is_folder in found
+            for name, is_folder in entries
             if not name.startswith(".") and (is_folder or name.lower().endswith(self.suffixes))
         ]
-        return sorted(shown, key=lambda entry: (not entry[1], entry[0].lower()))
+        return sorted(listed, key=lambda entry: (not entry[1], entry[0].lower()))
+
+
+class FileDialog:
+    """Answers one request at a time.
+
+    uses_native: whether the system's own dialog is shown.
+    """
+
+    def __init__(self) -> None:
+        self.uses_native = False
+        self.request: FileRequest | None = None
+        self._native: Any = None
+        self._is_new = False  # whether the name has yet to get the keyboard focus
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a file is to be chosen."""
+        return self.request is not None
+
+    @property
+    def native_is_open(self) -> bool:
+        """Whether the system's dialog is open.
+
+        Its answer must be polled: the library has no callback, and its blocking call would hold the
+        interpreter, so that a thread could not wait for it either.
+        """
+        return self._native is not None
+
+    @property
+    def native_is_answered(self) -> bool:
+        """Whether the user has answered the system's dialog."""
+        return self._native is not None and bool(self._native.ready(0))
+
+    def ask(self, request: FileRequest) -> None:
+        """Show the dialog."""
+        self.request, self._is_new = request, True
+
+    def draw(self, state: AppState, scale: float) -> None:
+        """Draw one frame. scale: points per design point."""
+        request = self.request
+        if request is None:
+            return
+        if self.uses_native:
+            self._poll_native(request)
+        elif widgets.begin_dialog(request.title):
+            self._draw_fields(request, scale)
+            imgui.end_popup()
+
+    def _poll_native(self, request: FileRequest) -> None:
+        if self._native is None:
+            self._native = _open_native(request)
+        elif self._native.ready(0):
+            result = self._native.result()
+            self._native, self.request = None, None
+            path = result if isinstance(result, str) else next(iter(result), "")
+            if path:
+                request.name = path
+                request.use(request.path)
+
+    def _draw_fields(self, request: FileRequest, scale: float) -> None:
+        _draw_folder(request, scale)
+        is_chosen = _draw_entries(request, scale)
+        imgui.set_next_item_width(_WIDTH * scale)
+        if self._is_new:
+            imgui.set_keyboard_focus_here()
+            self._is_new = False
+        _, request.name = imgui.input_text("##name", request.name)
+        replaces = request.saving and bool(request.name.strip()) and os.path.isfile(request.path)
+        if replaces:
+            warning = " is there already and would be replaced"
+            room = _WIDTH * scale - imgui.calc_text_size(warning).x
+            imgui.text_colored(ImVec4(*ACCENT), widgets.shortened(request.path.name, room) + warning)
+        imgui.spacing()
+        imgui.begin_disabled(not request.name.strip())
+        is_accepted = widgets.button(
+            ("Replace" if replaces else "Save") if request.saving else "Open", primary=True
+        )
+        imgui.end_disabled()
+        imgui.same_line()
+        if widgets.button("Cancel") or widgets.cancel_pressed():
+            self._close()
+        elif (is_accepted or is_chosen or widgets.confirm_pressed()) and request.name.strip():
+            self._accept(request)
+
+    def _accept(self, request: FileRequest) -> None:
+        """Use the file that the fields name; enter it if it is a folder."""
+        path = request.path
+        if os.path.isdir(path):
+            request.folder, request.name = path, ""
+            return
+        self._close()
+        request.use(path)
+
+    def _close(self) -> None:
+        self.request = None
+        widgets.close_popup()
+
+
+def _open_native(request: FileRequest) -> Any:
+    patterns = " ".join(f"*{suffix}" for suffix in request.suffixes)
+    if request.saving:
+        return native.save_file(request.title, str(request.path), [patterns, patterns])
+    return native.open_file(request.title, str(request.folder), [patterns, patterns])
+
+
+def _draw_folder(request: FileRequest, scale: float) -> None:
+    """Draw the folder's path and a button that leads to its parent."""
+    if imgui.button(icons.ICON_FA_ARROW_UP + "##up"):
+        request.folder = request.folder.parent
+    widgets.show_tooltip("Parent folder")
+    imgui.same_line()
+    imgui.align_text_to_frame_padding()
+    folder = widgets.shortened(str(request.folder), (_WIDTH - 50) * scale, end=True)
+    imgui.text_colored(ImVec4(*QUIET), folder)
+
+
+def _draw_entries(request: FileRequest, scale: float) -> bool:
+    """Draw the folder's content; return whether a file was double-clicked or confirmed with Enter.
+
+    A folder is entered by the same actions.
+    """
+    is_chosen = False
+    is_confirmed = imgui.is_mouse_double_clicked(0) or widgets.enter_key_pressed()
+    height = min(_HEIGHT * scale, imgui.get_main_viewport().size.y - _OTHER_HEIGHT * scale)
+    child_flags = imgui.ChildFlags_.borders | widgets.NAV_FLATTENED
+    imgui.begin_child("##entries", ImVec2(_WIDTH * scale, height), child_flags)
+    for name, is_folder in request.entries():
+        icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
+        flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups
+        label = widgets.shortened(name, imgui.get_content_region_avail().x - 2 * imgui.get_font_size())
+        is_clicked = imgui.selectable(f"{icon}  {label}###{name}", name == request.name, flags)[0]
+        widgets.show_tooltip(name if label != name else "")
+        if is_clicked and not is_folder:
+            request.name, is_chosen = name, is_confirmed
+        elif is_clicked and is_confirmed:
+            request.folder /= name
+    imgui.end_child()
+    return is_chosen

@@ -28,6 +28,7 @@ def draw(state: AppState, task: Task, scale: float) -> None:
         imgui.same_line()
     if widgets.button("Cancel") or widgets.cancel_pressed():
         task.cancel()
-        widgets.close(state, "task", None)
+        state.task = None
+        widgets.close_popup()
         state.notice = f"{task.title}: cancelled"
     imgui.end_popup()

@@ -11,7 +11,7 @@ from ..app_state import AppState
 from ..commands import menu_bar as menus
 from ..commands import registry as commands
 from ..commands.command import Command
-from ..dialogs import first_steps as hints
+from ..dialogs.first_steps import FirstSteps
 from ..theme import ACCENT, QUIET, TEXT, packed
 from ..timeline import panel as timeline_panel
 from . import basic_sections as sections
@@ -73,7 +73,7 @@ def draw(state: AppState, scale: float) -> tuple[float, float, float, float]:
     if state.document is not None:
         _tool_bar(state, scale)
     _side_panel(state, scale)
-    hints.draw(state, scale)
+    state.part(FirstSteps).draw(state, scale)
     viewport = imgui.get_main_viewport()
     left, top = viewport.work_pos.x, viewport.work_pos.y
     return left, top, left + viewport.work_size.x, top + viewport.work_size.y

@@ -80,7 +80,7 @@ def _buttons(state: AppState, scale: float) -> None:
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(playing.played_range[1] <= playing.played_range[0])
     if _button(icons.ICON_FA_FILM, "export", scale, True, TEXT):
-        state.dialog(ExportAnimationDialog).open(state)
+        state.part(ExportAnimationDialog).open(state)
     imgui.end_disabled()
     widgets.show_tooltip("Export the part between the marks as an animation, a video or sprites")
 

@@ -246,7 +246,7 @@ def undo(ui, hand):
 def open_dialog(ui, hand):
     hand.key_press(Key.mod_ctrl | Key.o)
     hand.yield_(2)
-    assert ui.state.request is not None
+    assert ui.file_request is not None
     hand.mouse_up(0)
     hand.key_press(Key.escape)
 

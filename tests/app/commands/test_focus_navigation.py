@@ -5,6 +5,7 @@ import pytest
 
 from akap_editor.app.canvas.view_options import RANGES
 from akap_editor.app.commands.command import SHIFT, Key
+from akap_editor.app.dialogs.first_steps import FirstSteps
 from akap_editor.editor import gestures
 from akap_editor.editor.tools.keyboard_pointer import BIG_STEP, STEP
 
@@ -205,7 +206,7 @@ def pane():
 
 
 def test_f6_goes_to_every_pane_and_back_to_the_canvas(keyed):
-    keyed.state.split, keyed.state.first_steps = True, True
+    keyed.state.split, keyed.state.part(FirstSteps).is_open = True, True
     keyed.state.view.heat = "area"
     keyed.settle()
     panes = ["Panel", "Tools", "Timeline", "Comparison", "##legend", "First steps", ""]
@@ -237,10 +238,10 @@ def test_the_range_of_the_scale_is_chosen_by_keys(ui):
 
 
 def test_first_steps_are_put_away_by_keys(ui):
-    ui.state.first_steps = True
+    ui.state.part(FirstSteps).is_open = True
     ui.settle()
     keys(ui, *[Key.f6] * 3, Key.space)
-    assert not ui.state.first_steps
+    assert not ui.state.part(FirstSteps).is_open
 
 
 def test_lists_of_the_panel_are_walked_into(pinned):

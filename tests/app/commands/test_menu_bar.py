@@ -5,8 +5,8 @@ import pytest
 
 from akap_editor.app import files
 from akap_editor.app.commands.command import CTRL, SHIFT, Key, Submenu
-from akap_editor.app.commands.palette import Entry, entries, match, ranked
-from akap_editor.app.commands.registry import COMMANDS, MENUS
+from akap_editor.app.commands.palette import Entry, Palette, entries, match, ranked
+from akap_editor.app.commands.registry import COMMANDS, MENUS, PALETTE_ITEMS
 from akap_editor.resources import bundled_drawings
 
 ALT = Key.mod_alt
@@ -114,7 +114,7 @@ def test_the_places_are_those_of_the_letters():
 
 
 def test_without_a_query_all_is_listed_in_the_order_of_the_menus(pinned):
-    found = entries(pinned.state)
+    found = entries(pinned.state, PALETTE_ITEMS)
     listed = [entry for entry, _ in ranked(" ", found)]
     assert len(listed) == len(found)
     assert [e for e in listed if e.enabled] == [e for e in found if e.enabled]
@@ -123,7 +123,7 @@ def test_without_a_query_all_is_listed_in_the_order_of_the_menus(pinned):
 
 
 def test_every_command_is_in_the_palette_with_its_key(pinned):
-    found = {entry.label: entry for entry in entries(pinned.state)}
+    found = {entry.label: entry for entry in entries(pinned.state, PALETTE_ITEMS)}
     for command in COMMANDS:
         assert found[command.label.rstrip(".")].key == command.key_name
     assert "Open Bundled Drawing: Cat" in found
@@ -148,17 +148,17 @@ def type_into_palette(ui, chord, text, *keys):
 @pytest.mark.parametrize("chord", [CTRL | Key.k, Key.f3])
 def test_a_command_is_found_and_run(pinned, chord):
     type_into_palette(pinned, chord, "shmesh", Key.enter)
-    assert pinned.state.palette is None
+    assert not pinned.state.part(Palette).is_open
     assert pinned.state.show_mesh
     pinned.key(Key.m)
     assert not pinned.state.show_mesh, "the keys are the canvas' again"
 
 
 def test_arrows_choose_another_line(pinned):
-    lines = [entry.label for entry, _ in ranked("sel", entries(pinned.state))]
+    lines = [entry.label for entry, _ in ranked("sel", entries(pinned.state, PALETTE_ITEMS))]
     pinned.editor.select({2})
     assert lines.index("Select All Pins") == 0
-    lines = [entry.label for entry, _ in ranked("sel", entries(pinned.state))]
+    lines = [entry.label for entry, _ in ranked("sel", entries(pinned.state, PALETTE_ITEMS))]
     wanted = lines.index("Remove Selected Pins")
     assert 0 < wanted < len(lines) - 1
     keys = (Key.up_arrow, *[Key.down_arrow] * (wanted + 1), Key.up_arrow)
@@ -169,7 +169,7 @@ def test_arrows_choose_another_line(pinned):
 def test_escape_and_a_click_beside_it_close_it_and_run_nothing(pinned):
     before = pinned.document
     type_into_palette(pinned, Key.f3, "reset", Key.escape)
-    assert pinned.state.palette is None
+    assert not pinned.state.part(Palette).is_open
 
     def click_beside(hand):
         hand.key_press(Key.f3)
@@ -178,7 +178,7 @@ def test_escape_and_a_click_beside_it_close_it_and_run_nothing(pinned):
         hand.mouse_click(0)
 
     pinned.do(click_beside)
-    assert pinned.state.palette is None
+    assert not pinned.state.part(Palette).is_open
     assert pinned.document is before
 
 
@@ -192,7 +192,7 @@ def test_what_makes_no_sense_now_is_listed_but_not_run(pinned):
         hand.yield_(2)
         hand.key_press(Key.enter)
         hand.yield_(2)
-        still_open.append(pinned.state.palette is not None)
+        still_open.append(pinned.state.part(Palette).is_open)
 
     pinned.do(act)
     assert still_open == [True]
@@ -202,7 +202,7 @@ def test_what_makes_no_sense_now_is_listed_but_not_run(pinned):
 def test_no_query_breaks_it(pinned):
     for query in ("zzzz", "\\", "%s", "ÄÖ", "a" * 300, " ", "##"):
         type_into_palette(pinned, Key.f3, query, Key.down_arrow, Key.page_down, Key.page_up, Key.escape)
-        assert pinned.state.palette is None
+        assert not pinned.state.part(Palette).is_open
         assert not pinned.state.error
 
 

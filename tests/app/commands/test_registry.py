@@ -9,7 +9,10 @@ from akap_editor.app import glfw_key_order as key_order
 from akap_editor.app.canvas.view_options import RANGES
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
+from akap_editor.app.commands.palette import Palette
 from akap_editor.app.commands.registry import COMMANDS, MENUS
+from akap_editor.app.commands.shortcuts_page import ShortcutsPage
+from akap_editor.app.dialogs.about import AboutDialog
 from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.panels import side_panel as panels
@@ -65,7 +68,7 @@ def moved_camera(ui):
 def watch_palette(ui):
     """Test Engine closes popups at the end of its tests, so each frame is looked at."""
     ui.palettes = []
-    ui.window.after_draw[:] = [lambda: ui.palettes.append(ui.state.palette)]
+    ui.window.after_draw[:] = [lambda: ui.palettes.append(ui.state.part(Palette).is_open)]
 
 
 def is_rest(ui):
@@ -182,7 +185,7 @@ CASES = {
         lambda ui: RANGES[ui.state.view.heat_range] == 2.0,
     ),
     "Play": (once_keyed, lambda ui: ui.state.timeline.keyframe_playback.time == 0.2),
-    "Export Animation...": (keyed, lambda ui: ui.state.dialog(ExportAnimationDialog).is_open),
+    "Export Animation...": (keyed, lambda ui: ui.state.part(ExportAnimationDialog).is_open),
     "Keyframe Here": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
     "Remove Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
     "Duplicate Keyframe": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5)),
@@ -191,14 +194,14 @@ CASES = {
     "Move Keyframe Earlier": (keyed, lambda ui: times(ui) == (0.0, 0.95)),
     "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
     "Onion Skin": (keyed, lambda ui: ui.state.timeline.keyframe_playback.onion_skin.is_shown),
-    "Open...": (nothing, lambda ui: ui.state.request is not None and not ui.state.request.saving),
+    "Open...": (nothing, lambda ui: ui.file_request is not None and not ui.file_request.saving),
     "Cut Out with Mask...": (
         nothing,
-        lambda ui: ui.state.request is not None and not ui.state.request.saving,
+        lambda ui: ui.file_request is not None and not ui.file_request.saving,
     ),
-    "Save": (bent, lambda ui: ui.state.request is not None and ui.state.request.saving),
-    "Save As...": (nothing, lambda ui: ui.state.request is not None and ui.state.request.saving),
-    "Export...": (nothing, lambda ui: ui.state.dialog(ExportPoseDialog).is_open),
+    "Save": (bent, lambda ui: ui.file_request is not None and ui.file_request.saving),
+    "Save As...": (nothing, lambda ui: ui.file_request is not None and ui.file_request.saving),
+    "Export...": (nothing, lambda ui: ui.state.part(ExportPoseDialog).is_open),
     "Close": (nothing, lambda ui: ui.state.document is None),
     "Quit": (nothing, lambda ui: ui.state.closing),
     "Undo": (bent, is_rest),
@@ -235,19 +238,19 @@ CASES = {
     ),
     "Rest Pose": (nothing, lambda ui: ui.state.view.ghost),
     "Pin Trails": (nothing, lambda ui: ui.state.view.trails),
-    "Reference Picture...": (nothing, lambda ui: ui.state.request is not None),
+    "Reference Picture...": (nothing, lambda ui: ui.file_request is not None),
     "Show Reference Picture": (
         lambda ui: ui.state.view.set_reference(ui.document.drawing.image),
         lambda ui: not ui.state.view.show_reference,
     ),
-    "Save Pose...": (nothing, lambda ui: ui.state.request is not None and ui.state.request.saving),
-    "Apply Pose...": (nothing, lambda ui: ui.state.request is not None and not ui.state.request.saving),
-    "Save Recording...": (nothing, lambda ui: ui.state.request is not None and ui.state.request.saving),
+    "Save Pose...": (nothing, lambda ui: ui.file_request is not None and ui.file_request.saving),
+    "Apply Pose...": (nothing, lambda ui: ui.file_request is not None and not ui.file_request.saving),
+    "Save Recording...": (nothing, lambda ui: ui.file_request is not None and ui.file_request.saving),
     "Two Methods Side by Side": (nothing, lambda ui: ui.state.split),
     "Timeline": (nothing, lambda ui: ui.state.timeline.is_shown),
     "Find Command...": (watch_palette, lambda ui: any(ui.palettes)),
-    "Keys and Mouse": (nothing, lambda ui: ui.state.keys),
-    "About akap-editor": (nothing, lambda ui: ui.state.about),
+    "Keys and Mouse": (nothing, lambda ui: ui.state.part(ShortcutsPage).is_open),
+    "About akap-editor": (nothing, lambda ui: ui.state.part(AboutDialog).is_open),
     "Pins": (with_tool("hand_tool"), lambda ui: ui.editor.chosen_tool is ui.editor.pins_tool),
     "Move Canvas": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.hand_tool),
     "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.brush_tool),
@@ -377,11 +380,11 @@ def test_keys_do_nothing_while_a_name_is_typed(pinned):
     pinned.key(CTRL | Key.o)
     pinned.type_name("Open picture or drawing", "mfb", enter=False)
     pinned.key(Key.delete)
-    assert pinned.state.request.name == "mfb"
+    assert pinned.file_request.name == "mfb"
     assert not pinned.state.show_mesh
     assert len(pinned.pins) == 3
     pinned.key(Key.escape)
-    assert pinned.state.request is None
+    assert pinned.file_request is None
 
 
 # -- side panel ---------------------------------------------------------------------------------------------
@@ -472,18 +475,21 @@ def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd
 
 
 @pytest.mark.parametrize(
-    ("label", "name", "title"),
-    [("Keys and Mouse", "keys", "Keys and mouse"), ("About akap-editor", "about", "About akap-editor")],
+    ("label", "page", "title"),
+    [
+        ("Keys and Mouse", ShortcutsPage, "Keys and mouse"),
+        ("About akap-editor", AboutDialog, "About akap-editor"),
+    ],
 )
 @pytest.mark.parametrize("close", ["Close", "escape", "enter"])
-def test_help_opens_and_closes(pinned, label, name, title, close):
+def test_help_opens_and_closes(pinned, label, page, title, close):
     pinned.menu("Help", label)
-    assert getattr(pinned.state, name)
+    assert pinned.state.part(page).is_open
     if close == "Close":
         pinned.dialog(title, "Close")
     else:
         pinned.key(Key.escape if close == "escape" else Key.enter)
-    assert not getattr(pinned.state, name)
+    assert not pinned.state.part(page).is_open
     pinned.click(pinned.screen((100.0, 80.0)))
     assert len(pinned.pins) == 4, "the canvas is free again"
 

@@ -65,7 +65,7 @@ def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
 def test_asking_does_not_change_what_is_seen(keyed):
     keyed.state.timeline.keyframe_playback.show_present()
     before = keyed.session.state
-    keyed.state.dialog(ExportAnimationDialog).open(keyed.state)
+    keyed.state.part(ExportAnimationDialog).open(keyed.state)
     keyed.dialog(TITLE, "Cancel")
     assert keyed.session.state is before
     assert not keyed.session.is_previewing

@@ -25,7 +25,7 @@ def bent(pinned, tmp_path):
 
 
 def dialog(ui):
-    return ui.state.dialog(ExportPoseDialog)
+    return ui.state.part(ExportPoseDialog)
 
 
 def expected_picture(ui, crop="none", scale=1.0, background=None):
@@ -50,7 +50,7 @@ def test_enter_twice_writes_the_picture_as_it_is_seen(bent, tmp_path):
     bent.key(CTRL | Key.e)
     assert dialog(bent).is_open
     bent.key(Key.enter)
-    assert bent.state.request.name == "figure-posed.png"
+    assert bent.file_request.name == "figure-posed.png"
     bent.key(Key.enter)
     bent.settle()
     expected = expected_picture(bent)
@@ -94,7 +94,7 @@ def test_every_format(bent, tmp_path, suffix):
 def test_the_drawing_at_rest(bent, tmp_path):
     bent.menu("File", "Export...")
     bent.dialog(EXPORT, option("glTF binary"), option("At rest"), "Export...")
-    assert bent.state.request.name == "figure-rest.glb"
+    assert bent.file_request.name == "figure-rest.glb"
     bent.key(Key.enter)
     bent.settle()
     gltf = pygltflib.GLTF2().load(str(tmp_path / "figure-rest.glb"))
@@ -108,10 +108,10 @@ def test_too_large_a_picture_cannot_be_asked_for(bent):
     bent.settle()
     bent.key(Key.enter)
     assert dialog(bent).is_open
-    assert bent.state.request is None
+    assert bent.file_request is None
     bent.dialog(EXPORT, option("glTF binary"))
     bent.key(Key.enter)
-    assert bent.state.request.suffixes == (".glb",), "a mesh has no size in pixels"
+    assert bent.file_request.suffixes == (".glb",), "a mesh has no size in pixels"
     bent.key(Key.escape)
 
 
@@ -137,7 +137,7 @@ def test_cancel_and_escape_write_nothing(bent, tmp_path):
     bent.dialog(EXPORT, "Cancel")
     bent.key(CTRL | Key.e, Key.enter)
     bent.dialog(FILE, "Cancel")
-    assert bent.state.request is None
+    assert bent.file_request is None
     assert list(tmp_path.iterdir()) == []
 
 
@@ -153,5 +153,5 @@ def test_only_files_of_the_format_are_listed(bent, tmp_path):
         (tmp_path / name).write_bytes(b"")
     bent.menu("File", "Export...")
     bent.dialog(EXPORT, option("Spine skeleton"), "Export...")
-    assert bent.state.request.entries() == [("b.spine.json", False)]
+    assert bent.file_request.entries() == [("b.spine.json", False)]
     bent.key(Key.escape)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app import files
+from akap_editor.app.dialogs.recovery import RecoveryDialog
 from akap_editor.io.akap.autosave import SECONDS, Autosave
 from akap_editor.io.akap.project import load, save
 
@@ -30,17 +31,19 @@ def crash(tmp_path):
 
 @pytest.fixture
 def restart(ui, tmp_path):
-    """The window as it starts with this folder of copies."""
+    """The window as it starts with this folder of copies; earlier starts keep the locks of their copies."""
+    earlier = []
 
     def start():
+        earlier.append(ui.state.autosave)
         ui.state.autosave = Autosave(tmp_path)
-        ui.state.lost = ui.state.autosave.lost()
+        ui.state.part(RecoveryDialog).copies = ui.state.autosave.lost()
         ui.settle()
         return ui
 
     yield start
     ui.state.autosave._worker.shutdown()
-    for copy in ui.state.lost:
+    for copy in ui.state.part(RecoveryDialog).copies:
         copy.leave()
 
 
@@ -58,7 +61,7 @@ def wait(ui):
 
 def test_nothing_is_offered_where_nothing_was_lost(restart):
     restart()
-    assert not restart().state.lost
+    assert not restart().state.part(RecoveryDialog).copies
 
 
 def test_recovering_brings_the_drawing_back_unsaved(bent, crash, restart, tmp_path):
@@ -99,12 +102,12 @@ def test_discarding_removes_the_copy_and_goes_to_the_next(bent, document, crash,
     crash(bent)
     crash(document)
     ui = restart()
-    assert len(ui.state.lost) == 2
+    assert len(ui.state.part(RecoveryDialog).copies) == 2
     ui.dialog(TITLE, "Discard")
-    assert len(ui.state.lost) == 1
+    assert len(ui.state.part(RecoveryDialog).copies) == 1
     assert len(list(tmp_path.glob("*.akap"))) == 1
     ui.dialog(TITLE, "Discard")
-    assert not ui.state.lost
+    assert not ui.state.part(RecoveryDialog).copies
     assert os.listdir(tmp_path) == []
 
 
@@ -113,9 +116,9 @@ def test_later_means_the_next_start(bent, crash, restart, tmp_path):
     ui = restart()
     before = ui.document
     ui.dialog(TITLE, "Later")
-    assert not ui.state.lost
+    assert not ui.state.part(RecoveryDialog).copies
     assert ui.document is before
-    assert len(restart().state.lost) == 1
+    assert len(restart().state.part(RecoveryDialog).copies) == 1
 
 
 def test_recovering_one_leaves_the_others_for_the_next_start(bent, document, crash, restart):
@@ -123,7 +126,7 @@ def test_recovering_one_leaves_the_others_for_the_next_start(bent, document, cra
     crash(document)
     restart().dialog(TITLE, "Recover")
     ui = restart()
-    assert len(ui.state.lost) == 1
+    assert len(ui.state.part(RecoveryDialog).copies) == 1
 
 
 def test_a_damaged_copy_is_told_and_kept(bent, crash, restart, tmp_path):
@@ -132,7 +135,7 @@ def test_a_damaged_copy_is_told_and_kept(bent, crash, restart, tmp_path):
     path.write_bytes(path.read_bytes()[:-100])
     ui = restart()
     assert ui.state.error.startswith("Unsaved work could not be recovered: ")
-    assert not ui.state.lost
+    assert not ui.state.part(RecoveryDialog).copies
     assert path.exists()
     ui.dialog("That did not work", "OK")
 

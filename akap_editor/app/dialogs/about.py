@@ -1,0 +1,43 @@
+"""The dialog about the program, its method and its license."""
+
+from imgui_bundle import imgui
+
+from ... import __version__
+from .. import widgets
+from ..app_state import AppState
+from ..theme import QUIET
+
+_WIDTH = 380  # design points
+
+
+class AboutDialog:
+    """Shows version, method and license."""
+
+    def __init__(self) -> None:
+        self.is_open = False
+
+    def open(self) -> None:
+        """Show the dialog."""
+        self.is_open = True
+
+    def draw(self, state: AppState, scale: float) -> None:
+        """Draw one frame. scale: points per design point."""
+        if not widgets.begin_dialog("About akap-editor"):
+            return
+        imgui.text(f"akap-editor {__version__}")
+        widgets.paragraph(
+            "Bends cartoons with as-Killing-as-possible vector fields and logarithmic spirals, after "
+            "Solomon, Ben-Chen, Butscher and Guibas, Symposium on Geometry Processing 2011.",
+            _WIDTH * scale,
+        )
+        widgets.paragraph(
+            "Free software under the GNU General Public License, version 3 or later. Meshes are made by "
+            "Triangle, whose own terms allow non-commercial use only.",
+            _WIDTH * scale,
+            QUIET,
+        )
+        imgui.spacing()
+        if widgets.button("Close", primary=True) or widgets.cancel_pressed() or widgets.confirm_pressed():
+            self.is_open = False
+            widgets.close_popup()
+        imgui.end_popup()
