@@ -9,8 +9,6 @@ in `PARTS`, and of the steps that the engine's thread computes meanwhile; and th
 
 import os
 
-from akap_editor.editor import gestures
-
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -26,6 +24,7 @@ from timing import FunctionTimer
 from akap_editor.app import files
 from akap_editor.app import window as window_module
 from akap_editor.app.window import Window
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.events import PointerEvent

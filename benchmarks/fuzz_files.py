@@ -12,8 +12,6 @@ on any other exception, a case of over 20 seconds, or a gigabyte of memory. A fa
 
 import os
 
-from akap_editor.editor import gestures
-
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import argparse
@@ -35,6 +33,7 @@ from typing import Any
 
 import numpy as np
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import Document, EditState
 from akap_editor.editor.document.drawing import Drawing
 from akap_editor.editor.document.named_poses import NamedPose

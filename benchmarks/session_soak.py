@@ -10,8 +10,6 @@ otherwise, and after any exception, the exit code is 1.
 
 import os
 
-from akap_editor.editor import gestures
-
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -26,6 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.remesh import remesh_drawing
