@@ -1,4 +1,4 @@
-"""Depths of pins: what passes in front, what a click takes, and that they are kept, undone and replayed."""
+"""Depths of pins: the order of faces, clicks on overlapping parts, undo, files and replays."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
 
 
 def pins_at(mesh, *places):
-    """Pins at (x, y, depth)."""
+    """Pins on a mesh at places (x, y, depth), with ids from 1."""
     points = mesh.locate([(x, y) for x, y, _ in places])
     return tuple(
         Pin(index, int(face), weights, (x, y), depth)
@@ -32,6 +32,7 @@ def pins_at(mesh, *places):
 
 
 def rank(order):
+    """The position of each face in an order."""
     result = np.empty(len(order), dtype=int)
     result[order] = np.arange(len(order))
     return result
@@ -85,10 +86,10 @@ def test_depth_is_exact_at_pins_and_blended_between_them(drawing):
     assert depth_at(mesh, (), points[0]) == 0
 
 
-def test_parts_without_a_pin_go_with_the_nearest_one(image):
-    two = np.zeros((80, 250, 4), dtype=np.uint8)
-    two[:, :120], two[:, 130:] = image, image
-    mesh = make_drawing(two, vertices=200).mesh
+def test_parts_without_a_pin_have_the_depth_of_the_nearest_one(image):
+    two_parts = np.zeros((80, 250, 4), dtype=np.uint8)
+    two_parts[:, :120], two_parts[:, 130:] = image, image
+    mesh = make_drawing(two_parts, vertices=200).mesh
     assert mesh.component.max() == 1
     pins = pins_at(mesh, (*HEAD, 0), (*END, 2))
     order = rank(face_order(mesh, pins))
@@ -130,13 +131,13 @@ def test_a_new_pin_takes_the_depth_of_the_place(pinned):
 
 
 def fold(mesh):
-    """The neck folded over the head: faces turned over are given back their side by a shear-free shift."""
+    """A pose with the right half of the neck moved over the head; the faces between are flipped."""
     pose = mesh.vertices.copy()
     pose[:, 0] = np.where(pose[:, 0] > 62, pose[:, 0] - 62 + 5 + 0.2 * (pose[:, 0] - 62), pose[:, 0])
     return pose
 
 
-def test_a_click_takes_what_is_seen_in_front(drawing):
+def test_a_click_hits_the_part_in_front(drawing):
     mesh, pose = drawing.mesh, fold(drawing.mesh)
     faces = mesh.faces
     areas = signed_areas(pose, faces)

@@ -1,13 +1,12 @@
-"""Poses with names: kept, applied, forgotten, each undoable, and the same in a replay."""
+"""Named poses: added, applied and deleted, each undoable, and the same in a replay."""
 
 import numpy as np
 import pytest
 
 from akap_editor.editor import gestures
 from akap_editor.editor.document.named_poses import MAX_POSE_NAME, NamedPose, unused_pose_name
-from akap_editor.editor.session.recording import parse_recording
-from akap_editor.editor.session.replay import replay
 from akap_editor.errors import InputError
+from tests.support.editor_driver import replayed_state
 
 END = (105.0, 40.0)
 
@@ -18,7 +17,7 @@ def names(driver):
 
 @pytest.fixture
 def posed(pinned):
-    """Two poses: at rest, and with the neck bent."""
+    """The driver with two named poses: the rest pose, and one with the neck bent."""
     gestures.add_pose(pinned.editor)
     pinned.drag(END, (90.0, 60.0))
     pinned.settle()
@@ -26,19 +25,19 @@ def posed(pinned):
     return pinned
 
 
-def test_a_kept_pose_is_applied_bit_for_bit_and_undone(posed):
+def test_a_named_pose_is_applied_bit_for_bit_and_undone(posed):
     rest, bent = posed.state.poses
     assert names(posed) == ["Pose 1", "Bent"]
     before = posed.state
     gestures.set_pose(posed.editor, rest.positions)
     np.testing.assert_array_equal(posed.state.positions, posed.session.drawing.mesh.vertices)
-    assert posed.session.pin_error() < 1e-9, "the pins went along"
+    assert posed.session.pin_error() < 1e-9, "the pins move with the drawing"
     posed.undo()
     assert posed.state is before
     np.testing.assert_array_equal(posed.state.positions, bent.positions)
 
 
-def test_keeping_and_forgetting_are_undoable_and_unsaved(posed):
+def test_adding_and_deleting_poses_is_undone_and_modifies_the_document(posed):
     posed.session.mark_saved(None)
     gestures.delete_pose(posed.editor, "Pose 1")
     assert names(posed) == ["Bent"]
@@ -50,30 +49,30 @@ def test_keeping_and_forgetting_are_undoable_and_unsaved(posed):
     assert names(posed) == ["Pose 1"]
 
 
-def test_a_pose_of_the_same_name_takes_its_place(posed):
+def test_a_pose_replaces_the_one_of_the_same_name(posed):
     gestures.add_pose(posed.editor, "Pose 1")
     assert names(posed) == ["Pose 1", "Bent"]
     np.testing.assert_array_equal(posed.state.poses[0].positions, posed.state.positions)
 
 
-def test_a_replay_keeps_the_same_poses_and_undoes_the_same(posed, drawing):
+def test_a_replay_gives_the_same_poses(posed, drawing):
     gestures.delete_pose(posed.editor, "no such pose")
     gestures.set_pose(posed.editor, posed.state.poses[0].positions)
     posed.undo()
     posed.undo()
     posed.undo()
-    *_, last = replay(parse_recording(posed.session.recording.to_text()), drawing)
-    np.testing.assert_array_equal(last.state.positions, posed.state.positions)
-    assert [pose.name for pose in last.state.poses] == names(posed) == ["Pose 1"]
+    state = replayed_state(posed.session.recording, drawing)
+    np.testing.assert_array_equal(state.positions, posed.state.positions)
+    assert [pose.name for pose in state.poses] == names(posed) == ["Pose 1"]
 
 
-def test_names_that_are_free(posed):
+def test_unused_names_are_numbered(posed):
     assert unused_pose_name(()) == "Pose 1"
     assert unused_pose_name(posed.state.poses) == "Pose 2"
 
 
 @pytest.mark.parametrize("name", ["", "  ", "x" * (MAX_POSE_NAME + 1)])
-def test_bad_names_are_refused_and_nothing_is_kept(pinned, name):
+def test_bad_names_are_refused_and_change_nothing(pinned, name):
     with pytest.raises(InputError, match=f"expected a name of 1 to {MAX_POSE_NAME} characters"):
         gestures.add_pose(pinned.editor, name)
     assert names(pinned) == []

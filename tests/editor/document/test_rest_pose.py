@@ -1,4 +1,4 @@
-"""The pose as the rest pose: nothing is seen to move, and all of it can be undone, saved and replayed."""
+"""The current pose as the rest pose: no vertex moves, and it is undone, saved and replayed."""
 
 import numpy as np
 import pytest
@@ -17,20 +17,20 @@ from tests.support.editor_driver import bits
 
 @pytest.fixture
 def bent(pinned):
-    """Pins 1 to 3, the last one dragged up and let go."""
+    """The driver after a drag of its pin 3 upwards."""
     pinned.drag((105.0, 40.0), (95.0, 18.0))
     pinned.editor.session.settle()
     return pinned
 
 
-def test_nothing_moves(bent):
+def test_no_vertex_and_no_pin_moves(bent):
     session = bent.editor.session
-    before, pins, where = session.state, session.state.pins, session.pin_positions()
+    before, pins, pin_positions = session.state, session.state.pins, session.pin_positions()
     gestures.set_rest_pose(bent.editor)
     assert not session.is_posed
     np.testing.assert_array_equal(session.state.positions, before.positions)
     np.testing.assert_array_equal(session.drawing.mesh.vertices, before.positions)
-    np.testing.assert_array_equal(session.pin_positions(), where)
+    np.testing.assert_array_equal(session.pin_positions(), pin_positions)
     assert [(pin.id, pin.face, pin.weights.tolist()) for pin in session.state.pins] == [
         (pin.id, pin.face, pin.weights.tolist()) for pin in pins
     ]
@@ -53,15 +53,15 @@ def test_the_picture_stays_on_the_mesh(bent):
 def test_the_drawing_springs_back_to_the_new_rest_pose(bent):
     gestures.set_rest_pose(bent.editor)
     session = bent.editor.session
-    baked = session.state.positions
+    rest_pose = session.state.positions
     session.begin("There and back")
     for target in ((60.0, 70.0), tuple(session.state.pin(3).target)):
         session.apply(SetTargets({3: target}))
         session.settle()
     session.commit()
-    assert np.abs(session.state.positions - baked).max() < 1.0
+    assert np.abs(session.state.positions - rest_pose).max() < 1.0
     gestures.reset_pose(bent.editor)
-    np.testing.assert_array_equal(session.state.positions, baked)
+    np.testing.assert_array_equal(session.state.positions, rest_pose)
 
 
 def test_undo_and_redo_restore_every_bit(bent):
@@ -79,16 +79,16 @@ def test_undo_and_redo_restore_every_bit(bent):
     assert session.drawing is baked
 
 
-def test_after_undo_it_bends_from_the_old_rest_pose(new_driver):
-    """The deformer follows the rest pose: with and without a bake that was undone, a drag ends alike."""
+def test_after_undo_the_drawing_deforms_from_the_old_rest_pose(new_driver):
+    """A drag ends alike with and without a new rest pose that was undone before."""
     ends = []
-    for baking in (False, True):
+    for sets_rest_pose in (False, True):
         driver = new_driver()
         for at in ((20.0, 40.0), (105.0, 40.0)):
             driver.click(at)
         driver.drag((105.0, 40.0), (95.0, 18.0))
         driver.editor.session.settle()
-        if baking:
+        if sets_rest_pose:
             gestures.set_rest_pose(driver.editor)
             driver.editor.undo()
         session = driver.editor.session
@@ -96,16 +96,16 @@ def test_after_undo_it_bends_from_the_old_rest_pose(new_driver):
         session.apply(SetTargets({2: (60.0, 70.0)}))
         session.settle()
         ends.append(session.state.positions)
-    np.testing.assert_allclose(ends[0], ends[1], atol=0.01)  # a kept factorization is not exact
+    np.testing.assert_allclose(ends[0], ends[1], atol=0.01)  # within what a cached factorization may change
 
 
-def test_at_rest_there_is_nothing_to_do(pinned):
+def test_at_rest_there_is_nothing_to_undo(pinned):
     depth = pinned.editor.session.history.depth
     gestures.set_rest_pose(pinned.editor)
     assert pinned.editor.session.history.depth == depth
 
 
-def test_a_flipped_face_is_told_and_nothing_has_changed(pinned):
+def test_a_pose_with_flipped_faces_is_refused_and_changes_nothing(pinned):
     session = pinned.editor.session
     pose = session.state.positions * [-1.0, 1.0]
     gestures.apply_pose(pinned.editor, session.state.pins, pose)
@@ -126,7 +126,7 @@ def test_it_is_saved_and_opened_as_any_drawing(bent, tmp_path):
     assert not Session(opened).is_posed
 
 
-def test_a_recording_bakes_again(bent, drawing):
+def test_a_recording_is_replayed(bent, drawing):
     gestures.set_rest_pose(bent.editor)
     bent.drag((95.0, 18.0), (90.0, 50.0))
     session = bent.editor.session

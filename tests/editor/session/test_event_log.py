@@ -1,4 +1,4 @@
-"""A log gives back what was put into it, in little memory."""
+"""The event log reads like a list and takes little memory."""
 
 import tracemalloc
 
@@ -29,12 +29,24 @@ def test_it_reads_like_the_list(count):
         log[count]
 
 
-def test_what_was_read_or_put_in_can_be_changed_without_harm():
+def test_changing_an_event_does_not_change_the_log():
     log, event = EventLog(), {"t": 0.0, "do": "pins", "pins": [1]}
     log.append(event)
     event["pins"].append(2)
     log[0]["pins"].append(3)
     assert log[0]["pins"] == [1]
+
+
+@pytest.mark.parametrize("index", [0, PACK_SIZE - 1, PACK_SIZE, -1])
+def test_an_event_is_replaced(index):
+    expected, log = events(PACK_SIZE + 7), EventLog()
+    for event in expected:
+        log.append(event)
+    expected[index] = {"t": 1.0, "do": "step"}
+    log.replace(index, expected[index])
+    assert log == expected
+    with pytest.raises(IndexError):
+        log.replace(len(log), expected[index])
 
 
 def test_a_hundred_thousand_events_take_little_memory():

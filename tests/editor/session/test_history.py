@@ -1,3 +1,5 @@
+"""The history: stacks of whole states, gestures, and their limits."""
+
 import numpy as np
 import pytest
 
@@ -13,33 +15,33 @@ def states():
 
 @pytest.fixture
 def history(states):
-    """Three gestures, from state 0 to state 3."""
-    made = History()
+    """A history of three gestures, from state 0 to state 3."""
+    history = History()
     for number in range(3):
-        made.begin(f"gesture {number}", states[number])
-        made.commit()
-    return made
+        history.begin(f"gesture {number}", states[number])
+        history.commit()
+    return history
 
 
 def test_a_new_history_has_nothing_to_undo():
     history = History()
     assert (history.depth, history.undo_label, history.redo_label, history.is_open) == (0, None, None, False)
-    for step in (history.undo, history.redo):
+    for method in (history.undo, history.redo):
         with pytest.raises(IndexError):
-            step(EditState((), np.zeros((3, 2))))
+            method(EditState((), np.zeros((3, 2))))
 
 
 def test_undo_and_redo_return_the_very_states(history, states):
-    now = states[3]
+    state = states[3]
     for number in (2, 1, 0):
         assert history.undo_label == f"gesture {number}"
-        now = history.undo(now)
-        assert now is states[number]
+        state = history.undo(state)
+        assert state is states[number]
         assert history.depth == number
     for number in (1, 2, 3):
         assert history.redo_label == f"gesture {number - 1}"
-        now = history.redo(now)
-        assert now is states[number]
+        state = history.redo(state)
+        assert state is states[number]
     assert history.redo_label is None
 
 
@@ -50,11 +52,11 @@ def test_redo_returns_the_state_at_the_time_of_undo_not_that_of_commit(history, 
 
 
 def test_a_committed_gesture_clears_redo_and_an_aborted_one_does_not(history, states):
-    now = history.undo(states[3])
-    history.begin("tried", now)
-    assert history.abort() is now
+    state = history.undo(states[3])
+    history.begin("aborted", state)
+    assert history.abort() is state
     assert history.redo_label == "gesture 2"
-    history.begin("done", now)
+    history.begin("committed", state)
     history.commit()
     assert history.redo_label is None
     assert history.depth == 3
@@ -85,19 +87,19 @@ def test_gestures_do_not_nest_and_end_only_once(history, states):
         history.begin("second", states[3])
 
 
-@pytest.mark.parametrize(("limit", "value", "kept"), [("MAX_ENTRIES", 3, 3), ("MAX_BYTES", 5 * 32, 5)])
-def test_the_oldest_gestures_are_forgotten(monkeypatch, limit, value, kept):
+@pytest.mark.parametrize(("limit", "value", "count"), [("MAX_ENTRIES", 3, 3), ("MAX_BYTES", 5 * 32, 5)])
+def test_the_oldest_gestures_are_dropped(monkeypatch, limit, value, count):
     monkeypatch.setattr(history_module, limit, value)
     history = History()
     states = [EditState((), np.full((2, 2), float(number))) for number in range(9)]
     for number, state in enumerate(states[:-1]):
         history.begin(f"gesture {number}", state)
         history.commit()
-        assert history.depth == min(number + 1, kept)
-    now = states[-1]
-    for state in reversed(states[:-1][-kept:]):
-        now = history.undo(now)
-        assert now is state
+        assert history.depth == min(number + 1, count)
+    current = states[-1]
+    for state in reversed(states[:-1][-count:]):
+        current = history.undo(current)
+        assert current is state
     assert history.undo_label is None
 
 

@@ -1,3 +1,5 @@
+"""Recordings as text: exact there and back, cut off, and bad lines."""
+
 import json
 
 import pytest
@@ -16,7 +18,7 @@ EVENTS = [
 
 
 def text(*lines):
-    """A recording's text; a string stands for itself, anything else for its JSON."""
+    """The text of a recording; lines that are no strings are written as JSON."""
     return "".join((line if isinstance(line, str) else json.dumps(line)) + "\n" for line in lines)
 
 
@@ -64,15 +66,15 @@ def test_the_header_names_picture_and_mesh(drawing, finer_drawing):
     assert header["mesh"] == mesh_digest(drawing.mesh) != mesh_digest(finer_drawing.mesh)
 
 
-@pytest.mark.parametrize("kept", [1, 10, -1])
-def test_a_last_line_that_was_cut_off_is_left_out(kept):
+@pytest.mark.parametrize("length", [1, 10, -1])
+def test_an_incomplete_last_line_is_ignored(length):
     whole = text(HEAD, *EVENTS)
     last = json.dumps(EVENTS[-1])
-    cut = whole[: -len(last) - 1] + last[:kept]
+    cut = whole[: -len(last) - 1] + last[:length]
     assert parse_recording(cut).events == EVENTS[:-1]
 
 
-def test_a_last_line_that_only_lacks_its_end_of_line_is_kept():
+def test_a_complete_last_line_without_its_end_of_line_is_read():
     assert parse_recording(text(HEAD, *EVENTS)[:-1]).events == EVENTS
 
 

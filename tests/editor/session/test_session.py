@@ -1,3 +1,5 @@
+"""Sessions: steps, edits, gestures, undo, and what counts as modified."""
+
 from unittest.mock import ANY
 
 import numpy as np
@@ -17,13 +19,13 @@ from tests.support.editor_driver import Ticks, bits
 
 @pytest.fixture
 def session(drawing):
-    """Two pins, put there by one gesture."""
-    made = Session(new_document(drawing), Ticks())
-    made.begin("Pins")
-    assert add_pin(made, (20.0, 40.0)) == 1
-    assert add_pin(made, (105.0, 40.0)) == 2
-    made.commit()
-    return made
+    """A session with pins 1 and 2, added in one gesture."""
+    session = Session(new_document(drawing), Ticks())
+    session.begin("Pins")
+    assert add_pin(session, (20.0, 40.0)) == 1
+    assert add_pin(session, (105.0, 40.0)) == 2
+    session.commit()
+    return session
 
 
 def test_only_step_moves_the_drawing(session, drawing):
@@ -66,29 +68,6 @@ def test_a_gesture_that_changed_nothing_makes_no_entry(session):
     session.commit()
     assert session.history.depth == 1
     assert session.history.undo_label == "Pins"
-
-
-def test_a_pin_beside_the_drawing_is_none(session):
-    state = session.state
-    session.begin("Add pin")
-    assert add_pin(session, (2.0, 2.0)) is None
-    assert session.state is state
-
-
-def test_removing_pins_ignores_unknown_ids(session):
-    session.begin("Remove")
-    remove_pins(session, [2, 99])
-    assert [pin.id for pin in session.state.pins] == [1]
-
-
-def test_pins_that_stay_while_the_drawing_settles_stay_where_they_are(session):
-    session.begin("Bend")
-    session.apply(SetTargets({2: (90.0, 65.0)}))
-    session.step()
-    here = session.pin_positions()[1]
-    remove_pins(session, [1])
-    assert not session.is_moving
-    np.testing.assert_array_equal(session.state.targets, [here])
 
 
 @pytest.mark.parametrize(
@@ -178,13 +157,13 @@ def test_switching_the_method_in_mid_pose_moves_nothing_and_goes_on_bending(sess
     session.apply(SetTargets({2: (90.0, 65.0)}))
     session.settle()
     session.commit()
-    bent = session.state
+    before = session.state
     session.begin("Method")
     session.apply(SetSettings(Settings(method, ())))
     session.commit()
-    assert session.state.positions is bent.positions
+    assert session.state.positions is before.positions
     session.undo()
-    assert bits(session.state) == bits(bent)
+    assert bits(session.state) == bits(before)
     session.redo()
     assert session.state.settings.method == method
     session.begin("Bend on")
@@ -192,13 +171,13 @@ def test_switching_the_method_in_mid_pose_moves_nothing_and_goes_on_bending(sess
     session.settle()
     session.commit()
     assert not session.is_moving
-    # moving least squares take pins to their targets, but are evaluated at the vertices around them
+    # moving least squares interpolate at the pins, but a pin's position is that of the vertices around it
     assert session.pin_error() < (1.0 if method == "mls" else PIN_TOLERANCE)
-    there = session.state.positions
+    positions = session.state.positions
     session.begin("Method")
     session.apply(SetSettings(Settings()))
     session.commit()
-    assert session.state.positions is there
+    assert session.state.positions is positions
     session.begin("Bend back")
     session.apply(SetTargets({2: (90.0, 65.0)}))
     session.settle()
@@ -274,13 +253,13 @@ def test_an_opened_document_is_not_modified(drawing):
 def test_revision_grows_with_every_change(session):
     revisions = [session.document.revision]
     session.begin("Bend")
-    for act in (
+    for change in (
         lambda: session.apply(SetTargets({2: (90.0, 65.0)})),
         session.step,
         session.abort,
         session.undo,
     ):
-        act()
+        change()
         revisions.append(session.document.revision)
     assert revisions == sorted(set(revisions))
 
