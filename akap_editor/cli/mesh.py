@@ -19,7 +19,8 @@ from ..io.mesh_files.obj_off import write_obj
 from ..io.open_document import PICTURE_SUFFIXES
 from ..meshing.picture_mesh import mesh_picture
 from ..meshing.quality import mesh_quality
-from ..meshing.triangulate import FEWEST, MOST, start_worker
+from ..meshing.triangle_process import TRIANGLE
+from ..meshing.triangulate import MAX_VERTICES, MIN_VERTICES
 from .options import FILE, make_folder_of
 
 MOST_EXPANSION = 1000.0  # pixels
@@ -88,7 +89,7 @@ def mesh(
     """
     meshing = _meshing(vertices, expand, threshold)
     if len(pictures) == 1 and not pictures[0].is_dir():
-        start_worker()
+        TRIANGLE.start()
         row = measure(pictures[0], output, meshing, mask)
         click.echo(json.dumps([asdict(row)], indent=2) if as_json else _words(row))
         return
@@ -138,7 +139,7 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
 
 
 def _meshing(vertices: int, expand: float, threshold: float) -> Meshing:
-    as_number(vertices, "--vertices", FEWEST, MOST)
+    as_number(vertices, "--vertices", MIN_VERTICES, MAX_VERTICES)
     as_number(expand, "--expand", 0, MOST_EXPANSION)
     if not 0 < threshold < 1:
         raise InputError(f"--threshold: expected a share between 0 and 1, got {threshold:g}")
@@ -174,7 +175,7 @@ def _outputs(paths: list[Path], folder: Path | None) -> list[Path | None]:
 def _measure_all(
     paths: list[Path], outputs: list[Path | None], meshing: Meshing
 ) -> tuple[list[MeshRow], list[dict[str, Any]]]:
-    start_worker()
+    TRIANGLE.start()
     rows, errors = [], []
     with click.progressbar(zip(paths, outputs, strict=True), len(paths), "Meshing", file=sys.stderr) as bar:
         for path, output in bar:

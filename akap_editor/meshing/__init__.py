@@ -1,1 +1,1 @@
-"""From a picture to a triangle mesh of what is visible of it."""
+"""The triangle mesh of a picture: background removal, outlines, triangulation, quality."""

@@ -1,4 +1,4 @@
-"""From an alpha channel to polygons: the cut-out of a drawing."""
+"""Outlines of a drawing: polygons with holes around what is visible in its alpha channel."""
 
 from dataclasses import dataclass
 
@@ -12,23 +12,24 @@ from ..errors import InputError
 from ..geometry.validation import Floats, as_channel, as_points, freeze
 from .contours import contours
 
-SMALLEST_PART = 10.0  # square pixels; anything less is a speck
-SMALLEST_SHARE = 2e-5  # of the whole drawing; anything less is a speck, too
-SMALLEST_HOLE = 10.0  # square pixels; anything less is filled
-SCRAP = 1.0  # square pixels: what cutting apart may leave over
-THINNEST = 1.5  # pixels: a thinner stroke is made thicker by half of that on each side
-SKETCH = 0.2  # share of the tolerance used up at first: all that follows takes a tenth of the time
-GRID = 1 / 64  # pixels: nearer points are one point, so that no two are too near for Triangle
-BITE = 0.5  # pixels: half the side of what is cut out where rings meet in a point
+MIN_PART_AREA = 10.0  # square pixels; a smaller part is a speck
+MIN_PART_SHARE = 2e-5  # of the area of all parts; a smaller part is a speck, too
+MIN_HOLE_AREA = 10.0  # square pixels; smaller holes are filled
+MIN_STROKE_WIDTH = 1.5  # pixels; thinner strokes grow by half of that on each side
+_MIN_PIECE_AREA = 1.0  # square pixels; smaller pieces, left by clipping and notches, are dropped
+_FIRST_SIMPLIFICATION = 0.2  # share of the tolerance spent first; all later steps take a tenth of the time
+_GRID = 1 / 64  # pixels: nearer points are merged, because Triangle fails on points that are too close
+_NOTCH = 0.5  # pixels: half the side of the square cut out where rings meet in a point
 
 Polygons = NDArray[np.object_]  # of shapely polygons
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """One part of a drawing: outer (p, 2) and holes (each (q, 2)) float64 polygons in pixels.
+    """The outline of one part of a drawing, in pixels.
 
-    The first point is not repeated at the end. Raises InputError on fewer than three points.
+    outer: (p, 2) float64 polygon; holes: (q, 2) float64 polygons. The first point is not repeated at the end.
+    Raises InputError for a ring of fewer than three points.
     """
 
     outer: Floats
@@ -40,15 +41,15 @@ class Outline:
 
     @property
     def polygon(self) -> shapely.Polygon:
-        """The same as a shapely polygon."""
+        """The outline as a shapely polygon."""
         return shapely.Polygon(self.outer, self.holes)
 
 
 @dataclass(frozen=True)
 class CutOut:
-    """The parts of a picture, largest first, and what was left out as too small.
+    """The outlines of a picture's parts, largest first.
 
-    specks: islands left out; speck_area: their area in square pixels.
+    specks: number of parts that were left out as too small; speck_area: their total area in square pixels.
     """
 
     parts: tuple[Outline, ...]
@@ -57,19 +58,19 @@ class CutOut:
 
     @property
     def points(self) -> int:
-        """Number of points of all rings."""
+        """The number of points of all rings."""
         return sum(len(part.outer) + sum(map(len, part.holes)) for part in self.parts)
 
     @property
     def holes(self) -> int:
-        """Number of holes of all parts."""
+        """The number of holes of all parts."""
         return sum(len(part.holes) for part in self.parts)
 
 
 def outlines(
     alpha: NDArray[np.uint8], threshold: float = 0.5, expand: float = 2.0, tolerance: float = 0.5
 ) -> list[Outline]:
-    """The parts of a picture as polygons with holes, largest first; see `cut_out`."""
+    """The outlines of a picture's parts, largest first; arguments as in `cut_out`. Raises InputError."""
     return list(cut_out(alpha, threshold, expand, tolerance).parts)
 
 
@@ -78,22 +79,26 @@ def cut_out(
     threshold: float = 0.5,
     expand: float = 2.0,
     tolerance: float = 0.5,
-    most_points: float = np.inf,
+    max_points: float = np.inf,
 ) -> CutOut:
-    """Cut a picture out along its alpha.
+    """Find the outlines of a picture's visible parts.
 
-    alpha: (h, w) uint8; threshold: share of full opacity at which the picture ends, in (0, 1); expand: pixels
-    by which the outline moves outwards, so that the soft rim is inside and near parts join (never past the
-    picture's frame); tolerance: pixels by which the contour may be simplified; most_points: where all
-    outlines together have more, they are simplified further, and moved out so far that the picture stays
-    inside, as long as no parts join and no hole larger than some 1/6 of the area per point closes.
-    The contour is the sub-pixel iso-line of alpha, pixel centers at half-integers. Strokes thinner than
-    `THINNEST` are made thicker. Islands below `SMALLEST_PART` or `SMALLEST_SHARE` are left out, unless the
-    expansion joins them to others; holes below `SMALLEST_HOLE` are filled.
-    Rings never meet, not even in a point. Raises InputError where the picture has no visible part.
+    alpha: (h, w) uint8; the contour is its sub-pixel iso-line, pixel centers at half-integers.
+    threshold: share of full opacity at which the picture ends, in (0, 1).
+    expand: pixels by which outlines move outwards, so that the soft edge is inside and near parts join, but
+    never beyond the frame of the picture.
+    tolerance: pixels by which outlines may be simplified.
+    max_points: if all outlines together have more points, they are simplified further, and moved outwards so
+    that the picture stays inside, as long as no parts join and no hole larger than about 1/6 of the area per
+    point closes.
+
+    Strokes thinner than `MIN_STROKE_WIDTH` become thicker. Parts smaller than `MIN_PART_AREA` or
+    `MIN_PART_SHARE` are left out, unless the expansion joins them to others; holes smaller than
+    `MIN_HOLE_AREA` are filled. Rings never meet, not even in a point.
+    Raises InputError if nothing is visible, or for arguments out of range.
     """
     alpha = as_channel(alpha, "alpha")
-    _check(threshold, expand, tolerance)
+    _check_lengths(threshold, expand, tolerance)
     height, width = alpha.shape
     rings = contours(alpha, 255 * threshold)
     if not rings:
@@ -102,36 +107,36 @@ def cut_out(
             f"is more than {threshold:.0%} opaque"
         )
     # An expansion by r closes every hole of at most π r² square pixels.
-    drawn = polygons_of(rings, max(SMALLEST_HOLE, np.pi * expand**2))
+    drawn = polygons_of(rings, max(MIN_HOLE_AREA, np.pi * expand**2))
     specks = _specks(drawn, 2 * expand)
     if specks.all():
         raise InputError(
-            f"the picture is too small to bend: expected a part of at least {SMALLEST_PART:g} square pixels, "
+            f"the picture is too small to bend: expected a part of at least {MIN_PART_AREA:g} square pixels, "
             f"got {width}×{height} pixels with {int((alpha > 255 * threshold).sum())} of them visible, "
             f"in {len(drawn)} pieces"
         )
-    kept = drawn[~specks]
+    visible = drawn[~specks]
     frame = shapely.box(0, 0, width, height)
     left_out = int(specks.sum()), float(shapely.area(drawn[specks]).sum())
-    cut = CutOut(_parts(kept, expand, tolerance, frame), *left_out)
+    cut = CutOut(_parts(visible, expand, tolerance, frame), *left_out)
     slack = max(tolerance, 0.5)
-    while cut.points > most_points and slack < max(alpha.shape) / 8:
+    while cut.points > max_points and slack < max(alpha.shape) / 8:
         slack *= 1.4
-        coarser = CutOut(_parts(kept, max(expand, slack), slack, frame), *left_out)
-        if _shape_of(coarser, most_points) != _shape_of(cut, most_points):
+        coarser = CutOut(_parts(visible, max(expand, slack), slack, frame), *left_out)
+        if _topology(coarser, max_points) != _topology(cut, max_points):
             break
         cut = coarser
     return cut
 
 
-def _shape_of(cut: CutOut, most_points: float) -> tuple[int, int]:
-    """Number of parts, and of the holes that so few points can show."""
+def _topology(cut: CutOut, max_points: float) -> tuple[int, int]:
+    """The number of parts, and of the holes that are large enough to show with ``max_points`` points."""
     areas = [shapely.Polygon(hole).area for part in cut.parts for hole in part.holes]
-    smallest = sum(part.polygon.area for part in cut.parts) / (6 * most_points)
+    smallest = sum(part.polygon.area for part in cut.parts) / (6 * max_points)
     return len(cut.parts), int((np.array(areas) > smallest).sum())
 
 
-def _check(threshold: float, expand: float, tolerance: float) -> None:
+def _check_lengths(threshold: float, expand: float, tolerance: float) -> None:
     if not 0 < threshold < 1:
         raise InputError(f"threshold: expected a share between 0 and 1, got {threshold:g}")
     for name, value in (("expand", expand), ("tolerance", tolerance)):
@@ -140,15 +145,15 @@ def _check(threshold: float, expand: float, tolerance: float) -> None:
 
 
 def visible_polygons(alpha: NDArray[np.uint8], threshold: float) -> Polygons:
-    """All that is more opaque than ``threshold``, exactly along the iso-line, as polygons with holes."""
+    """The pixels of alpha (h, w) above ``threshold``, exactly along the iso-line, as polygons with holes."""
     return polygons_of(contours(alpha, 255 * threshold))
 
 
-def polygons_of(rings: list[Floats], smallest_hole: float = 0.0) -> Polygons:
-    """Polygons with holes from rings that never meet, smallest first.
+def polygons_of(rings: list[Floats], max_filled_area: float = 0.0) -> Polygons:
+    """Build polygons with holes from rings that do not meet, smallest first.
 
-    rings: (p, 2) each, outer ones with a positive signed area (y down), holes with a negative one, as of
-    `contours`; smallest_hole: holes of at most that many square pixels are filled.
+    rings: (p, 2) each, outer ones with a positive signed area (y down), holes with a negative one, as
+    `contours` returns them; max_filled_area: holes up to this area, in square pixels, are filled.
     """
     if not rings:
         return np.zeros(0, dtype=np.object_)
@@ -160,7 +165,7 @@ def polygons_of(rings: list[Floats], smallest_hole: float = 0.0) -> Polygons:
     order = np.argsort(shapely.area(polygons), kind="stable")
     polygons = polygons[order]
     holes = np.flatnonzero(~outer)
-    holes = holes[shapely.area(filled[holes]) > smallest_hole]
+    holes = holes[shapely.area(filled[holes]) > max_filled_area]
     if not len(holes):
         return polygons
     shapely.prepare(polygons)
@@ -168,44 +173,44 @@ def polygons_of(rings: list[Floats], smallest_hole: float = 0.0) -> Polygons:
     hole, owner = shapely.STRtree(polygons).query(shapely.points(points))
     inside = shapely.contains_xy(polygons[owner], *points[hole].T)
     owners = np.full(len(holes), len(polygons))
-    np.minimum.at(owners, hole[inside], owner[inside])  # the smallest around it
+    np.minimum.at(owners, hole[inside], owner[inside])  # of nested polygons the smallest
     for number in np.unique(owners):
-        rim = shapely.get_exterior_ring(polygons[number])
-        polygons[number] = shapely.polygons(rim, lines[holes[owners == number]])
+        exterior = shapely.get_exterior_ring(polygons[number])
+        polygons[number] = shapely.polygons(exterior, lines[holes[owners == number]])
     return polygons
 
 
 def _specks(polygons: Polygons, reach: float) -> NDArray[np.bool_]:
-    """Which polygons are too small, taken together with all that are within reach."""
+    """Which polygons are too small, (p,), counted together with those closer than ``reach`` pixels."""
     count = len(polygons)
     pairs = shapely.STRtree(polygons).query(polygons, predicate="dwithin", distance=reach)
     links = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=(count, count))
     _, group = connected_components(links, directed=False)
     areas = np.bincount(group, shapely.area(polygons))
-    return (areas < max(SMALLEST_PART, SMALLEST_SHARE * areas.sum()))[group]
+    return (areas < max(MIN_PART_AREA, MIN_PART_SHARE * areas.sum()))[group]
 
 
 def _parts(drawn: Polygons, expand: float, tolerance: float, frame: shapely.Polygon) -> tuple[Outline, ...]:
-    """Expanded, simplified, clipped and taken apart, largest first."""
-    # Simplified ring by ring, which may make rings cross: `_expanded` takes that.
-    sketch = shapely.simplify(drawn, SKETCH * tolerance, preserve_topology=False)
-    shape = _expanded(sketch, expand).simplify((1 - SKETCH) * tolerance)
-    shape = shapely.set_precision(shape.intersection(frame), GRID)
-    parts = [part for part in _polygons(_apart(shape)) if part.area >= SCRAP]
+    """Expand, simplify and clip polygons, and split them where rings meet; largest part first."""
+    # Ring by ring, which may make rings cross: `_expand` repairs that.
+    simplified = shapely.simplify(drawn, _FIRST_SIMPLIFICATION * tolerance, preserve_topology=False)
+    shape = _expand(simplified, expand).simplify((1 - _FIRST_SIMPLIFICATION) * tolerance)
+    shape = shapely.set_precision(shape.intersection(frame), _GRID)
+    parts = [part for part in _polygons(_cut_notches(shape)) if part.area >= _MIN_PIECE_AREA]
     parts.sort(key=lambda part: -part.area)
     return tuple(_outline(part) for part in parts)
 
 
-def _expanded(drawn: Polygons, expand: float) -> shapely.Geometry:
-    """One valid shape, larger by ``expand`` on all sides, no stroke thinner than `THINNEST`."""
+def _expand(drawn: Polygons, expand: float) -> shapely.Geometry:
+    """Merge polygons to a valid shape, larger by ``expand``, without strokes below `MIN_STROKE_WIDTH`."""
     if expand > 0:
         shape = shapely.union_all(shapely.buffer(drawn, expand, quad_segs=4))
     else:
         shape = shapely.union_all(shapely.make_valid(drawn))
-    half = THINNEST / 2
+    half = MIN_STROKE_WIDTH / 2
     if expand < half:
         thin = shape.difference(shape.buffer(-half).buffer(1.01 * half))
-        strokes = [part for part in _polygons(thin) if part.area > half**2]  # less is a corner
+        strokes = [part for part in _polygons(thin) if part.area > half**2]  # smaller: a corner
         shape = shapely.union_all([shape, *shapely.buffer(strokes, half, quad_segs=4)])
     return shape
 
@@ -214,8 +219,8 @@ def _polygons(shape: shapely.Geometry) -> list[shapely.Polygon]:
     return [part for part in shapely.get_parts(shape) if part.geom_type == "Polygon"]
 
 
-def _apart(shape: shapely.Geometry) -> shapely.Geometry:
-    """The shape with a bite out wherever its rings meet: parts joined in a point could turn about it."""
+def _cut_notches(shape: shapely.Geometry) -> shapely.Geometry:
+    """Cut a notch wherever rings meet in a point: parts joined there could rotate freely about it."""
     while True:
         rings = shapely.get_rings(_polygons(shape))
         points = np.concatenate([np.zeros((0, 2)), *(shapely.get_coordinates(ring)[:-1] for ring in rings)])
@@ -223,12 +228,12 @@ def _apart(shape: shapely.Geometry) -> shapely.Geometry:
         x, y = points[counts > 1].T
         if not len(x):
             return shape
-        bites = shapely.union_all(shapely.box(x - BITE, y - BITE, x + BITE, y + BITE))
-        shape = shapely.set_precision(shape.difference(bites), GRID)
+        notches = shapely.union_all(shapely.box(x - _NOTCH, y - _NOTCH, x + _NOTCH, y + _NOTCH))
+        shape = shapely.set_precision(shape.difference(notches), _GRID)
 
 
 def _outline(polygon: shapely.Polygon) -> Outline:
-    holes = [ring for ring in polygon.interiors if shapely.Polygon(ring).area >= SMALLEST_HOLE]
+    holes = [ring for ring in polygon.interiors if shapely.Polygon(ring).area >= MIN_HOLE_AREA]
     return Outline(
         np.array(polygon.exterior.coords)[:-1], tuple(np.array(ring.coords)[:-1] for ring in holes)
     )

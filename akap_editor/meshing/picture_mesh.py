@@ -1,4 +1,4 @@
-"""From a picture's alpha channel to its mesh, in one step."""
+"""Meshes the visible part of a picture."""
 
 from dataclasses import dataclass
 
@@ -7,18 +7,20 @@ from numpy.typing import NDArray
 
 from ..geometry.mesh import TriMesh
 from .outline import cut_out
-from .triangulate import start_worker, triangulate
+from .triangle_process import TRIANGLE
+from .triangulate import triangulate
 
-OUTLINE_SHARE = 0.35  # of the wanted vertices may be corners of the outline
-COUNT_TOLERANCE = 0.08  # share above the wanted number from which on the outline is made coarser
-MAX_TRIES = 4
+OUTLINE_SHARE = 0.35  # of the requested vertices that may be corners of the outline
+EXCESS_TOLERANCE = 0.08  # share of vertices too many above which the outline is simplified further
+MAX_OUTLINES = 4
 
 
 @dataclass(frozen=True, eq=False)
 class PictureMesh:
-    """The mesh of a picture and what was left out of it.
+    """The mesh of a picture.
 
-    parts, holes: of the outline; specks: islands left out as too small; speck_area: theirs in square pixels.
+    parts, holes: their numbers in the outline; specks: number of parts left out as too small; speck_area:
+    their total area in square pixels.
     """
 
     mesh: TriMesh
@@ -31,23 +33,22 @@ class PictureMesh:
 def mesh_picture(
     alpha: NDArray[np.uint8], vertices: int = 2000, expand: float = 2.0, threshold: float = 0.5
 ) -> PictureMesh:
-    """Cut a picture out along its alpha (h, w) uint8 and triangulate it.
+    """Triangulate the visible part of a picture with the alpha channel ``alpha`` (h, w) uint8.
 
-    vertices: the wanted number; expand: pixels by which the outline moves outwards; threshold: share of full
-    opacity at which the picture ends. Where so few vertices are wanted that a contour true to half a pixel
-    would need more, the outline becomes coarser, outwards, as long as no parts join and no hole larger than
-    a face closes.
-    Raises InputError where there is nothing to cut out, or Triangle fails.
+    vertices: the requested number; expand: pixels by which the outline moves outwards; threshold: share of
+    full opacity at which the picture ends. If an outline that is exact to half a pixel would need more
+    vertices, it is simplified, outwards, as long as no parts join and no hole larger than a face closes.
+    Raises InputError if nothing is visible, for arguments out of range, or if Triangle fails.
     """
-    start_worker()  # starts while the outline is made
-    most_points, reached = OUTLINE_SHARE * vertices, np.inf
-    for _ in range(MAX_TRIES):
-        cut = cut_out(alpha, threshold, expand, most_points=most_points)
-        if cut.points >= reached:
+    TRIANGLE.start()  # it starts while the outline is computed
+    max_points, fewest = OUTLINE_SHARE * vertices, np.inf
+    for _ in range(MAX_OUTLINES):
+        cut = cut_out(alpha, threshold, expand, max_points=max_points)
+        if cut.points >= fewest:
             break
-        reached = cut.points
+        fewest = cut.points
         mesh = triangulate(cut.parts, vertices)
-        if len(mesh.vertices) <= (1 + COUNT_TOLERANCE) * vertices:
+        if len(mesh.vertices) <= (1 + EXCESS_TOLERANCE) * vertices:
             break
-        most_points = 0.8 * reached
+        max_points = 0.8 * fewest
     return PictureMesh(mesh, len(cut.parts), cut.holes, cut.specks, cut.speck_area)

@@ -1,4 +1,4 @@
-"""How good the mesh of a picture is: its angles, and how well it covers what is visible."""
+"""Quality of a picture's mesh: its angles, and how well it covers the visible pixels."""
 
 from dataclasses import dataclass
 
@@ -13,11 +13,11 @@ from .outline import polygons_of, visible_polygons
 
 @dataclass(frozen=True)
 class MeshQuality:
-    """What can be said of a mesh in numbers.
+    """Measures of a mesh and of how well it fits its picture.
 
-    parts, holes: of the mesh; low_angle, worst_angle: 1st percentile and minimum over the faces of their
-    smallest angles, in degrees; covered: share of the visible area that is on the mesh; outside: share of the
-    mesh where nothing is visible.
+    parts, holes, vertices, faces: their numbers; worst_angle, low_angle: minimum and 1st percentile over the
+    faces of each face's smallest angle, degrees; covered: share of the visible area that the mesh covers;
+    outside: share of the mesh where nothing is visible.
     """
 
     parts: int
@@ -31,10 +31,9 @@ class MeshQuality:
 
 
 def mesh_quality(mesh: TriMesh, alpha: NDArray[np.uint8], threshold: float = 0.5) -> MeshQuality:
-    """Measure a mesh against the picture's alpha (h, w) uint8.
+    """Measure a mesh against the alpha channel (h, w) uint8 of its picture, of which something is visible.
 
-    Visible is what is within the sub-pixel iso-line of ``threshold``, a share of full opacity; there must be
-    something.
+    Visible is the area inside the sub-pixel iso-line of ``threshold``, a share of full opacity.
     """
     angles = smallest_angles(mesh)
     parts = int(mesh.component.max()) + 1
@@ -54,12 +53,12 @@ def mesh_quality(mesh: TriMesh, alpha: NDArray[np.uint8], threshold: float = 0.5
 
 
 def mesh_polygons(mesh: TriMesh) -> NDArray[np.object_]:
-    """Each part of a mesh at rest as a shapely polygon with holes."""
+    """The components of a mesh at rest as shapely polygons with holes."""
     return polygons_of([mesh.vertices[loop] for loop in mesh.boundary_loops])
 
 
 def smallest_angles(mesh: TriMesh) -> Floats:
-    """(m,) the smallest angle of each face at rest, in degrees."""
+    """(m,) the smallest angle of each face at rest, degrees."""
     corners = mesh.vertices[mesh.faces]
     u = np.roll(corners, -1, axis=1) - corners
     v = np.roll(corners, -2, axis=1) - corners

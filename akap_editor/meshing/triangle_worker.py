@@ -1,7 +1,7 @@
-"""Runs Triangle in a process of its own, because bad input can crash it or keep it busy for ever.
+"""Runs Triangle in a process of its own, because bad input can crash it or make it loop forever.
 
-Started as a script by `triangulate`; reads jobs from stdin and answers on stdout, each an .npz archive behind
-its length in eight bytes. It imports nothing of the package, so that it starts fast.
+`triangulate` starts this file as a script. It reads jobs from stdin and answers on stdout; each message is an
+.npz archive after its length in eight bytes. It imports nothing of the package, so that it starts fast.
 """
 
 import io
@@ -14,7 +14,7 @@ import numpy as np
 
 
 def read_message(stream: BinaryIO) -> dict[str, np.ndarray] | None:
-    """The next message, or None at the end of the stream."""
+    """Read the next message; None at the end of the stream."""
     head = stream.read(8)
     if len(head) < 8:
         return None
@@ -27,7 +27,7 @@ def read_message(stream: BinaryIO) -> dict[str, np.ndarray] | None:
 
 
 def write_message(stream: BinaryIO, **arrays: np.ndarray) -> None:
-    """Send arrays by name."""
+    """Write named arrays as one message."""
     body = io.BytesIO()
     np.savez(body, **arrays)  # type: ignore[arg-type]
     stream.write(struct.pack("<Q", body.tell()) + body.getvalue())

@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from akap_editor.errors import InputError
-from akap_editor.meshing.outline import SMALLEST_PART, Outline, outlines
+from akap_editor.meshing.outline import MIN_PART_AREA, Outline, outlines
 from akap_editor.meshing.triangulate import triangulate
 
 
@@ -118,7 +118,7 @@ def test_transparent_picture_is_refused(value):
 @pytest.mark.parametrize("shape", [(1, 1), (3, 3), (2, 5)])
 def test_picture_too_small_is_refused(shape):
     with pytest.raises(
-        InputError, match=f"too small .* at least {SMALLEST_PART:g} square pixels, got {shape[1]}×"
+        InputError, match=f"too small .* at least {MIN_PART_AREA:g} square pixels, got {shape[1]}×"
     ):
         outlines(np.full(shape, 255, dtype=np.uint8))
 

@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from akap_editor.errors import InputError
-from akap_editor.meshing.outline import THINNEST, cut_out
+from akap_editor.meshing.outline import MIN_STROKE_WIDTH, cut_out
 from akap_editor.meshing.picture_mesh import mesh_picture
 from akap_editor.meshing.quality import mesh_quality
 from akap_editor.resources import bundled_drawings
@@ -84,7 +84,7 @@ def test_a_line_of_one_pixel_can_be_bent(expand):
     mesh = mesh_picture(alpha, 400, expand).mesh
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     assert mesh.component.max() == 0
-    assert THINNEST <= high[1] - low[1] <= 1 + 2 * max(expand, THINNEST / 2) + 0.1
+    assert MIN_STROKE_WIDTH <= high[1] - low[1] <= 1 + 2 * max(expand, MIN_STROKE_WIDTH / 2) + 0.1
     assert high[0] - low[0] >= 178
 
 

@@ -5,7 +5,7 @@ import pytest
 import shapely
 from scipy.ndimage import label
 
-from akap_editor.meshing.outline import SMALLEST_HOLE, THINNEST, Outline, cut_out, visible_polygons
+from akap_editor.meshing.outline import MIN_HOLE_AREA, MIN_STROKE_WIDTH, Outline, cut_out, visible_polygons
 from akap_editor.meshing.picture_mesh import mesh_picture
 from akap_editor.meshing.quality import mesh_polygons, mesh_quality, smallest_angles
 from akap_editor.meshing.triangulate import MIN_ANGLE, triangulate
@@ -53,8 +53,8 @@ def test_every_outline_becomes_a_sound_mesh(family, expand):
         # Where nothing is added at the rim, half a pixel may be missing.
         missing = visible.difference(body.buffer(0.8 if expand == 0 else 0)).area
         assert missing <= 0.001 * visible.area + cut.speck_area, number
-        beyond = body.difference(visible.buffer(expand + THINNEST))
-        assert all(gap.area < SMALLEST_HOLE for gap in shapely.get_parts(beyond)), number
+        beyond = body.difference(visible.buffer(expand + MIN_STROKE_WIDTH))
+        assert all(gap.area < MIN_HOLE_AREA for gap in shapely.get_parts(beyond)), number
 
         bad = mesh.vertices[mesh.faces[smallest_angles(mesh) < MIN_ANGLE - 3]]
         near = forced(cut.parts).buffer(1e-6)

@@ -1,4 +1,4 @@
-"""Meshes from outlines: what Triangle is asked for, what comes back, and what happens when it fails."""
+"""Meshes from outlines: they fill them, have good angles and about the requested number of vertices."""
 
 import numpy as np
 import pytest
@@ -7,9 +7,8 @@ from PIL import Image
 
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import TriMesh
-from akap_editor.meshing import triangulate as module
 from akap_editor.meshing.outline import Outline, outlines
-from akap_editor.meshing.triangulate import FEWEST, MOST, triangulate
+from akap_editor.meshing.triangulate import MAX_VERTICES, MIN_VERTICES, triangulate
 from akap_editor.resources import bundled_drawings
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
@@ -86,7 +85,7 @@ def test_number_of_vertices(wanted):
 
 def needed(parts: list[Outline]) -> int:
     """Vertices that the outline makes Triangle use, however few are asked for."""
-    return len(triangulate(parts, FEWEST).vertices)
+    return len(triangulate(parts, MIN_VERTICES).vertices)
 
 
 @pytest.mark.parametrize("name", DRAWINGS)
@@ -194,76 +193,14 @@ def test_bad_holes_are_refused(hole):
         triangulate([Outline(SQUARE, (hole,))], 100)
 
 
-@pytest.mark.parametrize("vertices", [FEWEST - 1, MOST + 1, 0, -5, float("nan"), float("inf"), "100", None])
-def test_bad_number_of_vertices_is_refused(vertices):
-    with pytest.raises(InputError, match=f"vertices: expected a number from {FEWEST} to {MOST}, got"):
-        triangulate(PARTS["square"], vertices)
-
-
-JOB = {
-    "vertices": SQUARE,
-    "segments": np.array([[0, 1], [1, 2], [2, 3], [3, 0]], dtype=np.int32),
-    "holes": np.zeros((0, 2)),
-    "switches": np.array("pq28a50"),
-}
-
-
-@pytest.fixture
-def worker():
-    """A worker of the test's own."""
-    made = module._Worker()
-    yield made
-    made.close()
-
-
-def test_worker_answers_one_job_after_another_in_one_process(worker):
-    first = worker.run(JOB, 60.0)
-    process = worker._process
-    second = worker.run(JOB, 60.0)
-    assert worker._process is process
-    assert first["vertices"].tolist() == second["vertices"].tolist()
-
-
 @pytest.mark.parametrize(
-    "change",
-    [{"vertices": SQUARE[:0]}, {"switches": np.array("a0.000")}],
-    ids=["no vertices", "area of zero"],
+    "vertices", [MIN_VERTICES - 1, MAX_VERTICES + 1, 0, -5, float("nan"), float("inf"), "100", None]
 )
-def test_crash_is_an_input_error_and_the_next_job_works(worker, change):
-    with pytest.raises(InputError, match="cannot be triangulated: Triangle stopped without an answer"):
-        worker.run({**JOB, **change}, 60.0)
-    assert len(worker.run(JOB, 60.0)["triangles"])
-
-
-def test_time_out_is_an_input_error_and_the_next_job_works(worker):
-    with pytest.raises(InputError, match=r"cannot be triangulated: Triangle took longer than 0\.0001 s"):
-        worker.run({**JOB, "switches": np.array("pq28a0.001")}, 0.0001)
-    assert len(worker.run(JOB, 60.0)["triangles"])
-
-
-def test_killed_child_is_replaced(worker):
-    worker.run(JOB, 60.0)
-    worker._process.kill()
-    worker._process.wait()
-    assert len(worker.run(JOB, 60.0)["triangles"])
-
-
-def test_child_that_dies_as_the_job_is_sent(worker, monkeypatch):
-    dead = worker._start()
-    dead.kill()
-    dead.wait()
-    with monkeypatch.context() as patch:
-        patch.setattr(worker, "_start", lambda: dead)
-        with pytest.raises(InputError, match="Triangle stopped without an answer"):
-            worker.run(JOB, 60.0)
-    assert len(worker.run(JOB, 60.0)["triangles"])
-
-
-@pytest.mark.parametrize("change", [{"segments": JOB["segments"] + 7}, {"vertices": SQUARE * [1, 0]}])
-def test_no_faces_are_an_input_error(change):
-    job = {**JOB, **change}
-    with pytest.raises(InputError, match="cannot be triangulated: Triangle returned no faces"):
-        module._triangle({name: job[name] for name in ("vertices", "segments", "holes")}, "pq28a50")
+def test_bad_number_of_vertices_is_refused(vertices):
+    with pytest.raises(
+        InputError, match=f"vertices: expected a number from {MIN_VERTICES} to {MAX_VERTICES}, got"
+    ):
+        triangulate(PARTS["square"], vertices)
 
 
 @pytest.mark.parametrize("vertices", [300, 3000])
