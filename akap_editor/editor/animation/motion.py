@@ -82,7 +82,7 @@ class Motion:
         before, last = self._segment.after, group[-1]
         drawing = last.state.drawing or self._drawing
         after = Frame(drawing, last.state.positions, face_order(drawing.mesh, last.state.pins))
-        if drawing is not before.drawing or any(event.jumped for event in group):
+        if drawing is not before.drawing or any(event.is_jump for event in group):
             return _Segment(last.time, last.time, before, (), after)
         pose = before.pose
         moves: list[tuple[Floats, StepResult, float]] = []

@@ -13,11 +13,11 @@ from .edits import EDITS, ReplayTarget, SetPins, SetSettings
 from .recording import Event, Recording, mesh_digest
 from .session import Session
 
-# What a malformed value of an event raises where it is used.
+# Exceptions raised by malformed values of an event.
 _BAD_EVENT = (AssertionError, AttributeError, KeyError, OverflowError, TypeError, ValueError)
-_MAX_ASPECT_ERROR = 0.01  # pictures whose proportions differ by less show the same
+_MAX_ASPECT_ERROR = 0.01  # aspect ratios that differ by less, as a share, are equal
 
-# Events of a recording that are neither edits nor steps nor returns to an earlier state.
+# Events of gestures and the history; the others are edits, steps, and returns to an earlier state.
 _GESTURES: dict[str, Callable[[Session, Event], None]] = {
     "begin": lambda session, event: session.begin(str(event["label"])),
     "label": lambda session, event: session.rename(str(event["label"])),
@@ -29,23 +29,23 @@ _GESTURES: dict[str, Callable[[Session, Event], None]] = {
 
 
 class ReplayedEvent(NamedTuple):
-    """What one event of a recording led to.
+    """An event of a recording that was replayed.
 
-    time: seconds since the start; state: after the event; step: its result if the event was a step; jumped:
+    time: seconds since the start; state: after the event; step: its result if the event was a step; is_jump:
     whether the pose changed by anything but a step.
     """
 
     time: float
     state: EditState
     step: StepResult | None = None
-    jumped: bool = False
+    is_jump: bool = False
 
 
 class Replay:
-    """A recording that is replayed on a drawing; see `replay`.
+    """Replays a recording on a drawing, see `replay`, and leaves a session to go on with.
 
-    session: the session that it is replayed in, from the first event on; its own recording holds the same
-    events with the same times.
+    session: the session in which it is replayed, None before the first event; its own recording holds the
+    same events with the same times.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class Replay:
         self._recording, self._drawing, self._change = recording, drawing, change
         self._now = 0.0  # seconds of the recording
         self._end: float | None = None  # when the replay ended, by the system's clock
-        # States that a later event returns to, by line, each with its line in the session's own recording.
+        # States to which later events return, by line, with their lines in the session's own recording.
         self._earlier: dict[int, tuple[EditState, int]] = {}
 
     def events(self) -> Iterator[ReplayedEvent]:
@@ -80,11 +80,11 @@ class Replay:
             assert self.session is not None
             if line in returned_to:
                 self._earlier[line] = self.session.state, len(self.session.recording.events) + 1
-            jumped = step is None and before is not None and self.session.state.positions is not before
-            yield ReplayedEvent(self._now, self.session.state, step, jumped)
+            is_jump = step is None and before is not None and self.session.state.positions is not before
+            yield ReplayedEvent(self._now, self.session.state, step, is_jump)
 
     def _replay_event(self, event: Event, target: ReplayTarget) -> StepResult | None:
-        """The result if the event is a step."""
+        """Replay one event; returns the result of a step, None for other events."""
         do = event["do"]
         if do == SetSettings.name and self._change is not None:
             event = {**event, **self._change(Settings.from_json(event)).to_json()}
@@ -109,11 +109,11 @@ class Replay:
         return None
 
     def clock(self) -> float:
-        """Seconds of the recording; after `end` they go on by the system's clock."""
+        """Seconds of the recording; after `end` the system's clock continues from its last time."""
         return self._now if self._end is None else self._now + time.monotonic() - self._end
 
     def end(self) -> Session:
-        """The session to go on with; commits a gesture that the recording left open."""
+        """Commit a gesture that is still open, and stop the motion; returns the session to go on with."""
         assert self.session is not None, "expected a recording with at least one event"
         if self.session.history.is_open:
             self.session.commit()
@@ -125,18 +125,17 @@ class Replay:
 def replay(
     recording: Recording, drawing: Drawing, change: Callable[[Settings], Settings] | None = None
 ) -> Iterator[ReplayedEvent]:
-    """Replay a recording on a drawing; yields what each event led to.
+    """Replay a recording on a drawing, event by event.
 
-    On the mesh that it was made on, the poses are those of the session to the last bit. On another mesh of
-    the same picture, in any size, pins are located by their places in the rest pose. change: makes other
-    settings of the recorded ones. Raises InputError with the number of the event's line, and SolverError if a
-    step fails.
+    On an equal mesh the poses are those of the recorded session to the last bit. On another mesh of the same
+    picture, in any size, pins are located by their rest positions. change: replaces the recorded settings.
+    Raises InputError on events that do not fit the drawing, SolverError if a step fails; both name the line.
     """
     yield from Replay(recording, drawing, change).events()
 
 
 def replay_target(recording: Recording, drawing: Drawing) -> ReplayTarget:
-    """How a recording fits a drawing. Raises InputError if it was made on one of other proportions."""
+    """How a recording fits a drawing. Raises InputError if its picture has another aspect ratio."""
     header = recording.header
     same_mesh = header.get("mesh") == mesh_digest(drawing.mesh)
     if same_mesh or "size" not in header:
