@@ -20,7 +20,7 @@ from .edits import Edit, Effect, SetPins, SetPose
 from .event_log import EventLog
 from .history import History
 from .recording import Recording, drawing_header, opening_edits
-from .stepper import INLINE, Stepper
+from .stepper import INLINE, PIN_TOLERANCE, Stepper
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,9 +224,11 @@ class Session:
 
     def _take_over(self, state: EditState, effect: Effect) -> None:
         stepper = self._stepper
+        # Pins that undo or Escape stopped on the way stay there until the next drag.
+        keeps_targets = self.is_moving or self.pin_error() <= PIN_TOLERANCE
         if effect is Effect.METHOD:
             stepper.set_method(self.drawing.mesh, state)
-        elif effect is Effect.DOCUMENT:
+        elif effect in (Effect.MESH, Effect.DOCUMENT):
             self._restore(state)
         elif effect is Effect.PINS:
             stepper.set_pins(state)
@@ -234,7 +236,8 @@ class Session:
             self.discontinuities += 1
             stepper.stop()
         self._set_state(state)
-        if effect is Effect.TARGETS:
+        settles = effect is Effect.MESH and keeps_targets and self.pin_error() > PIN_TOLERANCE
+        if settles or effect is Effect.TARGETS:
             stepper.aim(state)
 
     def return_to(self, state: EditState, line: int) -> None:

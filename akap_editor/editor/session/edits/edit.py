@@ -25,7 +25,8 @@ class Effect(Enum):
     PINS = auto()  # other pins; no vertex moves
     METHOD = auto()  # another deformer; no vertex moves
     POSE = auto()  # another pose, not reached by steps
-    DOCUMENT = auto()  # anything else, for example another mesh
+    MESH = auto()  # another mesh; the drawing settles on it
+    DOCUMENT = auto()  # anything else
 
 
 @dataclass(frozen=True)

@@ -74,7 +74,7 @@ class Remesh(Edit):
 
     name = "mesh"
     fields = ("vertices", "expand", "threshold", "background")
-    effect = Effect.DOCUMENT
+    effect = Effect.MESH
 
     meshing: Meshing
     prepared: tuple[Drawing, EditState | None] | None = None
