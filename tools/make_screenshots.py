@@ -130,7 +130,7 @@ def ring(window: Window) -> None:
     """The drawing being rotated around a pin; another pin holds its angle."""
     editor = window.state.editor
     pins = [pin.id for pin in posed_elephant().state.pins]
-    editor.edit("Hold angle", lambda session: hold_angles(session, pins[:1]))
+    editor.edit("Hold Angle", lambda session: hold_angles(session, pins[:1]))
     x, y = editor.pins_on_screen()[pins[-1]]
     radius = window.scale * RING_RADIUS
     path = [(x + radius * np.cos(a), y + radius * np.sin(a)) for a in np.radians((0, 15, 30, 35))]

@@ -12,7 +12,7 @@ from .session.history import HistoryEntry
 from .session.session import Session
 from .session.stepper import INLINE
 
-HISTORY_LABEL = "Change mesh"
+HISTORY_LABEL = "Change Mesh"
 
 
 @dataclass(eq=False)

@@ -60,7 +60,7 @@ def add_pin(editor: EditContext, place: Point) -> int | None:
 
     Returns its id; None beside the drawing. Raises InputError if the place is not finite.
     """
-    pin = editor.edit("Add pin", lambda session: pin_edits.add_pin(session, place))
+    pin = editor.edit("Add Pin", lambda session: pin_edits.add_pin(session, place))
     if pin is not None:
         editor.select({pin})
     return pin
@@ -72,7 +72,7 @@ def remove_pins(editor: EditContext, pins: Iterable[int]) -> None:
         return
     removed = frozenset(pins) & {pin.id for pin in editor.session.state.pins}
     if removed:
-        label = "Remove pin" if len(removed) == 1 else f"Remove {len(removed)} pins"
+        label = "Remove Pin" if len(removed) == 1 else f"Remove {len(removed)} Pins"
         editor.edit(label, lambda session: pin_edits.remove_pins(session, removed))
 
 
@@ -89,19 +89,19 @@ def remove_last_pin(editor: EditContext) -> None:
 
 def move_pin(editor: EditContext, pin: int, place: Point) -> None:
     """Set the target of a pin (drawing pixels). Raises InputError on an unknown id or a place not finite."""
-    editor.apply("Place pin", SetTargets({pin: place}))
+    editor.apply("Move Pin", SetTargets({pin: place}))
 
 
 def set_depth(editor: EditContext, pin: int, depth: int) -> None:
     """Set the depth of a pin: higher is nearer to the viewer. Raises InputError on a depth out of range."""
-    editor.edit("Set depth", lambda session: pin_edits.set_depths(session, {pin: depth}))
+    editor.edit("Set Depth", lambda session: pin_edits.set_depths(session, {pin: depth}))
 
 
 def shift_depths(editor: EditContext, by: int) -> None:
     """Add to the depths of the selected pins. Raises InputError on a depth out of range."""
     if editor.session is not None and editor.selection:
         depths = {pin.id: pin.depth + by for pin in editor.session.state.pins if pin.id in editor.selection}
-        label = "Bring forward" if by > 0 else "Send back"
+        label = "Bring Forward" if by > 0 else "Send Back"
         editor.edit(label, lambda session: pin_edits.set_depths(session, depths))
 
 
@@ -111,17 +111,17 @@ def toggle_held_angles(editor: EditContext) -> None:
         return
     free = [pin.id for pin in editor.session.state.pins if pin.id in editor.selection and pin.angle is None]
     if free:
-        editor.edit("Hold angle", lambda session: pin_edits.hold_angles(session, free))
+        editor.edit("Hold Angle", lambda session: pin_edits.hold_angles(session, free))
     else:
-        editor.edit("Release angle", lambda session: pin_edits.hold_angles(session, editor.selection, False))
+        editor.edit("Release Angle", lambda session: pin_edits.hold_angles(session, editor.selection, False))
 
 
 def set_pin_angle(editor: EditContext, pin: int, angle: float | None) -> None:
     """Let a pin hold an angle (radians from rest); None releases it. Raises InputError out of range."""
     if angle is None:
-        editor.edit("Release angle", lambda session: pin_edits.hold_angles(session, {pin}, False))
+        editor.edit("Release Angle", lambda session: pin_edits.hold_angles(session, {pin}, False))
     else:
-        editor.apply("Turn", SetAngles({pin: angle}))
+        editor.apply("Rotate Pin", SetAngles({pin: angle}))
 
 
 class NudgeSeries:
@@ -142,7 +142,7 @@ class NudgeSeries:
         now = self._clock()
         entry, last_pins, last_time = self._last or (None, pins, now)
         joins = entry is not None and entry is session.history.last and last_pins == pins
-        session.begin("Nudge" if len(pins) == 1 else f"Nudge {len(pins)} pins")
+        session.begin("Nudge Pin" if len(pins) == 1 else f"Nudge {len(pins)} Pins")
         try:
             pin_edits.hold_stopped_pins(session)
             moved = (session.state.pin(pin) for pin in sorted(pins))
@@ -160,12 +160,12 @@ class NudgeSeries:
 
 def reset_pose(editor: EditContext) -> None:
     """Return to the rest pose; the pins stay on the drawing and move with it."""
-    editor.apply("Reset pose", ResetPose())
+    editor.apply("Reset Pose", ResetPose())
 
 
 def set_rest_pose(editor: EditContext) -> None:
     """Make the current pose the rest pose; nothing moves. Raises InputError if it has flipped faces."""
-    editor.apply("Make pose the rest pose", SetRestPose())
+    editor.apply("Set Rest Pose from Current", SetRestPose())
 
 
 def add_pose(editor: EditContext, name: str | None = None) -> None:
@@ -175,25 +175,25 @@ def add_pose(editor: EditContext, name: str | None = None) -> None:
     """
     if editor.session is not None:
         pose_name = unused_pose_name(editor.session.state.poses) if name is None else name
-        editor.apply("Keep pose", AddPose(pose_name))
+        editor.apply("Add Pose", AddPose(pose_name))
 
 
 def delete_pose(editor: EditContext, name: str) -> None:
     """Delete the pose of this name, if there is one."""
-    editor.apply("Forget pose", DeletePose(name))
+    editor.apply("Delete Pose", DeletePose(name))
 
 
-def set_pose(editor: EditContext, positions: Floats, label: str = "Apply pose") -> None:
+def set_pose(editor: EditContext, positions: Floats, label: str = "Apply Pose") -> None:
     """Set the pose (n, 2); the pins stay on the drawing and move with it. Raises InputError."""
     editor.apply(label, SetPose(positions))
 
 
 def apply_pose(editor: EditContext, pins: tuple[Pin, ...], positions: Floats) -> None:
     """Replace the pins and the pose (n, 2), as saved from the same mesh. Raises InputError."""
-    editor.apply("Apply pose", SetPins(pins), SetPose(positions))
+    editor.apply("Apply Pose", SetPins(pins), SetPose(positions))
 
 
 def set_settings(editor: EditContext, settings: Settings) -> None:
     """Change the deformation method or its parameters. Raises InputError on unknown ones."""
     if editor.session is not None and settings != editor.session.state.settings:
-        editor.apply("Change settings", SetSettings(settings))
+        editor.apply("Change Settings", SetSettings(settings))

@@ -170,7 +170,7 @@ def test_it_draws_until_the_drawing_has_come_to_rest_and_shows_it(loop):
     """The last frame before the sleep shows, in the panel's numbers too, what any later frame would."""
     ui, snapshots = loop.ui, []
     x, y = ui.pin_place(3)
-    ui.session.begin("Bend")
+    ui.session.begin("Drag Pin")
     ui.session.apply(SetTargets({3: (x, y - 40)}))
     ui.session.commit()
     ui.window.after_draw.append(lambda: snapshots.append(ui.window.screenshot()))

@@ -116,7 +116,7 @@ def held(pinned, monkeypatch):
 
     monkeypatch.setattr(AkapDeformer, "step", wait)
     x, y = pinned.pin_place(3)
-    pinned.session.begin("Bend")
+    pinned.session.begin("Drag Pin")
     pinned.session.apply(SetTargets({3: (x, y - 40)}))
     pinned.session.commit()
     yield SimpleNamespace(ui=pinned, open=gate, goal=(x, y - 40), pose=pinned.session.state.positions)
@@ -192,7 +192,7 @@ def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatc
     patch = monkeypatch.setattr
     patch(AkapDeformer, "vector_fields", lambda *motion: gate.wait(DEADLINE) and fields(*motion))
     x, y = pinned.pin_place(3)
-    pinned.session.begin("Bend")
+    pinned.session.begin("Drag Pin")
     pinned.session.apply(SetTargets({3: (x, y - 40)}))
     while not pinned.state.view.is_computing:
         pinned.frame()

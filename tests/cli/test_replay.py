@@ -34,7 +34,7 @@ def session():
     image[10:30, 6:74] = (250, 130, 20, 255)
     now = [0.0]
     session = Session(new_document(make_drawing(image, vertices=80, name="bar")), clock=lambda: now[0])
-    session.begin("Bend")
+    session.begin("Drag Pin")
     add_pin(session, (12.0, 20.0))
     pin = add_pin(session, (68.0, 20.0))
     for step in range(1, 13):

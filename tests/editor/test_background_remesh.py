@@ -51,7 +51,7 @@ def held(editor, thread):
 def test_the_values_of_one_gesture_are_one_entry_made_from_where_it_began(editor, remesher):
     """Coarse in between: nothing of that is left in the result."""
     session = editor.session
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({3: (150.0, 100.0)}))
     session.settle()
     session.commit()
@@ -123,7 +123,7 @@ def test_edits_made_meanwhile_stay(editor, held, thread):
 def test_a_mesh_waits_for_a_gesture_of_the_editor_to_end(editor, held, thread):
     held.request(Meshing(300))
     held.advance()
-    editor.session.begin("Bend")
+    editor.session.begin("Drag Pin")
     thread.work()
     assert not held.advance()
     editor.session.abort()

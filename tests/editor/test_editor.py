@@ -127,17 +127,17 @@ def test_the_hint_of_a_drag_says_why_nothing_bends(driver):
     driver.press(NECK)
     driver.move((70.0, 30.0))
     assert driver.tool == "DraggingPin"
-    assert "all of it goes along" in driver.editor.hint
+    assert "all of it moves" in driver.editor.hint
     driver.release((70.0, 30.0))
     driver.move(BESIDE)
-    assert "where it should hold still" in driver.editor.hint
+    assert "add another one that holds it in place" in driver.editor.hint
 
 
 def test_the_hint_of_a_drag_that_bends_is_how_to_end_it(pinned):
     pinned.press((45.0, 25.0))
     pinned.move((45.0, 35.0))
     assert pinned.tool == "DraggingPin"
-    assert pinned.editor.hint == "Release to keep this pose, Escape to go back"
+    assert pinned.editor.hint == "Release to keep this pose, Esc to cancel"
 
 
 def test_the_hint_of_idle_says_what_a_press_would_do(driver):
@@ -159,29 +159,29 @@ def test_the_hint_of_idle_says_what_a_press_would_do(driver):
 
 def edit_add(d):
     assert gestures.add_pin(d.editor, (45.0, 45.0)) == 4
-    return "Add pin"
+    return "Add Pin"
 
 
 def edit_remove_one(d):
     gestures.remove_pins(d.editor, [2])
-    return "Remove pin"
+    return "Remove Pin"
 
 
 def edit_remove_selected(d):
     d.editor.select({1, 3})
     gestures.remove_selected_pins(d.editor)
     assert d.ids == [2]
-    return "Remove 2 pins"
+    return "Remove 2 Pins"
 
 
 def edit_reset(d):
     gestures.reset_pose(d.editor)
-    return "Reset pose"
+    return "Reset Pose"
 
 
 def edit_settings(d):
     gestures.set_settings(d.editor, d.state.settings.with_parameter("memory", 0.0))
-    return "Change settings"
+    return "Change Settings"
 
 
 @pytest.mark.parametrize("edit", [edit_add, edit_remove_one, edit_remove_selected, edit_reset, edit_settings])
@@ -249,7 +249,7 @@ def test_a_failed_edit_changes_nothing_and_leaves_no_gesture_open(pinned, bad):
 
 def test_a_new_edit_ends_redo(pinned):
     pinned.undo()
-    assert pinned.session.history.redo_label == "Add pin"
+    assert pinned.session.history.redo_label == "Add Pin"
     gestures.remove_pins(pinned.editor, [1])
     assert pinned.session.history.redo_label is None
 

@@ -42,7 +42,7 @@ def test_arrows_nudge_the_selected_pins(pinned, key, shift, way):
     np.testing.assert_array_equal(pinned.state.targets, before + np.outer([1, 0, 1], way))
     pinned.settle()
     assert pinned.session.pin_error() < 0.25
-    assert pinned.session.history.undo_label == "Nudge 2 pins"
+    assert pinned.session.history.undo_label == "Nudge 2 Pins"
 
 
 def test_presses_in_a_row_are_one_entry_that_undo_takes_back_exactly(pinned):
@@ -227,7 +227,7 @@ def test_a_pin_goes_to_the_values_given_in_one_gesture(pinned):
     gestures.move_pin(pinned.editor, 3, (95.0, 55.0))
     pinned.settle()
     np.testing.assert_allclose(pinned.where(3), (95.0, 55.0), atol=0.25)
-    assert (pinned.depth, pinned.session.history.undo_label) == (depth + 1, "Place pin")
+    assert (pinned.depth, pinned.session.history.undo_label) == (depth + 1, "Move Pin")
     pinned.undo()
     before = pinned.everything
     with pytest.raises(InputError):

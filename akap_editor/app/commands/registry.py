@@ -265,7 +265,7 @@ SMALLER = Command("Smaller Brush", _resize(False), (Key.left_bracket,), "", _has
 LARGER = Command("Larger Brush", _resize(True), (Key.right_bracket,), "", _has_brush)
 SOFTEN_ALL = Command(
     "Remove All Stiffness",
-    lambda state: state.editor.apply("Remove stiffness", SetStiffness(None)),
+    lambda state: state.editor.apply("Remove All Stiffness", SetStiffness(None)),
     (),
     "",
     lambda state: state.editor.session is not None and state.editor.session.state.stiffness is not None,

@@ -187,7 +187,7 @@ def _order(state: AppState, old: int, new: int) -> None:
     assert state.document is not None
     names = [each.name for each in state.document.state.poses]
     names.insert(new, names.pop(old))
-    state.run_reporting_errors(lambda: state.editor.apply("Order poses", ReorderPoses(names)))
+    state.run_reporting_errors(lambda: state.editor.apply("Reorder Poses", ReorderPoses(names)))
 
 
 def _mixer(state: AppState, scale: float) -> None:
@@ -217,4 +217,4 @@ def _mixer(state: AppState, scale: float) -> None:
         session.end_preview()
         pose = pose_blend.pose(session)
         if pose is not None:
-            state.run_reporting_errors(lambda: gestures.set_pose(state.editor, pose, "In-between"))
+            state.run_reporting_errors(lambda: gestures.set_pose(state.editor, pose, "Apply Blend"))

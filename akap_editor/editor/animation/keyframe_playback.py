@@ -89,7 +89,7 @@ class KeyframePlayback(Playback):
 
     @loop.setter
     def loop(self, loop: bool) -> None:
-        self._edit("Play over and over" if loop else "Play once", SetLoop(loop))
+        self._edit("Loop Forever" if loop else "Play Once", SetLoop(loop))
 
     @property
     def is_previewing(self) -> bool:
@@ -207,7 +207,7 @@ class KeyframePlayback(Playback):
         time = as_keyframe_time(self.time if time is None else time)
         if positions is None and self.is_previewing:
             positions = session.state.positions
-        label = "Change keyframe" if time in self.animation.times else "Add keyframe"
+        label = "Update Keyframe" if time in self.animation.times else "Add Keyframe"
         self._edit(label, SetKeyframe(time, positions))
         self.selected, self.time = frozenset({time}), time
 
@@ -240,11 +240,11 @@ class KeyframePlayback(Playback):
         """Set the easing after the selected keyframes, or the one at the playhead; None: the default."""
         times = self._affected_times()
         if times:
-            self._edit("Change easing", SetEasing(times, easing))
+            self._edit("Change Easing", SetEasing(times, easing))
 
     def set_default_easing(self, easing: str) -> None:
         """Set the easing after all keyframes that have none of their own."""
-        self._edit("Change easing", SetEasing(None, easing))
+        self._edit("Change Easing", SetEasing(None, easing))
 
     def drag_keyframes(self, moves: Mapping[float, float], copy: bool = False) -> None:
         """Show the animation with keyframes at other times; `drop_keyframes` makes it an edit.
@@ -318,4 +318,4 @@ def _within_limits(time: float) -> float:
 
 
 def _counted(verb: str, times: Collection[float]) -> str:
-    return f"{verb} keyframe" if len(times) == 1 else f"{verb} {len(times)} keyframes"
+    return f"{verb} Keyframe" if len(times) == 1 else f"{verb} {len(times)} Keyframes"

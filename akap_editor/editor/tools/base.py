@@ -203,7 +203,7 @@ class IdleTool(Tool):
     @property
     def keyboard_hint(self) -> str:
         """What Enter does where the pointer is, while keys move it."""
-        return "Arrows move the crosshair, with Shift farther; Esc ends"
+        return "Arrows move the crosshair, Shift moves it farther, Esc ends"
 
     @property
     def hovered_pin(self) -> int | None:

@@ -8,7 +8,7 @@ from .pins import OpeningPinMenu
 class HandIdle(IdleTool):
     """The hand waits for a press: the left button pans, the right one opens the menu of a pin."""
 
-    press_hint = "Drag to move the canvas, wheel to zoom"
+    press_hint = "Drag to move the canvas, scroll to zoom"
     cursor = "move"
 
     @property
@@ -27,7 +27,7 @@ class HandIdle(IdleTool):
 class Panning(Tool):
     """The canvas follows the pointer. This edits nothing, so the history gets no entry."""
 
-    hint = "Release to stop moving the canvas"
+    hint = "Release to stop moving the canvas, Esc to cancel"
     cursor = "move"
 
     def __init__(self, context: ToolContext, event: PointerEvent) -> None:

@@ -20,20 +20,20 @@ class PinsIdle(IdleTool):
     def press_hint(self) -> str:
         context = self.context
         if self._hovered_ring is not None:
-            return "Drag the ring to turn the drawing around this pin, with Shift by steps of 15°"
+            return "Drag the ring to rotate the drawing around this pin, Shift snaps to 15°"
         if self.hovered_pin is not None:
             if "alt" in context.held:
-                return "Click to remove this pin, drag its ring to turn the drawing around it"
+                return "Click to remove this pin, drag its ring to rotate the drawing around it"
             if "shift" in context.held:
-                return "Click to select this pin too, or to take it out of the selection"
-            return "Drag to bend the drawing, Shift-click to select several pins, double-click for values"
+                return "Click to add this pin to the selection, or to remove it from there"
+            return "Drag to bend the drawing, Shift-click to select several pins, double-click to edit values"
         if self._new_pin is not None:
-            return "Click to add a pin, or press and drag to bend from here"
+            return "Click to add a pin, or drag to add one and bend the drawing"
         if not self.session.state.pins:
-            return "Click on the drawing to put a pin where it should hold still"
+            return "Click on the drawing to add a pin"
         if len(self.session.state.pins) == 1:
-            return "One pin takes all of the drawing along: click on the drawing where it should hold still"
-        return "Drag a pin to bend the drawing, click on the drawing for another one"
+            return "One pin moves the whole drawing: click to add another one that holds it in place"
+        return "Drag a pin to bend the drawing, click on the drawing to add one"
 
     @property
     def keyboard_hint(self) -> str:
@@ -41,14 +41,14 @@ class PinsIdle(IdleTool):
             if "alt" in self.context.held:
                 return "Enter removes this pin"
             if "shift" in self.context.held:
-                return "Enter selects this pin too, or takes it out of the selection"
+                return "Enter adds this pin to the selection, or removes it from there"
             return (
-                "Enter selects this pin, with Shift this one too, with Alt it removes it; "
+                "Enter selects this pin, Shift+Enter adds it to the selection, Alt+Enter removes it, "
                 "arrows move on, Esc ends"
             )
         if self._new_pin is not None:
-            return "Enter adds a pin; arrows move on, Esc ends"
-        return "Arrows move the crosshair, with Shift farther; Enter adds a pin on the drawing, Esc ends"
+            return "Enter adds a pin, arrows move on, Esc ends"
+        return "Arrows move the crosshair, Shift moves it farther, Enter adds a pin on the drawing, Esc ends"
 
     @property
     def cursor(self) -> Cursor:
@@ -105,7 +105,7 @@ class PinsIdle(IdleTool):
         if event.shift or event.alt:
             context.set_tool(PointingCanvas(context, event))
             return
-        self.session.begin("Add pin")
+        self.session.begin("Add Pin")
         pin = add_pin(self.session, context.camera.to_drawing(event.position))
         if pin is None:
             self.session.abort()
@@ -167,10 +167,10 @@ class DraggingPin(PinGesture):
         session = self.session
         self._start = context.camera.to_drawing(start)
         if is_new:
-            session.rename("Add pin and bend")
+            session.rename("Add and Drag Pin")
         else:
             count = len(context.selection)
-            session.begin("Bend" if count == 1 else f"Bend with {count} pins")
+            session.begin("Drag Pin" if count == 1 else f"Drag {count} Pins")
         hold_stopped_pins(session)
         positions = zip(session.state.pins, session.pin_positions(), strict=True)
         self._positions_before = {pin.id: (x, y) for pin, (x, y) in positions if pin.id in context.selection}
@@ -179,8 +179,8 @@ class DraggingPin(PinGesture):
     def hint(self) -> str:
         """What a release does; or that nothing bends because no pin stays where it is."""
         if len(self._positions_before) == len(self.session.state.pins):
-            return "No other pin holds the drawing, so all of it goes along; Escape to go back"
-        return "Release to keep this pose, Escape to go back"
+            return "No other pin holds the drawing, so all of it moves; Esc to cancel"
+        return "Release to keep this pose, Esc to cancel"
 
     @property
     def markers(self) -> Markers:
@@ -202,7 +202,7 @@ class DraggingPin(PinGesture):
 class RemovingPin(Pointing):
     """A pin is pressed with Alt; a click removes it."""
 
-    hint = "Release to remove this pin, Escape to keep it"
+    hint = "Release to remove this pin, Esc to cancel"
     cursor = "hand"
 
     def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
@@ -217,7 +217,7 @@ class RemovingPin(Pointing):
 class OpeningPinMenu(Pointing):
     """A pin is pressed with the right button; a click opens its menu."""
 
-    hint = "Release for the menu of this pin"
+    hint = "Release to open the menu of this pin"
     cursor = "hand"
 
     def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
@@ -252,7 +252,7 @@ class PointingCanvas(Pointing):
 class RubberBand(Tool):
     """A box from the press to the pointer selects the pins inside it."""
 
-    hint = "Release to select the pins in the box, Escape to go back"
+    hint = "Release to select the pins in the box, Esc to cancel"
 
     def __init__(self, context: ToolContext, start: Point, extends_selection: bool) -> None:
         super().__init__(context)

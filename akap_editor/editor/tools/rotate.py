@@ -50,7 +50,7 @@ def rotation_ring(context: ToolContext, pin: int, is_dragged: bool = False) -> R
 class PointingRotationRing(Pointing):
     """The ring of a pin is pressed and not dragged yet."""
 
-    hint = "Drag to turn the drawing around this pin"
+    hint = "Drag to rotate the drawing around this pin"
     cursor = "hand"
 
     def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
@@ -76,14 +76,14 @@ class RotatingPin(PinGesture):
         self._angle = self.session.pin_angle(pin) if held_angle is None else held_angle
         self._direction = self._direction_to(start)
         context.select({pin})
-        self.session.begin("Turn")
+        self.session.begin("Rotate Pin")
         hold_stopped_pins(self.session)
 
     @property
     def hint(self) -> str:
         """The angle, and how to end."""
         angle = math.degrees(self.session.state.pin(self.pin).angle or 0.0)
-        return f"{angle:+.1f}°: release to hold this angle, Shift for steps of 15°, Escape to go back"
+        return f"{angle:+.1f}°: release to hold this angle, Shift snaps to 15°, Esc to cancel"
 
     @property
     def markers(self) -> Markers:

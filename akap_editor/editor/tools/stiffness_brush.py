@@ -50,14 +50,13 @@ class BrushIdle(IdleTool):
     @property
     def press_hint(self) -> str:
         if self.brush.erasing:
-            return "Drag over parts that are to bend freely again, E to paint"
-        factor = f"{self.brush.factor:.3g}"
-        return f"Drag over parts that are to bend {factor} times less, right-drag or E to erase"
+            return "Drag over areas to erase their stiffness, E to paint"
+        return f"Paint areas to stiffen ({self.brush.factor:.3g}×), right-drag or E to erase"
 
     @property
     def keyboard_hint(self) -> str:
-        action = "erases" if self.brush.erasing else "stiffens"
-        return f"Enter {action} what is in the circle, [ and ] change its size, arrows move on, Esc ends"
+        action = "erases stiffness" if self.brush.erasing else "stiffens"
+        return f"Enter {action} in the circle, [ and ] change its size, arrows move it, Esc ends"
 
     @property
     def cursor(self) -> Cursor:
@@ -103,14 +102,14 @@ class Painting(Tool):
         self._dabs: list[Floats] = []
         self._coverage = np.zeros(len(session.drawing.mesh.faces))
         self._stiffness = session.state.stiffness
-        session.begin("Erase stiffness" if erases else "Stiffen")
+        session.begin("Erase Stiffness" if erases else "Paint Stiffness")
         self.move(event)
 
     @property
     def hint(self) -> str:
         """What the stroke does."""
         action = "erase" if self._factor == MIN_STIFFNESS else "paint"
-        return f"Release to {action}, Escape to go back"
+        return f"Release to {action}, Esc to cancel"
 
     @property
     def markers(self) -> Markers:

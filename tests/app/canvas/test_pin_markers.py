@@ -22,7 +22,7 @@ def test_arrows_nudge_also_after_a_click_on_a_panel(pinned):
 
     pinned.do(nudge)
     np.testing.assert_allclose(pinned.session.state.pin(3).target, np.add(before, (-10, -2)), atol=1e-9)
-    assert pinned.session.history.labels == ["Nudge"]
+    assert pinned.session.history.labels == ["Nudge Pin"]
     assert pinned.state.show_mesh
 
 
@@ -108,7 +108,7 @@ def test_a_double_click_opens_the_values_which_move_the_pin(pinned):
     assert pinned.editor.request is None
     np.testing.assert_allclose(pinned.session.state.pin(3).target, (195, 80))
     np.testing.assert_allclose(pinned.pin_place(3), (195, 80), atol=0.25)
-    assert pinned.session.history.labels == ["Place pin"]
+    assert pinned.session.history.labels == ["Move Pin"]
 
 
 def test_escape_closes_the_values_at_once(pinned):

@@ -35,7 +35,7 @@ def test_a_click_adds_a_pin_exactly_there(ui):
     assert tuple(pin.target) == ui.place(at)
     np.testing.assert_allclose(ui.pin_place(pin.id), ui.place(at), atol=1e-9)
     assert ui.editor.selection == {pin.id}
-    assert ui.session.history.undo_label == "Add pin"
+    assert ui.session.history.undo_label == "Add Pin"
     assert not ui.session.is_posed
 
 
@@ -57,7 +57,7 @@ def test_a_drag_bends_and_the_pin_arrives_while_others_hold(pinned):
     assert np.linalg.norm(pinned.pin_place(3) - wanted) < PIN_TOLERANCE == 0.25
     for pin, place in held.items():
         assert np.linalg.norm(pinned.pin_place(pin) - place) < PIN_TOLERANCE
-    assert pinned.session.history.undo_label == "Bend"
+    assert pinned.session.history.undo_label == "Drag Pin"
     assert pinned.session.history.depth == 1
 
 
@@ -68,7 +68,7 @@ def test_press_and_drag_on_the_drawing_adds_a_pin_and_bends_in_one_gesture(ui):
     end = start[0], start[1] + 150
     ui.drag(start, end)
     assert np.linalg.norm(ui.pin_place(2) - ui.place(end)) < PIN_TOLERANCE
-    assert ui.session.history.undo_label == "Add pin and bend"
+    assert ui.session.history.undo_label == "Add and Drag Pin"
     ui.key(Key.mod_ctrl | Key.z)
     assert [pin.id for pin in ui.pins] == [1]
     assert pose(ui).tobytes() == before.tobytes()

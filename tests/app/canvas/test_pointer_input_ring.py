@@ -26,7 +26,7 @@ def test_an_alt_drag_of_the_ring_turns_and_holds(pinned):
     pinned.drag(*ring_places(pinned, 2, 0, 20, 40), held=Key.mod_alt)
     assert math.degrees(pinned.session.state.pin(2).angle) == pytest.approx(40, abs=3)
     assert pinned.session.pin_angle(2) == pytest.approx(pinned.session.state.pin(2).angle, abs=0.02)
-    assert pinned.session.history.labels == ["Turn"]
+    assert pinned.session.history.labels == ["Rotate Pin"]
     assert (pinned.screenshot() != plain).any()
     pinned.key(commands.UNDO.chords[0])
     assert pinned.session.state.pin(2).angle is None
@@ -63,7 +63,7 @@ def test_the_menu_of_a_pin_holds_its_angle_and_lets_it_go(pinned):
     assert pinned.session.state.pin(2).angle == pytest.approx(0.0, abs=1e-9)
     at_pin(pinned, 2, 1, 1, *choose)
     assert pinned.session.state.pin(2).angle is None
-    assert pinned.session.history.labels == ["Hold angle", "Release angle"]
+    assert pinned.session.history.labels == ["Hold Angle", "Release Angle"]
 
 
 def test_the_values_of_a_pin_have_its_angle_in_degrees(pinned):
@@ -97,14 +97,14 @@ def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned)
     pinned.key(Key.s)
     pinned.drag(start, end, button=1)
     assert pinned.session.state.stiffness is None or pinned.session.state.stiffness.max() < 100.0
-    assert pinned.session.history.labels == ["Stiffen", "Erase stiffness"]
+    assert pinned.session.history.labels == ["Paint Stiffness", "Erase Stiffness"]
 
 
 def test_the_options_of_the_brush(pinned):
     pinned.tool_button(commands.BRUSH_TOOL)
     pinned.panel("Erase")
     assert pinned.editor.brush_tool.brush.erasing
-    pinned.editor.apply("Stiffen", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
+    pinned.editor.apply("Paint Stiffness", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
     pinned.panel(commands.SOFTEN_ALL.label.capitalize())
     assert pinned.session.state.stiffness is None
 

@@ -115,7 +115,7 @@ def test_it_is_seen(ui):
 
 def test_the_brush_dabs_where_the_crosshair_is(ui):
     keys(ui, Key.s, Key.c, Key.right_bracket, Key.enter)
-    assert ui.session.history.undo_label == "Stiffen"
+    assert ui.session.history.undo_label == "Paint Stiffness"
     assert ui.session.state.stiffness.max() > 50
 
 

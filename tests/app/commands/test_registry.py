@@ -58,7 +58,7 @@ def with_tool(name):
 
 
 def stiffened(ui):
-    ui.editor.apply("Stiffen", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
+    ui.editor.apply("Paint Stiffness", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
 
 
 def moved_camera(ui):

@@ -67,7 +67,7 @@ def test_a_recording_that_was_opened_is_gone_on_with_and_branched(ui, tmp_path):
     ui.settle()
     start = ui.screen(ui.pin_place(1))
     ui.drag(start, (start[0] + 20, start[1] + 30))
-    assert ui.session.history.labels[-2:] == ["Go Back in Time", "Bend"]
+    assert ui.session.history.labels[-2:] == ["Go Back in Time", "Drag Pin"]
     times = [event["t"] for event in ui.session.recording.events]
     assert times == sorted(times)
     write_recording(ui.session.recording, tmp_path / "more.akaprec", ui.session.drawing)

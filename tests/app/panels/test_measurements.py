@@ -41,7 +41,7 @@ def frames(measurements, session, clock, measure, count, step=1 / 60):
 def test_measuring_takes_a_tenth_of_the_time_at_most_while_something_moves(session, clock):
     calls, measure = measuring(session, clock, cost=0.03)
     measurements, start = Measurements(clock), clock.now
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (190.0, 60.0)}))
     frames(measurements, session, clock, measure, 120)
     assert len(calls) >= 3
@@ -51,7 +51,7 @@ def test_measuring_takes_a_tenth_of_the_time_at_most_while_something_moves(sessi
 def test_the_pose_at_rest_is_measured_at_once_and_only_once(session, clock):
     calls, measure = measuring(session, clock, cost=0.03)
     measurements = Measurements(clock)
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (190.0, 60.0)}))
     frames(measurements, session, clock, measure, 3)
     session.stop_motion()
@@ -68,7 +68,7 @@ def test_rates_leave_out_sleep(session, clock):
     _, measure = measuring(session, clock, cost=0.0)
     measurements = Measurements(clock)
     assert (measurements.frame_rate, measurements.step_seconds) == (None, None)
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (190.0, 60.0)}))
     frames(measurements, session, clock, measure, 10, step=0.02)
     clock.now += 60.0
@@ -80,7 +80,7 @@ def test_rates_leave_out_sleep(session, clock):
 def test_it_forgets_what_is_old_and_begins_anew_with_a_drawing(session, clock, drawing):
     _, measure = measuring(session, clock, cost=0.0)
     measurements = Measurements(clock)
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (190.0, 60.0)}))
     frames(measurements, session, clock, measure, KEPT + 9)
     assert len(measurements.areas) == len(measurements.angles) == KEPT

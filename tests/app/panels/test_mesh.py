@@ -69,7 +69,7 @@ def test_a_pin_can_be_dragged_right_after(opened):
     slide(opened, "##Vertices", 0.2, 0.5)
     start = opened.screen(tuple(opened.pin_place(3)))
     opened.drag(start, (start[0], start[1] - 40))
-    assert opened.session.history.undo_label == "Move pin" or opened.session.is_posed
+    assert opened.session.history.undo_label == "Move Pin" or opened.session.is_posed
     assert opened.session.pin_error() < 0.25
 
 

@@ -59,7 +59,7 @@ def test_a_switch_changes_at_once_and_a_double_click_on_its_label_resets(pinned,
 
     pinned.do(act)
     assert seen == [False, True]
-    assert pinned.session.history.labels == ["Change settings", "Change settings"]
+    assert pinned.session.history.labels == ["Change Settings", "Change Settings"]
 
 
 def test_a_slider_changes_once_when_it_is_let_go(pinned):
@@ -71,7 +71,7 @@ def test_a_slider_changes_once_when_it_is_let_go(pinned):
 
     pinned.do(act)
     assert pinned.session.state.settings.get("memory") == pytest.approx(0.25)
-    assert pinned.session.history.labels == ["Change settings"]
+    assert pinned.session.history.labels == ["Change Settings"]
 
 
 def test_a_method_without_parameters_has_no_section_of_them(pinned, monkeypatch):
@@ -112,12 +112,12 @@ def test_a_click_on_a_step_goes_there_and_back(pinned):
         poses.append(pinned.session.state)
     pinned.state.notice = "Saved figure.akap"
     for index in (1, 0, 3, 2):
-        name = "Bend" if index else "As opened"
+        name = "Drag Pin" if index else "As opened"
         pinned.do(lambda hand, label=f"**/  {name}##step {index}": click(hand, label))
         assert pinned.session.history.depth == index
         assert not pinned.state.notice, "it is about something else"
         assert pinned.session.state.positions.tobytes() == poses[index].positions.tobytes()
-    assert pinned.session.history.labels == ["Bend"] * 3
+    assert pinned.session.history.labels == ["Drag Pin"] * 3
 
 
 def test_there_is_no_going_beyond_the_ends(drawing):

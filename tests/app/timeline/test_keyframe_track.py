@@ -89,9 +89,9 @@ def test_keyframes_are_dragged_copied_and_stretched(keyed):
     keyed.drag(on_track(keyed, 1.3), on_track(keyed, 1.95), held=imgui.Key.mod_alt)
     assert times(keyed) == pytest.approx((0.0, 0.9, 1.95))
     assert keyed.session.history.labels[-3:] == [
-        "Move keyframe",
-        "Duplicate keyframe",
-        "Move 3 keyframes",
+        "Move Keyframe",
+        "Duplicate Keyframe",
+        "Move 3 Keyframes",
     ]
     for expected in ((0.0, 0.6, 1.3), (0.0, 1.3), (0.0, 1.0)):
         keyed.editor.undo()

@@ -78,7 +78,7 @@ def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(be
     here = playback.snapshot_at(playback.time).time
     start = bent.screen(bent.pin_place(3))
     bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
-    assert bent.session.history.labels[-2:] == ["Go Back in Time", "Bend"]
+    assert bent.session.history.labels[-2:] == ["Go Back in Time", "Drag Pin"]
     assert playback.marked_range is not None
     assert playback.marked_range[0] == pytest.approx(here)
     assert playback.marked_range[0] < playback.marked_range[1] <= playback.duration
@@ -92,7 +92,7 @@ def test_a_drag_on_the_canvas_goes_on_from_there(bent):
     assert not bent.session.is_previewing
     *_, last = replay(bent.session.recording, bent.session.drawing)
     np.testing.assert_array_equal(last.state.positions, bent.session.state.positions)
-    assert bent.session.history.labels[-2:] == ["Go Back in Time", "Bend"]
+    assert bent.session.history.labels[-2:] == ["Go Back in Time", "Drag Pin"]
 
 
 def test_control_and_drag_records_that_gesture_only(bent):

@@ -217,7 +217,7 @@ def test_the_pose_between_two_is_looked_at_and_taken(pinned, drawing):
     assert len(session.recording.events) == events
     pose_blend.share = 0.5
     pose_blend.preview(session)
-    gestures.set_pose(pinned.editor, pose_blend.pose(session), "In-between")
+    gestures.set_pose(pinned.editor, pose_blend.pose(session), "Apply Blend")
     assert bits(recorded(session, drawing)) == bits(session.state)
     session.undo()
     assert bits(session.state) == now

@@ -33,7 +33,7 @@ def figure():
 def bent(figure):
     """A session with the figure and three pins; the last one was dragged."""
     session = Session(new_document(make_drawing(figure, vertices=300, name="bar")), clock=lambda: 0.0)
-    session.begin("Bend")
+    session.begin("Drag Pin")
     for at in [(30.0, 60.0), (85.0, 60.0), (140.0, 60.0)]:
         add_pin(session, at)
     session.apply(SetTargets({3: (130.0, 90.0)}))
@@ -43,7 +43,7 @@ def bent(figure):
 
 
 def remesh(session, **changes):
-    session.begin("Change mesh")
+    session.begin("Change Mesh")
     session.apply(
         Remesh.from_drawing(remesh_drawing(session.drawing, replace(session.drawing.meshing, **changes)))
     )
@@ -113,7 +113,7 @@ def test_pins_and_pose_stay_and_undo_takes_it_back(bent, changes):
 
 def test_escape_restores_the_mesh_bit_for_bit(bent):
     state, drawing = bent.state, bent.drawing
-    bent.begin("Change mesh")
+    bent.begin("Change Mesh")
     bent.apply(Remesh.from_drawing(remesh_drawing(drawing, Meshing(100))))
     bent.apply(Remesh.from_drawing(remesh_drawing(bent.drawing, Meshing(500))))
     bent.abort()
@@ -137,7 +137,7 @@ def test_a_pin_on_a_part_that_is_gone_is_removed(figure):
 def test_a_recording_is_replayed(bent, figure):
     """On the same mesh to the last bit, with undo and redo; on another mesh nearly."""
     remesh(bent, vertices=700)
-    bent.begin("Add pin")
+    bent.begin("Add Pin")
     add_pin(bent, tuple(bent.pin_positions()[0] + [6.0, 6.0]))
     bent.apply(SetTargets({2: (90.0, 50.0)}))
     bent.settle()
@@ -160,7 +160,7 @@ def test_background_is_removed_and_comes_back(figure):
     session = Session(new_document(make_drawing(figure, vertices=300)))
     whole = session.drawing
     assert whole.mesh.rest_areas.sum() == pytest.approx(200 * 120)
-    session.begin("Add pin")
+    session.begin("Add Pin")
     add_pin(session, (60.0, 60.0))
     add_pin(session, (5.0, 5.0))
     session.commit()

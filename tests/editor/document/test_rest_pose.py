@@ -69,7 +69,7 @@ def test_undo_and_redo_restore_every_bit(bent):
     before, drawing = bits(session.state), session.drawing
     gestures.set_rest_pose(bent.editor)
     after, baked = bits(session.state), session.drawing
-    assert session.history.undo_label == "Make pose the rest pose"
+    assert session.history.undo_label == "Set Rest Pose from Current"
     bent.editor.undo()
     assert bits(session.state) == before
     assert session.drawing is drawing

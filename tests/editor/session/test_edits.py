@@ -176,7 +176,7 @@ def test_a_prepared_mesh_is_taken_over(session):
 
 
 def test_pins_set_while_the_drawing_moves_are_fixed_at_the_pose(session):
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (60.0, 75.0)}))
     session.step()
     positions = session.pin_positions()

@@ -319,7 +319,7 @@ def replay_to_end(recording, drawing):
 def test_a_replay_leaves_a_session_with_the_same_history(pinned, drawing):
     pinned.drag(END, (90.0, 60.0))
     pinned.drag((40.0, 40.0), (45.0, 45.0))
-    assert "Add pin and bend" in pinned.session.history.labels
+    assert "Add and Drag Pin" in pinned.session.history.labels
     recording = parse_recording(pinned.session.recording.to_text())
     assert sum(1 for _ in replay(recording, drawing)) == len(recording.events)
     assert replay_to_end(recording, drawing).history.labels == pinned.session.history.labels
@@ -334,7 +334,7 @@ def test_the_session_of_a_replay_of_a_half_can_go_on(pinned, drawing):
     assert not session.history.is_open
     assert not session.is_moving
     assert list(session.recording.events)[:half] == recording.events[:half]
-    session.begin("Add pin")
+    session.begin("Add Pin")
     assert add_pin(session, (20.0, 40.0)) is not None
     session.commit()
     times = [event["t"] for event in session.recording.events]

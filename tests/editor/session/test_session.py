@@ -29,7 +29,7 @@ def session(drawing):
 
 
 def test_only_step_moves_the_drawing(session, drawing):
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (90.0, 65.0)}))
     assert session.state.positions is drawing.mesh.vertices
     assert session.is_moving
@@ -38,7 +38,7 @@ def test_only_step_moves_the_drawing(session, drawing):
 
 
 def test_each_step_brings_pins_nearer_until_they_arrive(session):
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (90.0, 65.0)}))
     errors = [session.pin_error()]
     while session.is_moving:
@@ -50,7 +50,7 @@ def test_each_step_brings_pins_nearer_until_they_arrive(session):
 
 
 def test_targets_that_are_reached_already_move_nothing_noticeable(session, drawing):
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (105.0, 40.0)}))
     session.settle()
     np.testing.assert_allclose(session.state.positions, drawing.mesh.vertices, atol=0.01)
@@ -80,7 +80,7 @@ def test_a_gesture_that_changed_nothing_makes_no_entry(session):
     ],
 )
 def test_bad_targets_change_nothing(session, targets, message):
-    session.begin("Bend")
+    session.begin("Drag Pin")
     state, events = session.state, len(session.recording.events)
     with pytest.raises(InputError, match=message):
         session.apply(SetTargets(targets))
@@ -90,7 +90,7 @@ def test_bad_targets_change_nothing(session, targets, message):
 
 
 def test_targets_of_any_kind_of_number_can_be_written(session):
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({1: np.array([20, 41]), 2: np.array([100.5, 42.0], dtype=np.float32)}))
     assert '"targets":{"1":[20.0,41.0],"2":[100.5,42.0]}' in session.recording.to_text()
 
@@ -140,7 +140,7 @@ def test_bad_settings_change_nothing(session, settings):
 def test_settings_move_nothing_and_decide_how_it_bends(session):
     poses = []
     for memory in (1.0, 0.0):
-        session.begin("Bend")
+        session.begin("Drag Pin")
         state = session.state
         session.apply(SetSettings(session.state.settings.with_parameter("memory", memory)))
         assert session.state.positions is state.positions
@@ -153,7 +153,7 @@ def test_settings_move_nothing_and_decide_how_it_bends(session):
 
 @pytest.mark.parametrize("method", method_names())
 def test_switching_the_method_in_mid_pose_moves_nothing_and_goes_on_bending(session, method):
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (90.0, 65.0)}))
     session.settle()
     session.commit()
@@ -186,7 +186,7 @@ def test_switching_the_method_in_mid_pose_moves_nothing_and_goes_on_bending(sess
 
 def test_after_undo_of_settings_the_old_method_bends(session):
     def bend():
-        session.begin("Bend")
+        session.begin("Drag Pin")
         session.apply(SetTargets({2: (80.0, 70.0)}))
         session.step()
         result = session.state.positions.tobytes()
@@ -252,7 +252,7 @@ def test_an_opened_document_is_not_modified(drawing):
 
 def test_revision_grows_with_every_change(session):
     revisions = [session.document.revision]
-    session.begin("Bend")
+    session.begin("Drag Pin")
     for change in (
         lambda: session.apply(SetTargets({2: (90.0, 65.0)})),
         session.step,
@@ -265,7 +265,7 @@ def test_revision_grows_with_every_change(session):
 
 
 def test_a_failed_step_keeps_the_last_good_pose_and_stops(session, monkeypatch):
-    session.begin("Bend")
+    session.begin("Drag Pin")
     session.apply(SetTargets({2: (90.0, 65.0)}))
     session.step()
     state, events = session.state, len(session.recording.events)

@@ -130,7 +130,7 @@ def test_a_release_does_not_wait_for_the_step(driver):
     assert driver.tool == "PinsIdle"
     assert driver.session.has_pending_step
     assert not driver.session.step_is_ready()
-    assert driver.session.history.undo_label == "Bend"
+    assert driver.session.history.undo_label == "Drag Pin"
     driver.editor.worker.work()
     driver.advance()
     assert event_names(driver)[count - 1 :] == ["step", "targets", "commit"]

@@ -198,7 +198,7 @@ def test_enter_dabs_with_the_brush(driver, erasing):
     editor.chosen_tool = editor.brush_tool
     at(driver, NECK)
     enter(driver)
-    assert driver.session.history.undo_label == "Stiffen"
+    assert driver.session.history.undo_label == "Paint Stiffness"
     assert driver.state.stiffness.max() > 50
     if erasing:
         editor.brush_tool.brush = type(editor.brush_tool.brush)(erasing=True)

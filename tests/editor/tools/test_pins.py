@@ -158,10 +158,10 @@ def test_edits_wait_for_the_end_of_a_gesture(pinned, enter):
 @pytest.mark.parametrize(
     ("enter", "label"),
     [
-        (enter_pointing_new_pin, "Add pin"),
-        (enter_dragging_pin, "Bend"),
-        (enter_dragging_pins, "Bend with 2 pins"),
-        (enter_dragging_new_pin, "Add pin and bend"),
+        (enter_pointing_new_pin, "Add Pin"),
+        (enter_dragging_pin, "Drag Pin"),
+        (enter_dragging_pins, "Drag 2 Pins"),
+        (enter_dragging_new_pin, "Add and Drag Pin"),
     ],
 )
 def test_a_gesture_is_one_entry_and_undo_and_redo_are_exact(pinned, enter, label):
@@ -201,7 +201,7 @@ def test_a_click_on_the_drawing_adds_a_pin_and_selects_it(driver):
     assert driver.ids == [1]
     assert driver.editor.selection == {1}
     assert driver.depth == 1
-    assert driver.session.history.undo_label == "Add pin"
+    assert driver.session.history.undo_label == "Add Pin"
 
 
 def test_a_pin_sits_exactly_where_it_was_clicked(pinned):

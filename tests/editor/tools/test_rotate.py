@@ -60,7 +60,7 @@ def test_a_drag_of_the_ring_turns_the_drawing_which_then_holds_the_angle(pinned)
     assert pinned.state.pin(2).angle == pytest.approx(math.radians(40), abs=1e-9)
     assert pinned.session.pin_angle(2) == pytest.approx(math.radians(40), abs=NEAR)
     assert pinned.session.pin_error() < 0.25, "no pin leaves its place"
-    assert pinned.session.history.undo_label == "Turn"
+    assert pinned.session.history.undo_label == "Rotate Pin"
     assert pinned.editor.selection == {2}
     turned = bits(pinned.state)
     pinned.undo()
@@ -168,7 +168,7 @@ def test_holding_and_releasing_move_nothing(pinned):
     pinned.settle()
     assert pinned.state.positions is pose
     assert np.isnan(pinned.state.angles).all()
-    assert pinned.session.history.undo_label == "Release angle"
+    assert pinned.session.history.undo_label == "Release Angle"
 
 
 def test_angles_by_number(pinned):
@@ -233,10 +233,10 @@ def test_a_second_method_beside_turns_as_well(pinned):
 
 
 def test_held_angles_come_to_rest_soon_also_where_parts_are_stiff(pinned):
-    pinned.session.begin("Stiffen")
+    pinned.session.begin("Paint Stiffness")
     pinned.session.apply(PaintStiffness([(62.0, 40.0)], 20.0, 300.0))
     pinned.session.commit()
-    pinned.session.begin("Turn")
+    pinned.session.begin("Rotate Pin")
     pinned.session.apply(SetAngles({1: 1.0, 3: -0.8}))
     steps = 0
     while pinned.session.is_moving:

@@ -47,7 +47,7 @@ def test_a_stroke_stiffens_what_it_covers_and_is_one_entry(pinned):
     assert at(pinned, HEAD) == 1.0
     assert pinned.state.positions is pose
     assert not pinned.state.stiffness.flags.writeable
-    assert pinned.session.history.undo_label == "Stiffen"
+    assert pinned.session.history.undo_label == "Paint Stiffness"
     pinned.undo()
     assert pinned.state.stiffness is None
     assert bits(pinned.state) == before
@@ -80,7 +80,7 @@ def test_the_eraser_and_the_right_button_take_it_away(pinned):
     pinned.editor.brush_tool.brush = Brush(pinned.editor.brush_tool.brush.radius, erasing=True)
     stroke(pinned, (70.0, 40.0), (80.0, 40.0), (90.0, 40.0), radius=30.0)
     assert pinned.state.stiffness is None, "where all is erased nothing is left"
-    assert pinned.session.history.labels == ["Add pin"] * 3 + ["Stiffen", "Erase stiffness"] * 2
+    assert pinned.session.history.labels == ["Add Pin"] * 3 + ["Paint Stiffness", "Erase Stiffness"] * 2
 
 
 def test_escape_takes_the_stroke_back_and_shows_what_was_before(pinned):
