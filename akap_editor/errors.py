@@ -1,4 +1,4 @@
-"""The exceptions that callers may want to tell apart."""
+"""The exceptions of the package, and what puts a file or an entry into their messages."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -6,11 +6,21 @@ from pathlib import Path
 
 
 class AkapError(Exception):
-    """Base of the errors that this package raises itself; the message is one sentence for the user."""
+    """Base of all errors that the package raises on purpose; the message is one line for the user."""
 
 
 class InputError(AkapError, ValueError):
-    """The user's data is unusable; the message says what was expected and what came."""
+    """The user's data cannot be used; the message says what was expected and what came."""
+
+
+class FileError(InputError):
+    """A file cannot be opened or written; the message names it and says why.
+
+    verb: what failed, as in “Couldn't open ...”; reason: a phrase, e.g. “permission denied”.
+    """
+
+    def __init__(self, verb: str, path: str | Path, reason: str) -> None:
+        super().__init__(f"Couldn't {verb} “{path}”. {_as_sentence(reason)}")
 
 
 class SolverError(AkapError, ArithmeticError):
@@ -26,9 +36,25 @@ class GraphicsError(AkapError):
 
 
 @contextmanager
-def error_context(name: str | Path) -> Iterator[None]:
-    """Put ``name``, e.g. of a file or an entry, before the message of an InputError raised in the block."""
+def file_errors(verb: str, path: str | Path) -> Iterator[None]:
+    """Turn an InputError raised in the block into a FileError."""
+    try:
+        yield
+    except InputError as error:
+        raise FileError(verb, path, str(error)) from error
+
+
+@contextmanager
+def error_context(name: str) -> Iterator[None]:
+    """Put a name, e.g. of an entry of a file, before the message of an InputError raised in the block."""
     try:
         yield
     except InputError as error:
         raise InputError(f"{name}: {error}") from error
+
+
+def _as_sentence(reason: str) -> str:
+    """The reason with a period, and with a capital letter unless it begins with a name, as in "crop: ..."."""
+    if reason.split(" ", 1)[0].isalpha():
+        reason = reason[:1].upper() + reason[1:]
+    return reason if reason.endswith((".", "?", "!")) else f"{reason}."

@@ -7,7 +7,7 @@ from pathlib import Path
 from ..editor import gestures
 from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import apply_mask, remove_background_and_mesh
-from ..errors import InputError
+from ..errors import file_errors
 from ..io.akap.pose import POSE_SUFFIX, load_pose, save_pose
 from ..io.akap.recording import RECORDING_SUFFIX, write_recording
 from ..io.images import read_image, read_mask
@@ -51,13 +51,11 @@ def cut_out(document: Document, mask: Path) -> Document:
     assert drawing.meshing is not None
     picture = drawing.image if drawing.original is None else drawing.original
     visible = read_mask(mask)
-    try:
+    with file_errors("use", mask):
         image = apply_mask(picture, visible)
         return new_document(
             remove_background_and_mesh(image, replace(drawing.meshing, background=None), drawing.name)
         )
-    except InputError as error:
-        raise InputError(f"{mask}: {error}") from error
 
 
 # -- poses --------------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ import numpy as np
 from ..deform.methods import compared_methods, parse_method
 from ..editor.document.drawing import Drawing, make_drawing
 from ..editor.session.recording import Recording
-from ..errors import InputError
+from ..errors import InputError, file_errors
 from ..geometry.distortion import distortion
 from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.atomic import write_atomic
@@ -103,10 +103,8 @@ def _bent(
     runs, finer = [], []
     others = [make_drawing(drawing.image, vertices=size, name=drawing.name) for size in sizes]
     for spec in specs:
-        try:
+        with file_errors(f"replay with {spec}", path):
             runs.append(run(recording, drawing, spec))
-        except InputError as error:
-            raise InputError(f"{path}, {spec}: {error}") from error
         done(1)
         after = [runs[-1].after]
         for other in others:

@@ -12,7 +12,7 @@ import click
 import numpy as np
 
 from ..editor.document.drawing import Meshing, apply_mask
-from ..errors import InputError
+from ..errors import InputError, file_errors
 from ..geometry.validation import as_number
 from ..io.images import has_transparency, read_image, read_mask
 from ..io.mesh_files.obj_off import write_obj
@@ -114,13 +114,11 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
     started = time.perf_counter()
     image = read_image(picture)
     shown = read_mask(mask) if mask is not None else None
-    try:
+    with file_errors("mesh", picture):
         if shown is not None:
             image = apply_mask(image, shown)
         alpha = np.ascontiguousarray(image[..., 3])
         made = mesh_picture(alpha, meshing.vertices, meshing.expand, meshing.threshold)
-    except InputError as error:
-        raise InputError(f"{picture}: {error}") from error
     seconds = time.perf_counter() - started
     if output is not None:
         make_folder_of(output)

@@ -8,7 +8,8 @@ from typing import Any
 import click
 
 from ..editor.document.framing import CROPS, Color
-from ..errors import InputError
+from ..errors import FileError, InputError
+from ..io.atomic import os_error_reason
 from ..io.export import ExportOptions
 from ..io.images import write_png
 from ..resources import bundled_drawings
@@ -82,7 +83,7 @@ def make_folder_of(path: Path) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}") from error
+        raise FileError("save", path, os_error_reason(error)) from error
 
 
 def write_picture(path: Path, picture: Any) -> None:

@@ -13,7 +13,7 @@ from ..editor.animation.motion import Motion, shorten_pauses
 from ..editor.document.easing import EASINGS
 from ..editor.document.settings import Settings
 from ..editor.session.replay import replay
-from ..errors import InputError, error_context
+from ..errors import FileError, InputError, file_errors
 from ..io.akap.project import PROJECT_SUFFIX
 from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.animation.formats import ANIMATION_FORMATS, MAX_PLAYS, animation_format, write_animation
@@ -124,7 +124,7 @@ def replay_recording(
     source = _open_source(path, drawing_path, method, variant, pause)
     first, last = _range(source.duration, start, end)
     times = [last] if chosen.is_still else frame_times(first, last, fps, speed, ease)
-    with error_context(path), click.progressbar(source.play(times), len(times), "Bending") as bar:
+    with file_errors("replay", path), click.progressbar(source.play(times), len(times), "Bending") as bar:
         frames = list(bar)
     is_loop = chosen.repeats and plays != 1 and loops_seamlessly(frames[0], frames[-1])
     end_frame, frames = frames[-1], playing_order(frames, ping_pong, is_loop)
@@ -198,7 +198,7 @@ def _open_keyframes(path: Path) -> _Source:
     document, cache = open_document(path), InterpolationCache()
     animation = document.state.animation
     if not animation.keyframes:
-        raise InputError(f"{path}: expected a drawing with keyframes, or a recording, got one without any")
+        raise FileError("replay", path, "the drawing has no keyframes; add some, or replay a recording")
     return _Source(
         animation.duration, lambda times: (animation_frame(document, cache, time) for time in times)
     )

@@ -1,4 +1,4 @@
-"""Whole files: read at once, written at once or not at all."""
+"""Whole files: read at once, and written at once or not at all."""
 
 import errno
 import os
@@ -9,17 +9,17 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from ..errors import InputError
+from ..errors import FileError
 
 MAX_FILE_BYTES = 2**30
 
-Write = Callable[[str | Path, bytes], None]  # as `write_atomic` does
+Write = Callable[[str | Path, bytes], None]  # writes a file, as `write_atomic` does
 
 
 def read_file(path: str | Path, expected: str) -> bytes:
     """All bytes of a regular file; ``expected`` says in messages what it should be, e.g. "a picture".
 
-    Raises InputError where there is no such file, it cannot be read, or has over `MAX_FILE_BYTES`.
+    Raises FileError if there is no such file, it cannot be read, or has over `MAX_FILE_BYTES`.
     """
     path = Path(path)
     try:
@@ -27,30 +27,30 @@ def read_file(path: str | Path, expected: str) -> bytes:
         if stat.S_ISREG(status.st_mode) and status.st_size <= MAX_FILE_BYTES:
             return path.read_bytes()
     except FileNotFoundError:
-        raise InputError(f"{path}: expected {expected}, but there is no such file") from None
+        raise FileError("open", path, "there is no such file") from None
     except (OSError, ValueError) as error:
-        raise InputError(f"cannot read {path}: {_reason(error)}") from error
+        raise FileError("open", path, os_error_reason(error)) from error
     if stat.S_ISREG(status.st_mode):
         came = f"a file of {status.st_size} bytes, more than {MAX_FILE_BYTES}"
     else:
         came = "a folder" if stat.S_ISDIR(status.st_mode) else "something that is not a regular file"
-    raise InputError(f"{path}: expected {expected}, got {came}")
+    raise FileError("open", path, f"expected {expected}, got {came}")
 
 
 def write_atomic(path: str | Path, data: bytes) -> None:
     """Write a file under a temporary name in its folder and move it into place.
 
-    Whatever fails, the old file stays as it was and no temporary file is left; only where the process is
-    killed, a file .akap-*.tmp may be. Once this returns, the new file outlasts a power cut as far as the
-    system can promise it. A link is followed, permission bits of the old file are kept, those of a new file
-    follow the umask. Raises InputError.
+    If anything fails, the old file stays as it was and no temporary file is left; only if the process is
+    killed, a file .akap-*.tmp may remain. After the call, the new file survives a power cut, as far as the
+    system can promise it. A link is followed; the permission bits of the old file are kept, those of a new
+    file follow the umask. Raises FileError.
     """
     try:
         target = Path(path).resolve()
-        old = target.exists()
-        if old and not target.is_file():  # moving over a device would destroy it
+        exists = target.exists()
+        if exists and not target.is_file():  # moving over a device would destroy it
             raise OSError(errno.EINVAL, "it is not a regular file")
-        if old and not os.access(target, os.W_OK):  # moving over a protected file would succeed
+        if exists and not os.access(target, os.W_OK):  # moving over a protected file would succeed
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         temporary = target.with_name(f".akap-{secrets.token_hex(8)}.tmp")
         file = temporary.open("xb")
@@ -59,7 +59,7 @@ def write_atomic(path: str | Path, data: bytes) -> None:
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
-            if old:
+            if exists:
                 shutil.copymode(target, temporary)
             os.replace(temporary, target)
             _flush_folder(target.parent)
@@ -67,22 +67,22 @@ def write_atomic(path: str | Path, data: bytes) -> None:
             temporary.unlink(missing_ok=True)
             raise
     except (OSError, ValueError) as error:
-        raise InputError(f"cannot write {path}: {_reason(error)}") from error
+        raise FileError("save", path, os_error_reason(error)) from error
+
+
+def os_error_reason(error: OSError | ValueError) -> str:
+    """The cause alone, e.g. "permission denied", without number and file name."""
+    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return text[:1].lower() + text[1:]
 
 
 def _flush_folder(folder: Path) -> None:
-    """Write the folder's list of names to the disk, where the system knows of such a thing."""
+    """Write the folder's list of names to the disk, on systems that can do that."""
     if os.name != "posix":
         return
-    with suppress(OSError):  # some file systems refuse, and the new file is in place whatever happens here
+    with suppress(OSError):  # some file systems refuse; the new file is in place in any case
         descriptor = os.open(folder, os.O_RDONLY)
         try:
             os.fsync(descriptor)
         finally:
             os.close(descriptor)
-
-
-def _reason(error: OSError | ValueError) -> str:
-    """The cause alone, e.g. "permission denied", without number and file name."""
-    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    return text[:1].lower() + text[1:]

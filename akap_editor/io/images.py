@@ -1,4 +1,4 @@
-"""Pictures as files: RGBA, 8 bit, straight alpha."""
+"""Reads and writes pictures: RGBA, 8 bit, straight alpha."""
 
 import struct
 import warnings
@@ -12,36 +12,34 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageOps, UnidentifiedImageError
 
-from ..errors import InputError
+from ..errors import InputError, file_errors
 from ..geometry.validation import as_picture
 from .atomic import read_file, write_atomic
 
 Picture = NDArray[np.uint8]
 
 PICTURE_FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "GIF", "TIFF")
-ANIMATED_PICTURE_FORMATS = ("PNG", "WEBP", "GIF", "TIFF")  # may have more than one frame or page
+ANIMATED_PICTURE_FORMATS = ("PNG", "WEBP", "GIF", "TIFF")  # of these a file may have several frames or pages
 MAX_PIXELS = 100_000_000
-STRIP = 2**21  # pixels that are converted at once
+STRIP_PIXELS = 2**21  # converted at once
 
 
 def read_image(path: str | Path) -> Picture:
     """The picture in a PNG, JPEG, WebP, BMP, GIF or TIFF file, (h, w, 4) uint8, straight alpha.
 
-    Of an animation, see `is_animation`, it is the first frame. 16-bit samples keep their high byte, CMYK
-    becomes RGB, an EXIF orientation is applied, colour profiles are ignored.
-    Raises InputError where the file is missing, unreadable, damaged, no picture, or has over `MAX_PIXELS`.
+    Of an animation (see `is_animation`) it is the first frame. 16-bit samples keep their high byte, CMYK
+    becomes RGB, an EXIF orientation is applied, color profiles are ignored.
+    Raises FileError if the file is missing, unreadable, damaged, no picture, or has over `MAX_PIXELS`.
     """
     data = read_file(path, "a picture")
-    try:
+    with file_errors("open", path):
         return decode_image(data)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error.__cause__
 
 
 def read_mask(path: str | Path) -> NDArray[np.uint8]:
-    """A mask, (h, w) uint8: the alpha of a picture that has transparency, else how bright it is.
+    """A mask, (h, w) uint8: the alpha of a picture that has transparency, else its brightness.
 
-    Raises InputError as `read_image` does.
+    Raises FileError as `read_image` does.
     """
     image = read_image(path)
     if has_transparency(image):
@@ -50,47 +48,50 @@ def read_mask(path: str | Path) -> NDArray[np.uint8]:
 
 
 def is_animation(path: str | Path) -> bool:
-    """Whether a file that `read_image` reads has more frames or pages than the one that is read."""
+    """Whether a picture file has more than one frame or page."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             with Image.open(path, formats=ANIMATED_PICTURE_FORMATS) as picture:
                 return bool(getattr(picture, "is_animated", False))
-    except Exception:  # Pillow meets damage with exceptions of many kinds
+    except Exception:  # Pillow reports damage with exceptions of many kinds
         return False
 
 
 def decode_image(
     data: bytes, formats: tuple[str, ...] = PICTURE_FORMATS, size: tuple[int, int] | None = None
 ) -> Picture:
-    """As `read_image`, from the bytes of a file in one of ``formats``. Raises InputError.
+    """The picture in the bytes of a file in one of ``formats``, as `read_image` returns it.
 
-    size: width and height that it must have, looked up before anything is decoded.
+    size: width and height that it must have, checked before anything is decoded. Raises InputError.
     """
-    too_large = f"expected a picture of at most {MAX_PIXELS / 1e6:g} megapixels, got"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what Pillow warns of is either harmless or refused here
         try:
             picture = Image.open(BytesIO(data), formats=formats)
         except UnidentifiedImageError:
-            came = f"a damaged file or one of another kind (it begins with {data[:8]!r})"
-            raise InputError(f"expected a {join_with_or(formats)} picture, got {came}") from None
+            kinds = join_with_or(formats)
+            reason = f"the file is damaged or not a {kinds} picture; it begins with {data[:8]!r}"
+            raise InputError(reason) from None
         except Image.DecompressionBombError as error:
-            raise InputError(f"{too_large} a much larger one") from error
-        except Exception as error:  # Pillow meets damage with exceptions of many kinds
-            raise InputError(f"expected a {join_with_or(formats)} picture, got a damaged one") from error
+            raise InputError(_too_large("much more")) from error
+        except Exception as error:  # Pillow reports damage with exceptions of many kinds
+            raise InputError(f"the file is damaged or not a {join_with_or(formats)} picture") from error
         if picture.width * picture.height > MAX_PIXELS:
-            raise InputError(f"{too_large} {picture.width} x {picture.height} pixels")
+            raise InputError(_too_large(f"{picture.width} x {picture.height} pixels"))
         if size not in (None, picture.size):
             came = f"{picture.width} x {picture.height}"
             raise InputError(f"expected {' x '.join(map(str, size or ()))} pixels, got {came}")
         if picture.mode == "F" or (picture.mode == "I" and picture.format != "PNG"):
-            raise InputError("expected samples of 8 or 16 bits, got 32 bits a sample")
+            raise InputError("expected samples of 8 or 16 bits, got 32 bits per sample")
         try:
             return _rgba(picture, bit_depth=data[24] if picture.format == "PNG" else 8)
         except Exception as error:
-            kind = picture.format
-            raise InputError(f"expected a whole {kind} picture, got a damaged or truncated one") from error
+            raise InputError(f"the {picture.format} picture is damaged or incomplete") from error
+
+
+def _too_large(came: str) -> str:
+    return f"expected a picture of at most {MAX_PIXELS / 1e6:g} megapixels, got {came}"
 
 
 def join_with_or(names: Sequence[str]) -> str:
@@ -99,20 +100,20 @@ def join_with_or(names: Sequence[str]) -> str:
 
 
 def _rgba(picture: Image.Image, bit_depth: int) -> Picture:
-    """The pixels, (h, w, 4) uint8. A transparent colour is compared here: Pillow forgets to scale it."""
+    """The pixels (h, w, 4) uint8. A transparent color is compared here, because Pillow does not scale it."""
     transparent = None if picture.mode == "P" else picture.info.pop("transparency", None)
     ImageOps.exif_transpose(picture, in_place=True)
     width, height = picture.size
     image = np.empty((height, width, 4), dtype=np.uint8)
-    rows = max(1, STRIP // width)
-    for top in range(0, height, rows):  # all of a large picture in several forms would fill the memory
+    rows = max(1, STRIP_PIXELS // width)
+    for top in range(0, height, rows):  # a large picture in several copies would fill the memory
         strip = picture.crop((0, top, width, min(top + rows, height)))
         image[top : top + rows] = _rgba_strip(strip, transparent, bit_depth)
     return image
 
 
 def _rgba_strip(picture: Image.Image, transparent: Any, bit_depth: int) -> Picture:
-    if picture.mode.startswith("I"):  # 16-bit grey, which convert() would clip to 255
+    if picture.mode.startswith("I"):  # 16-bit gray, which convert() would clip to 255
         samples = np.asarray(picture).astype(np.uint16)[..., None]
         high = (samples >> 8).astype(np.uint8)
         image = np.concatenate([high, high, high, np.full_like(high, 255)], axis=2)
@@ -129,7 +130,7 @@ def _rgba_strip(picture: Image.Image, transparent: Any, bit_depth: int) -> Pictu
 
 
 def has_transparency(image: Picture) -> bool:
-    """Whether any pixel of a picture (h, w, 4) is not opaque, i.e. whether there is something to cut out."""
+    """Whether any pixel of a picture (h, w, 4) is not opaque, so that it can be cut out."""
     return bool((image[..., 3] < 255).any())
 
 
@@ -159,5 +160,5 @@ def _png_chunk(kind: bytes, content: bytes) -> bytes:
 
 
 def write_png(path: str | Path, image: Picture) -> None:
-    """Write ``image``, (h, w, 4) uint8, straight alpha, to a PNG file. On InputError the old file is kept."""
+    """Write ``image``, (h, w, 4) uint8, straight alpha, to a PNG file, see `write_atomic`."""
     write_atomic(path, encode_png(image))

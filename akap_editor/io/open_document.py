@@ -1,11 +1,11 @@
-"""Any file that can be worked on, as a document."""
+"""Opens any file that can be edited as a document."""
 
 from pathlib import Path
 
 from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import make_drawing
 from ..editor.session.replay import Replay
-from ..errors import InputError, error_context
+from ..errors import FileError, InputError, file_errors
 from .akap.project import PROJECT_SUFFIX, load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
 from .images import read_image, read_mask
@@ -17,38 +17,36 @@ MESH_SUFFIXES = tuple(PARSERS)
 
 
 def open_document(path: str | Path, mask: str | Path | None = None) -> Document:
-    """A posed drawing from an .akap file, or as a recording leaves it; a mesh from an OBJ or OFF file.
+    """Open a file as a document; the ending of its name decides how.
 
-    Any other file is a picture, which is cut out along its alpha and meshed.
-
+    .akap: the saved document; .akaprec: the document at the end of the recording; .obj, .off: a flat mesh,
+    see `read_mesh`; any other: a picture, which is cut out along its alpha and meshed.
     mask: a picture that is bright, or opaque, where the picture is to be visible.
-    Raises InputError in one sentence that names the file, SolverError where a recording cannot be done again.
+    Raises InputError, which names the file, or SolverError if a recording cannot be replayed.
     """
     path = Path(path)
     suffix = path.suffix.lower()
     if mask is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
-        raise InputError(f"{mask}: expected a picture to put the mask on, got {path.name}")
+        raise FileError("use", mask, f"a mask needs a picture, but {path.name} is none")
     if suffix == PROJECT_SUFFIX:
         return load(path)
     if suffix == RECORDING_SUFFIX:
-        return _end_of(path)
+        return _open_recording(path)
     if suffix in MESH_SUFFIXES:
         return new_document(read_mesh(path))
     image = read_image(path)
     shown = read_mask(mask) if mask is not None else None
-    try:
+    with file_errors("open", path):
         return new_document(make_drawing(image, shown, name=path.stem))
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
 
 
-def _end_of(path: Path) -> Document:
-    """What a recording leads to."""
+def _open_recording(path: Path) -> Document:
+    """The document at the end of a recording."""
     recording = read_recording(path)
-    with error_context(path):
-        done = Replay(recording, recorded_drawing(recording))
-        for _ in done.events():
+    with file_errors("open", path):
+        replay = Replay(recording, recorded_drawing(recording))
+        for _ in replay.events():
             pass
-        if done.session is None:
-            raise InputError("expected a recording of something that was done, got none")
-        return done.end().document
+        if replay.session is None:
+            raise InputError("the recording is empty")
+        return replay.end().document

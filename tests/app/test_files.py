@@ -330,14 +330,14 @@ def missing(path, image):
 def text(path, image):
     file = path / "text.png"
     file.write_text("This is no picture.\n")
-    return file, "picture"
+    return file, "not a PNG"
 
 
 def truncated(path, image):
     data = png_bytes(path, image)
     file = path / "truncated.png"
     file.write_bytes(data[: len(data) // 2])
-    return file, "truncated"
+    return file, "damaged or incomplete"
 
 
 def transparent(path, image):
@@ -355,7 +355,7 @@ def one_pixel(path, image):
 def corrupt(path, image):
     file = path / "corrupt.akap"
     file.write_bytes(b"PK\x03\x04" + bytes(200))
-    return file, ".akap"
+    return file, "damaged or not an .akap file"
 
 
 def newer(path, image):

@@ -66,11 +66,11 @@ def bad_files(folder, image):
     [
         ("nothing.png", "no such file"),
         ("nothing.akap", "no such file"),
-        ("text.png", "picture"),
-        ("truncated.png", "truncated"),
+        ("text.png", "not a PNG"),
+        ("truncated.png", "damaged or incomplete"),
         ("transparent.png", "transparent"),
         ("pixel.png", "expected"),
-        ("corrupt.akap", "expected"),
+        ("corrupt.akap", "damaged or not an .akap file"),
         ("folder.png", "a folder"),
     ],
 )

@@ -115,7 +115,7 @@ def test_many_as_json(run, picture, tmp_path):
     assert code == 1
     assert good["parts"] == 2
     assert bad["picture"] == "missing.png"
-    assert bad["error"].startswith("missing.png: expected a picture")
+    assert bad["error"] == "Couldn't open “missing.png”. There is no such file."
 
 
 def test_all_bad(run):
@@ -139,7 +139,7 @@ def test_mask_and_a_picture_without_transparency(run, tmp_path, image):
 
 
 REFUSED = {
-    "missing": (("nothing.png",), "nothing.png: expected a picture, but there is no such file"),
+    "missing": (("nothing.png",), "Couldn't open “nothing.png”. There is no such file."),
     "few vertices": (("ring.png", "--vertices", 3), "--vertices: expected a number from 20 to 200000, got 3"),
     "expansion": (("ring.png", "--expand", -1), "--expand: expected a number from 0 to 1000, got -1.0"),
     "threshold": (("ring.png", "--threshold", 1), "--threshold: expected a share between 0 and 1, got 1"),

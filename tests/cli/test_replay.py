@@ -273,7 +273,7 @@ def test_a_pin_outside_another_drawing_is_told_with_its_line(replay_bar, session
     Image.fromarray(image).save(tmp_path / "half.png")
     code, _, errors = replay_bar("-o", "bar.gif", "--drawing", "half.png")
     assert code == 2
-    assert "recording line 5: " in errors
+    assert "“bar.akaprec”. Recording line 5: " in errors
     assert "outside the drawing" in errors
 
 
@@ -354,7 +354,7 @@ def test_a_drawing_without_keyframes_is_refused(replay_bar, session, tmp_path):
     save(new_document(session.drawing), tmp_path / "still.akap")
     code, _, err = replay_bar("-o", "out.webp", recording="still.akap")
     assert code == 2
-    assert "still.akap: expected a drawing with keyframes, or a recording, got one without any" in err
+    assert "Couldn't replay “still.akap”. The drawing has no keyframes; " in err
 
 
 def test_a_recording_is_a_document_in_its_last_pose(session, tmp_path):
@@ -364,5 +364,5 @@ def test_a_recording_is_a_document_in_its_last_pose(session, tmp_path):
     (tmp_path / "bad.akaprec").write_text(
         (tmp_path / "bar.akaprec").read_text() + '{"t": 99, "do": "undo", "x": 1}\n{"t": 0, "do": "undo"}\n'
     )
-    with pytest.raises(InputError, match=r"bad.akaprec: recording line \d+: expected a time of 99 s"):
+    with pytest.raises(InputError, match=r"bad.akaprec”. Recording line \d+: expected a time of 99 s"):
         open_document(tmp_path / "bad.akaprec")

@@ -65,7 +65,7 @@ def test_failure_leaves_old_file_and_no_other(tmp_path, monkeypatch, step):
     path.write_bytes(b"old")
     with monkeypatch.context() as patch:
         FAILURES[step](patch)
-        with pytest.raises(InputError, match=r"^cannot write .*kept\.bin: no space left on device$"):
+        with pytest.raises(InputError, match=r"^Couldn't save “.*kept\.bin”\. No space left on device\.$"):
             write_atomic(path, b"new content")
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["kept.bin"]
@@ -117,7 +117,7 @@ def test_protected_file_is_not_replaced(tmp_path, monkeypatch):
     path = tmp_path / "protected.bin"
     path.write_bytes(b"old")
     monkeypatch.setattr(atomic.os, "access", lambda *_: False)  # root may write whatever the bits say
-    with pytest.raises(InputError, match=r"^cannot write .*protected\.bin: permission denied$"):
+    with pytest.raises(InputError, match=r"^Couldn't save “.*protected\.bin”\. Permission denied\.$"):
         write_atomic(path, b"new")
     assert path.read_bytes() == b"old"
 
@@ -127,24 +127,24 @@ def test_what_is_no_regular_file_is_refused(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     for path in (tmp_path, pipe):
-        with pytest.raises(InputError, match=r"cannot write .*: it is not a regular file"):
+        with pytest.raises(InputError, match=r"Couldn't save “.*”\. It is not a regular file\."):
             write_atomic(path, b"new")
     assert stat.S_ISFIFO(pipe.stat().st_mode)
-    with pytest.raises(InputError, match="expected a picture, got something that is not a regular file"):
+    with pytest.raises(InputError, match="Expected a picture, got something that is not a regular file"):
         read_file(pipe, "a picture")
-    with pytest.raises(InputError, match="expected a picture, got a folder"):
+    with pytest.raises(InputError, match="Expected a picture, got a folder"):
         read_file(tmp_path, "a picture")
 
 
 def test_missing_names_are_said(tmp_path):
-    with pytest.raises(InputError, match=r"^.*none\.png: expected a picture, but there is no such file$"):
+    with pytest.raises(InputError, match=r"^Couldn't open “.*none\.png”\. There is no such file\.$"):
         read_file(tmp_path / "none.png", "a picture")
-    with pytest.raises(InputError, match=r"^cannot write .*: no such file or directory$"):
+    with pytest.raises(InputError, match=r"^Couldn't save “.*”\. No such file or directory\.$"):
         write_atomic(tmp_path / "no folder" / "new.bin", b"")
     for path in (tmp_path / "nul\0", tmp_path / ("long" * 1000)):
-        with pytest.raises(InputError, match=r"^cannot read "):
+        with pytest.raises(InputError, match=r"^Couldn't open “"):
             read_file(path, "a picture")
-        with pytest.raises(InputError, match=r"^cannot write "):
+        with pytest.raises(InputError, match=r"^Couldn't save “"):
             write_atomic(path, b"")
 
 
@@ -153,12 +153,12 @@ def test_unreadable_and_oversized_files_are_refused(tmp_path, monkeypatch):
     path.write_bytes(bytes(11))
     with monkeypatch.context() as patch:
         patch.setattr(atomic, "MAX_FILE_BYTES", 10)
-        with pytest.raises(InputError, match="expected a picture, got a file of 11 bytes, more than 10"):
+        with pytest.raises(InputError, match="Expected a picture, got a file of 11 bytes, more than 10"):
             read_file(path, "a picture")
 
     def deny(*_):
         raise PermissionError(errno.EACCES, "Permission denied")
 
     monkeypatch.setattr(Path, "read_bytes", deny)
-    with pytest.raises(InputError, match=r"^cannot read .*large\.bin: permission denied$"):
+    with pytest.raises(InputError, match=r"^Couldn't open “.*large\.bin”\. Permission denied\.$"):
         read_file(path, "a picture")

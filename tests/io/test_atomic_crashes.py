@@ -60,7 +60,7 @@ def test_a_full_disk_keeps_the_old_version(document, tmp_path):
         moved = replace(document.state, positions=document.state.positions + 1)
         for filled in (40_000, 56_000, 60_000):
             (tmp_path / "filler").write_bytes(bytes(filled))
-            with pytest.raises(InputError, match=r"cannot write .*cat\.akap: no space left on device$"):
+            with pytest.raises(InputError, match=r"Couldn't save “.*cat\.akap”\. No space left on device\.$"):
                 write_atomic(path, bytes(70_000 - filled))
             assert path.read_bytes() == before
             assert sorted(os.listdir(tmp_path)) == ["cat.akap", "filler"]

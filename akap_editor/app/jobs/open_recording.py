@@ -6,7 +6,7 @@ from pathlib import Path
 from ...editor.animation.session_playback import SessionPlayback
 from ...editor.session.replay import Replay
 from ...editor.session.session import Session
-from ...errors import InputError, error_context
+from ...errors import FileError, file_errors
 from ...io.akap.recording import read_recording, recorded_drawing
 from .task import Progress, Steps, Task
 
@@ -20,11 +20,11 @@ def open_recording(path: Path, show: Show) -> Task:
     empty one; the task raises it at an event that cannot be replayed.
     """
     recording = read_recording(path)
-    with error_context(path):
+    with file_errors("open", path):
         replay = Replay(recording, recorded_drawing(recording))
     playback = SessionPlayback(replay.clock)
     if not recording.events:
-        raise InputError(f"{path}: expected a recording of something that was done, got none")
+        raise FileError("open", path, "the recording is empty")
     is_finished_early = False
 
     def finish_early() -> None:
@@ -33,15 +33,16 @@ def open_recording(path: Path, show: Show) -> Task:
 
     def steps() -> Steps:
         times = [float(recorded["t"]) for recorded in recording.events]
-        for count, event in enumerate(replay.events(), start=1):
-            is_last_of_its_time = count == len(times) or times[count] > event.time
-            if is_last_of_its_time:
-                playback.follow(replay.session)
-            text = f"At {event.time:.0f} of {recording.duration:.0f} s"
-            yield Progress(count / len(times), text)
-            if is_finished_early:
-                break
-        session = replay.end()
+        with file_errors("open", path):
+            for count, event in enumerate(replay.events(), start=1):
+                is_last_of_its_time = count == len(times) or times[count] > event.time
+                if is_last_of_its_time:
+                    playback.follow(replay.session)
+                text = f"At {event.time:.0f} of {recording.duration:.0f} s"
+                yield Progress(count / len(times), text)
+                if is_finished_early:
+                    break
+            session = replay.end()
         playback.follow(session)
         show(session, playback)
 

@@ -1,4 +1,4 @@
-"""Zip archives that are not to be trusted, and such that give equal bytes for equal content."""
+"""Reads untrusted zip archives, and writes archives that have equal bytes for equal content."""
 
 import reprlib
 import zipfile
@@ -16,12 +16,12 @@ Entry = tuple[str, bytes, bool]  # name, content, whether it is worth compressin
 
 
 def pack(entries: Iterable[Entry]) -> bytes:
-    """A zip archive of these entries, in this order, dated 1980-01-01: equal entries give equal bytes."""
+    """A zip archive of the entries, in this order; equal entries give equal bytes, as all have one date."""
     buffer = BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         for name, content, compressed in entries:
             info = zipfile.ZipInfo(name)
-            info.create_system = 3  # Unix, wherever it is written
+            info.create_system = 3  # Unix, on all systems
             info.external_attr = 0o644 << 16
             info.compress_type = zipfile.ZIP_DEFLATED if compressed else zipfile.ZIP_STORED
             archive.writestr(info, content, compresslevel=1)
@@ -29,16 +29,16 @@ def pack(entries: Iterable[Entry]) -> bytes:
 
 
 class Archive:
-    """The entries of a zip file, by exact name; a name that occurs twice makes it invalid.
+    """Reads the entries of a zip file by their exact names. Each name may occur once.
 
-    Raises InputError on damage of any kind, and nothing else.
+    All methods raise InputError on damage of any kind, and nothing else.
     """
 
     def __init__(self, data: bytes) -> None:
         try:
             self._archive = zipfile.ZipFile(BytesIO(data))
-        except Exception as error:  # zipfile meets damage with exceptions of many kinds
-            raise InputError("expected an .akap file, got a truncated one or one of another kind") from error
+        except Exception as error:  # zipfile reports damage with exceptions of many kinds
+            raise InputError("the file is damaged or not an .akap file") from error
         entries = self._archive.infolist()
         self._entries = {entry.filename: entry for entry in entries}
         if len(self._entries) < len(entries):
@@ -49,7 +49,7 @@ class Archive:
         return name in self._entries
 
     def read(self, name: str, most: int) -> bytes:
-        """The content of an entry of at most ``most`` bytes."""
+        """The content of an entry that has at most ``most`` bytes."""
         if name not in self:
             raise InputError(f"expected the entry {name}, which is missing")
         entry = self._entries[name]
@@ -59,15 +59,15 @@ class Archive:
             raise InputError(f"{name}: expected no compression or deflate, got method {entry.compress_type}")
         try:
             with self._archive.open(entry) as file:
-                content = file.read(entry.file_size)  # a bound: without, a false size would unpack at length
+                content = file.read(entry.file_size)  # the bound stops an entry whose size is a lie
         except Exception as error:
-            raise InputError(f"{name}: expected a readable entry, got a damaged one") from error
+            raise InputError(f"{name}: the entry is damaged") from error
         if len(content) != entry.file_size:
             raise InputError(f"{name}: expected {entry.file_size} bytes, got {len(content)}")
         return content
 
     def read_array(self, name: str, dtype: str, rows: int, columns: int) -> NDArray[Any]:
-        """An array (rows, columns) stored row by row without a header, in the machine's byte order."""
+        """The array (rows, columns) of an entry without a header, row by row; in the machine's byte order."""
         size = rows * columns * np.dtype(dtype).itemsize
         content = self.read(name, size)
         if len(content) != size:

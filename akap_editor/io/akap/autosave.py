@@ -14,7 +14,7 @@ import platformdirs
 from filelock import FileLock, Timeout
 
 from ...editor.document.document import Document, EditState
-from ...errors import InputError, error_context
+from ...errors import InputError, file_errors
 from ..atomic import read_file, write_atomic
 from .archive import Archive
 from .json_records import parse_record, require
@@ -60,7 +60,7 @@ class RecoveryCopy:
     def read(self) -> Document:
         """The document; ``path`` is that of the file it belongs to, if any. Raises InputError."""
         data = read_file(self.path, "a copy of a drawing")
-        with error_context(self.path):
+        with file_errors("recover", self.path):
             document = decode_document(data)
             origin = require(parse_record(Archive(data).read(ORIGIN, MAX_ORIGIN_BYTES)), "path", str)
         return replace(document, path=Path(origin) if origin else None)

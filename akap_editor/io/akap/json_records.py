@@ -1,4 +1,4 @@
-"""JSON that is not to be trusted, read strictly: objects with different keys, and values of known kinds."""
+"""Reads untrusted JSON strictly: no duplicate keys, no type conversion, only finite numbers."""
 
 import json
 import reprlib
@@ -16,13 +16,14 @@ MAX_INTEGER = 2**53
 Json = dict[str, Any]
 T = TypeVar("T", bool, int, str, list[Any], Json)
 
-_KINDS = {bool: "true or false", int: "an integer", str: "a text", list: "a list", dict: "an object"}
+_TYPE_NAMES = {bool: "true or false", int: "an integer", str: "a text", list: "a list", dict: "an object"}
 
 
 def parse_record(text: bytes) -> Json:
-    """A JSON object in UTF-8, with different keys and numbers that are finite and not excessively long.
+    """The JSON object in a UTF-8 text.
 
-    Raises InputError, and nothing else.
+    Raises InputError, and nothing else, also for duplicate keys, numbers that are not finite, and integers
+    above `MAX_INTEGER`.
     """
     try:
         record = json.loads(
@@ -45,10 +46,10 @@ def optional(record: Json, name: str, kind: type[T], default: T) -> T:
 def require(record: Json, name: str, kind: type[T]) -> T:
     """The value of a key, of exactly this type. Raises InputError if it is missing or of another type."""
     if name not in record:
-        raise InputError(f"expected {name} to be {_KINDS[kind]}, but it is missing")
+        raise InputError(f"expected {name} to be {_TYPE_NAMES[kind]}, but it is missing")
     value = record[name]
-    if type(value) is not kind:  # to isinstance, true would be an integer
-        raise InputError(f"expected {name} to be {_KINDS[kind]}, got {reprlib.repr(value)}")
+    if type(value) is not kind:  # isinstance would take true for an integer
+        raise InputError(f"expected {name} to be {_TYPE_NAMES[kind]}, got {reprlib.repr(value)}")
     return value
 
 
@@ -77,19 +78,19 @@ def file_version(record: Json, expected: str) -> int:
 
 
 def refuse_newer(version: int, newest: int) -> None:
-    """Raise InputError where a file has a later version than this program knows."""
+    """Raise InputError if a file has a newer version than this program knows."""
     if version > newest:
         raise InputError(
             f"the file was written by a newer version of the program (file version {version}, "
-            f"this program reads up to {newest})"
+            f"this program reads up to {newest}); update akap-editor to open it"
         )
 
 
 def program_name() -> str:
-    """What wrote a file; for people."""
+    """Name and version of the program, for files; readers ignore it."""
     try:
         return f"akap-editor {metadata.version('akap-editor')}"
-    except metadata.PackageNotFoundError:  # a checkout that is not installed
+    except metadata.PackageNotFoundError:  # a checkout without installation
         return "akap-editor"
 
 

@@ -9,7 +9,7 @@ from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing
 from ...editor.document.pin import Pin
 from ...editor.session.recording import drawing_header
-from ...errors import InputError, error_context
+from ...errors import InputError, file_errors
 from ...geometry.validation import Floats
 from ..atomic import read_file, write_atomic
 from .json_records import file_version, pairs, parse_record, program_name, refuse_newer, require
@@ -34,7 +34,7 @@ def save_pose(document: Document, path: str | Path) -> None:
 
     Raises InputError where the file cannot be written or could not be read again; the old file is then kept.
     """
-    with error_context(f"cannot write {path}"):
+    with file_errors("save", path):
         data = encode_pose(document)
     write_atomic(path, data)
 
@@ -46,7 +46,7 @@ def load_pose(path: str | Path, drawing: Drawing) -> SavedPose:
     of another mesh.
     """
     data = read_file(path, "a pose")
-    with error_context(path):
+    with file_errors("open", path):
         return decode_pose(data, drawing)
 
 

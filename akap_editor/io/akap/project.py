@@ -12,7 +12,7 @@ from PIL import Image
 
 from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing, Meshing
-from ...errors import InputError, error_context
+from ...errors import InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, as_number, freeze
 from ..atomic import read_file, write_atomic
@@ -52,7 +52,7 @@ def save(document: Document, path: str | Path) -> Document:
     Equal documents give equal bytes. Raises InputError where the file cannot be written or could not be
     opened again, e.g. for two pins with one id; the old file is then kept.
     """
-    with error_context(f"cannot write {path}"):
+    with file_errors("save", path):
         data = encode_document(document)
     write_atomic(path, data)
     return replace(document, path=Path(path))
@@ -64,7 +64,7 @@ def load(path: str | Path) -> Document:
     Raises InputError, and nothing else, on a file that is missing, damaged, malicious or of a newer version.
     """
     data = read_file(path, "an .akap file")
-    with error_context(path):
+    with file_errors("open", path):
         document = decode_document(data)
     return replace(document, path=Path(path))
 

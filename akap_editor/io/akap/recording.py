@@ -6,7 +6,7 @@ from pathlib import Path
 from ...editor.document.document import new_document
 from ...editor.document.drawing import Drawing, make_drawing
 from ...editor.session.recording import Recording, mesh_digest, parse_recording
-from ...errors import InputError, error_context
+from ...errors import InputError, file_errors
 from ...resources import bundled_drawings
 from ..atomic import read_file, write_atomic
 from ..images import read_image
@@ -18,7 +18,7 @@ RECORDING_SUFFIX = ".akaprec"
 def read_recording(path: str | Path) -> Recording:
     """The recording in a file. Raises InputError with the file's name and the number of the bad line."""
     data = read_file(path, "a recording")
-    with error_context(path):
+    with file_errors("open", path):
         return decode_recording(data)
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.spatial import cKDTree
 
-from ...errors import InputError
+from ...errors import FileError, InputError
 from ..atomic import Write
 from ..images import Picture
 from .frames import checked_frames
@@ -89,7 +89,7 @@ def _write(
     try:
         data = encode(images)
     except (OSError, OverflowError, RuntimeError, ValueError) as error:
-        raise InputError(f"cannot write {path}: the encoder says {str(error)!r}") from error
+        raise FileError("export", path, f"the encoder says {str(error)!r}") from error
     write(path, data)
     return f"at {fps:g} frames per second"
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import InputError
-from ..atomic import Write, write_atomic
+from ...errors import FileError, InputError
+from ..atomic import Write, os_error_reason, write_atomic
 from ..images import Picture, encode_png, write_png
 from .frames import checked_frames
 
@@ -34,7 +34,7 @@ def write_frames(folder: str | Path, frames: Iterable[Picture]) -> int:
             if match and int(match[1]) >= count:
                 path.unlink()
     except OSError as error:
-        raise InputError(f"cannot write {folder}: {error.strerror}") from error
+        raise FileError("save", folder, os_error_reason(error)) from error
     return count
 
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
-from ...errors import InputError
+from ...errors import FileError, InputError
 from ..atomic import Write
 from ..images import Picture
 from .frames import checked_frames
@@ -68,7 +68,7 @@ def _write(path: Path, frames: Iterable[Picture], fps: float, write: Write, code
     try:
         data = _encode(av, codec, frames, fps)
     except (av.error.FFmpegError, OSError) as error:
-        raise InputError(f"cannot write {path}: the encoder says {str(error)!r}") from error
+        raise FileError("export", path, f"the encoder says {str(error)!r}") from error
     write(path, data)
     return f"at {fps:g} frames per second"
 

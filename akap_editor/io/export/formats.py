@@ -7,7 +7,7 @@ from pathlib import Path
 from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
 from ...editor.document.framing import Color, crop_box
-from ...errors import InputError
+from ...errors import InputError, file_errors
 from ..atomic import write_atomic
 from ..images import encode_png, join_with_or
 from ..painter import Painter
@@ -139,10 +139,8 @@ def export(
     if options.rest:
         state = replace(document.state, positions=document.drawing.mesh.vertices)
         document = document.with_state(state)
-    try:
+    with file_errors("export", path):
         files = chosen.encode(document, path.name[: -len(chosen.suffix)], options, painter)
-    except InputError as error:
-        raise InputError(f"cannot write {path}: {error}") from error
     written = [path.with_name(name) for name in files]
     written[-1] = path  # as spelled by the caller, e.g. in capitals
     for target, data in zip(written, files.values(), strict=True):

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...editor.document.drawing import Drawing
-from ...errors import InputError, error_context
+from ...errors import InputError, file_errors
 from ...geometry.mesh import TriMesh, signed_areas
 from ...geometry.validation import Floats, Ints
 from ..akap.project import MAX_VERTICES
@@ -34,7 +34,7 @@ def read_mesh(path: str | Path) -> Drawing:
     """
     path = Path(path)
     data = read_file(path, "a mesh")
-    with error_context(path):
+    with file_errors("open", path):
         return _drawing(PARSERS[path.suffix.lower()](data.decode("utf-8", errors="replace")), path)
 
 

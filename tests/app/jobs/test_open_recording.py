@@ -103,12 +103,12 @@ def test_a_bad_recording_is_refused_with_its_line_and_nothing_is_lost(ui, tmp_pa
     lines = text.splitlines()
     (tmp_path / "bad.akaprec").write_text("\n".join([*lines[:5], '{"t": 0, "do": "dance"}', *lines[5:]]))
     ui.drop(tmp_path / "bad.akaprec")
-    assert "bad.akaprec: recording line 6: expected one of" in ui.state.error
+    assert "bad.akaprec”. Recording line 6: expected one of" in ui.state.error
     ui.dialog("That did not work", "OK")
     number = 1 + next(k for k, line in enumerate(lines) if '"targets"' in line)
     lines[number - 1] = lines[number - 1].replace('"targets":{"3"', '"targets":{"9"')
     (tmp_path / "bad.akaprec").write_text("\n".join(lines))
     ui.drop(tmp_path / "bad.akaprec")
-    assert f"recording line {number}: cannot be replayed" in ui.state.error
+    assert f"bad.akaprec”. Recording line {number}: cannot be replayed" in ui.state.error
     ui.dialog("That did not work", "OK")
     assert ui.session is session

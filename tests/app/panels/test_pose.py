@@ -26,6 +26,6 @@ def test_a_pose_is_carried_through_a_file(pinned, tmp_path):
     (tmp_path / "bad.pose.json").write_text("{}")
     pinned.menu("File", "Apply Pose...")
     pinned.type_name("Apply pose", "bad.pose.json")
-    assert "bad.pose.json: expected format to be a text" in pinned.state.error
+    assert "bad.pose.json”. Expected format to be a text" in pinned.state.error
     assert pinned.session.state is before
     pinned.dialog("That did not work", "OK")

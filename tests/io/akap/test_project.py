@@ -242,7 +242,7 @@ def test_failed_save_keeps_the_old_file(document, tmp_path, monkeypatch, step):
     save(document, path)
     before = path.read_bytes()
     monkeypatch.setattr(atomic.os, step, fail)
-    with pytest.raises(InputError, match=r"^cannot write .*a\.akap: no space left on device$"):
+    with pytest.raises(InputError, match=r"^Couldn't save “.*a\.akap”\. No space left on device\.$"):
         save(document.with_state(replace(document.state, pins=())), path)
     assert path.read_bytes() == before
     assert os.listdir(tmp_path) == ["a.akap"]
@@ -285,7 +285,7 @@ def pin(**parts) -> tuple[Pin]:
 def test_what_could_not_be_opened_is_not_saved(make_document, picture, tmp_path, parts, message):
     path = tmp_path / "a.akap"
     path.write_bytes(b"old")
-    with pytest.raises(InputError, match=rf"^cannot write .*a\.akap: .*{message}"):
+    with pytest.raises(InputError, match=rf"(?i)^Couldn't save “.*a\.akap”\. .*{message}"):
         save(make_document(picture, **parts), path)
     assert path.read_bytes() == b"old"
 
@@ -294,9 +294,9 @@ def test_what_could_not_be_opened_is_not_saved(make_document, picture, tmp_path,
 
 
 def test_missing_file_and_folder(tmp_path):
-    with pytest.raises(InputError, match=r"none\.akap: expected an \.akap file, but there is no such file"):
+    with pytest.raises(InputError, match=r"none\.akap”\. There is no such file"):
         load(tmp_path / "none.akap")
-    with pytest.raises(InputError, match=r"expected an \.akap file, got a folder"):
+    with pytest.raises(InputError, match=r"Expected an \.akap file, got a folder"):
         load(tmp_path)
 
 
@@ -304,9 +304,7 @@ def test_missing_file_and_folder(tmp_path):
     "data", [b"", b"hello world", b"PK\x03\x04", encode_png(np.zeros((2, 2, 4), np.uint8))]
 )
 def test_other_files_are_refused(reopen, data):
-    with pytest.raises(
-        InputError, match=r"cat\.akap: expected an \.akap file, got a truncated one or one of"
-    ):
+    with pytest.raises(InputError, match=r"cat\.akap”\. The file is damaged or not an \.akap file"):
         reopen(data)
 
 
@@ -314,26 +312,26 @@ def test_every_truncation_is_refused(document, tmp_path, reopen):
     save(document, tmp_path / "good.akap")
     data = (tmp_path / "good.akap").read_bytes()
     for length in range(0, len(data), 7):
-        with pytest.raises(InputError, match=r"cat\.akap: "):
+        with pytest.raises(InputError, match=r"Couldn't open “.*cat\.akap”\. "):
             reopen(data[:length])
 
 
 @pytest.mark.parametrize("entry", ENTRIES[1:-1])
 def test_missing_entry_is_named(saved, reopen, entry):
     del saved[entry]
-    with pytest.raises(InputError, match=rf"cat\.akap: expected the entry {entry}, which is missing$"):
+    with pytest.raises(InputError, match=rf"cat\.akap”\. Expected the entry {entry}, which is missing\.$"):
         reopen(saved)
 
 
 @pytest.mark.parametrize("entry", ENTRIES)
 def test_repeated_entry_is_refused(saved, reopen, entry):
-    with pytest.raises(InputError, match=rf"expected each entry once, got '{entry}' 2 times"):
+    with pytest.raises(InputError, match=rf"Expected each entry once, got '{entry}' 2 times"):
         reopen([*saved.items(), (entry, saved[entry])])
 
 
 def test_other_zip_archives_are_refused(saved, reopen):
     for entries in ({"readme.txt": b"hello"}, saved | {"mimetype": b"application/epub+zip"}):
-        with pytest.raises(InputError, match=r"expected an \.akap file, got a zip archive of another kind"):
+        with pytest.raises(InputError, match=r"Expected an \.akap file, got a zip archive of another kind"):
             reopen(entries)
 
 
@@ -341,7 +339,7 @@ def test_other_zip_archives_are_refused(saved, reopen):
 def test_newer_version_says_so_first(saved, reopen, number):
     entries = {"mimetype": saved["mimetype"]}
     entries["document.json"] = json.dumps({"format": "akap", "version": number}).encode()
-    message = rf"newer version of the program \(file version {number}, this program reads up to 1\)$"
+    message = rf"newer version of the program \(file version {number}, this program reads up to 1\); update"
     with pytest.raises(InputError, match=message):
         reopen(entries)
 
@@ -400,7 +398,7 @@ def changed(record, path: list, value):
 def test_wrong_records_are_refused(saved, reopen, path, value, message):
     record = changed(json.loads(saved["document.json"]), path, value)
     saved["document.json"] = json.dumps(record).encode()
-    with pytest.raises(InputError, match=rf"cat\.akap: .*{message}"):
+    with pytest.raises(InputError, match=rf"(?i)cat\.akap”\. .*{message}"):
         reopen(saved)
 
 
@@ -438,7 +436,7 @@ def test_wrong_json_is_refused(saved, reopen, text, message):
 
 def test_float_that_overflows_is_refused(saved, reopen):
     text = saved["document.json"].replace(b'"memory": 1.0', b'"memory": 1e999')
-    with pytest.raises(InputError, match="parameter 'memory': expected a finite number, got inf"):
+    with pytest.raises(InputError, match="Parameter 'memory': expected a finite number, got inf"):
         reopen(saved | {"document.json": text})
 
 
@@ -479,11 +477,11 @@ ARRAYS = {
         floats(*CORNERS[:6]),
         r"expected 64 bytes for shape \(4, 2\), got 48",
     ),
-    "no picture": ("picture.png", b"hello", "picture.png: expected a PNG picture, got"),
+    "no picture": ("picture.png", b"hello", "picture.png: the file is damaged or not a PNG picture"),
     "half a picture": (
         "picture.png",
         encode_png(np.zeros((6, 8, 4), np.uint8))[:50],
-        "expected a whole PNG picture",
+        "picture.png: the PNG picture is damaged or incomplete",
     ),
     "another picture": (
         "picture.png",
@@ -498,14 +496,16 @@ def test_wrong_arrays_and_pictures_are_refused(saved, reopen, kind):
     entry, content, message = ARRAYS[kind]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        with pytest.raises(InputError, match=rf"cat\.akap: .*{message}"):
+        with pytest.raises(InputError, match=rf"(?i)cat\.akap”\. .*{message}"):
             reopen(saved | {entry: content})
 
 
 def test_only_png_is_a_picture(saved, reopen):
     buffer = BytesIO()
     Image.new("RGB", (8, 6)).save(buffer, "BMP")
-    with pytest.raises(InputError, match=r"picture\.png: expected a PNG picture, got .*begins with b'BM"):
+    with pytest.raises(
+        InputError, match=r"picture\.png: the file is damaged or not a PNG picture; it begins with b'BM"
+    ):
         reopen(saved | {"picture.png": buffer.getvalue()})
 
 
@@ -534,7 +534,7 @@ def test_bomb_that_lies_about_its_size_is_not_unpacked(saved, reopen):
     data = pack(saved | {"mesh/vertices": bytes(64_000_000)}, zipfile.ZIP_DEFLATED)
     lie = data.replace((64_000_000).to_bytes(4, "little"), (64).to_bytes(4, "little"))
     assert lie != data
-    with pytest.raises(InputError, match="mesh/vertices: expected a readable entry, got a damaged one"):
+    with pytest.raises(InputError, match="mesh/vertices: the entry is damaged"):
         reopen(lie)
 
 

@@ -56,7 +56,7 @@ def test_bytes_that_are_no_text_in_the_middle_are_refused(session, tmp_path):
     path = tmp_path / "a.akaprec"
     write_recording(session.recording, path)
     path.write_bytes(path.read_bytes().replace(b'"label"', b'"la\xffel"', 1))
-    with pytest.raises(InputError, match=r"a\.akaprec: expected a recording, which is text"):
+    with pytest.raises(InputError, match=r"a\.akaprec”\. Expected a recording, which is text"):
         read_recording(path)
 
 

@@ -143,7 +143,7 @@ def test_still_frames_keep_their_time(tmp_path):
             10,
             "webp: expected at most 16383 pixels a side, got 16384 x 1",
         ),
-        ("missing/a.gif", [disc(0)], 10, "cannot write .*: no such file or directory"),
+        ("missing/a.gif", [disc(0)], 10, "Couldn't save “.*”. No such file or directory"),
     ],
 )
 def test_bad_animations_give_one_sentence(tmp_path, name, frames, fps, message):
@@ -178,7 +178,7 @@ def test_failure_of_a_frame_keeps_the_old_animation(tmp_path):
 
 
 def test_still_for_longer_than_a_gif_can_say(tmp_path):
-    with pytest.raises(InputError, match=r"cannot write .*a\.gif: the encoder says"):
+    with pytest.raises(InputError, match=r"Couldn't export “.*a\.gif”\. The encoder says"):
         write_animation(tmp_path / "a.gif", [disc(0)] * 70 + [disc(1)], fps=0.1)
     assert list(tmp_path.iterdir()) == []
 

@@ -65,5 +65,5 @@ def test_frames_are_numbered_and_those_of_a_longer_animation_go(tmp_path):
 
 def test_a_file_in_the_way_of_a_folder_is_told(tmp_path):
     (tmp_path / "frames").write_text("a file")
-    with pytest.raises(InputError, match=r"cannot write .*frames"):
+    with pytest.raises(InputError, match=r"Couldn't save “.*frames”"):
         write_frames(tmp_path / "frames", [dot(0)])

@@ -91,11 +91,11 @@ def test_options_reach_the_painter(bent, painter, tmp_path):
 
 
 def test_what_cannot_be_written_leaves_nothing(bent, painter, tmp_path):
-    with pytest.raises(InputError, match=r"cannot write .*a\.svg: crop: expected one of"):
+    with pytest.raises(InputError, match=r"Couldn't export “.*a\.svg”\. crop: expected one of"):
         export(bent, tmp_path / "a.svg", ExportOptions(crop="tight"), painter)
-    with pytest.raises(InputError, match=r"cannot write .*a\.svg: picture size: expected at most 8192"):
+    with pytest.raises(InputError, match=r"Couldn't export “.*a\.svg”\. Picture size: expected at most 8192"):
         export(bent, tmp_path / "a.svg", ExportOptions(scale=1000), painter)
-    with pytest.raises(InputError, match="no such file or directory"):
+    with pytest.raises(InputError, match="No such file or directory"):
         export(bent, tmp_path / "none" / "a.obj", ExportOptions(), painter)
     assert list(tmp_path.iterdir()) == []
 
@@ -110,7 +110,7 @@ def test_a_pose_with_collapsed_and_flipped_faces_is_exported(drawn, painter, tmp
 
 
 def test_a_picture_needs_a_painter_and_the_rest_does_not(bent, tmp_path):
-    with pytest.raises(InputError, match=r"cannot write .*a\.png: expected a painter for a picture"):
+    with pytest.raises(InputError, match=r"Couldn't export “.*a\.png”\. Expected a painter for a picture"):
         export(bent, tmp_path / "a.png")
     assert export(bent, tmp_path / "a.glb") == [tmp_path / "a.glb"]
 

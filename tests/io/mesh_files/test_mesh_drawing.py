@@ -146,9 +146,9 @@ BAD_OBJ = {
 @pytest.mark.parametrize("kind", BAD_OBJ)
 def test_each_bad_obj_has_its_sentence(tmp_path, kind):
     text, sentence = BAD_OBJ[kind]
-    with pytest.raises(InputError, match=sentence) as caught:
+    with pytest.raises(InputError, match=f"(?i){sentence}") as caught:
         read_mesh(written(tmp_path, "bad.obj", text))
-    assert "bad.obj: " in str(caught.value)
+    assert str(caught.value).startswith(f"Couldn't open “{tmp_path / 'bad.obj'}”. ")
     assert "\n" not in str(caught.value)
 
 
@@ -168,19 +168,17 @@ def test_each_bad_obj_has_its_sentence(tmp_path, kind):
     ],
 )
 def test_each_bad_off_has_its_sentence(tmp_path, text, sentence):
-    with pytest.raises(InputError, match=sentence):
+    with pytest.raises(InputError, match=f"(?i){sentence}"):
         read_mesh(written(tmp_path, "bad.off", text))
 
 
 def test_textures_that_do_not_fit(tmp_path):
     written(tmp_path, "a.mtl", "map_Kd none.png\n")
-    with pytest.raises(
-        InputError, match=r"a\.obj: .*none\.png: expected a picture, but there is no such file"
-    ):
+    with pytest.raises(InputError, match=r"a\.obj”\. Couldn't open “.*none\.png”\. There is no such file"):
         read_mesh(written(tmp_path, "a.obj", TEXTURED))
     written(tmp_path, "a.mtl", "map_Kd small.png\n")
     picture_at(tmp_path / "small.png", (20, 10))
-    with pytest.raises(InputError, match="expected texture coordinates, as the material has a texture"):
+    with pytest.raises(InputError, match="Expected texture coordinates, as the material has a texture"):
         read_mesh(written(tmp_path, "a.obj", "mtllib a.mtl\n" + SQUARE + "f 1 2 3 4\n"))
     mirrored = TEXTURED.replace("vt 0", "vt _").replace("vt 1", "vt 0").replace("vt _", "vt 1")
     with pytest.raises(InputError, match="the right way round, got a mirrored or rotated one"):
@@ -189,7 +187,7 @@ def test_textures_that_do_not_fit(tmp_path):
 
 def test_a_mask_needs_a_picture(tmp_path):
     path = written(tmp_path, "a.obj", SQUARE + "f 1 2 3 4\n")
-    with pytest.raises(InputError, match=r"mask\.png: expected a picture to put the mask on, got a\.obj"):
+    with pytest.raises(InputError, match=r"mask\.png”\. A mask needs a picture, but a\.obj is none\."):
         open_document(path, tmp_path / "mask.png")
 
 
