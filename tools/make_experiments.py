@@ -14,8 +14,8 @@ import numpy as np
 from akap_editor.cli.replay import settings_change
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Drawing, make_drawing
-from akap_editor.editor.document.framing import frame_box
 from akap_editor.editor.document.settings import Settings
+from akap_editor.editor.framing import frame_box
 from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import Recording

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from ..editor.document.framing import crop_box, output_size
+from ..editor.framing import crop_box, output_size
 from ..errors import InputError
 from ..io.export import EXPORT_FORMATS, ExportOptions, export, format_of
 from ..io.open_document import open_document

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from ..editor.document.framing import CROPS, Color
+from ..editor.framing import CROPS, Color
 from ..errors import FileError, InputError
 from ..io.atomic import os_error_reason
 from ..io.export import ExportOptions

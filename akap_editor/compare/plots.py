@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from ..editor.document.framing import Box
+from ..editor.framing import Box
 from ..geometry.validation import Floats
 from .run import Run
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import __version__
 from ..deform.methods import default_parameters, nearest_preset, parse_method
-from ..editor.document.framing import Box
+from ..editor.framing import Box
 from ..geometry.validation import Floats
 from ..render.offscreen import OffscreenRenderer
 from ..resources import resource

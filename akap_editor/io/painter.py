@@ -5,7 +5,7 @@ from typing import Protocol
 
 from ..editor.animation.frames import Frame
 from ..editor.document.drawing import Drawing
-from ..editor.document.framing import Box, Color, frame_box, output_size, union_of_boxes
+from ..editor.framing import Box, Color, frame_box, output_size, union_of_boxes
 from ..geometry.validation import Floats, Ints
 from .images import Picture
 

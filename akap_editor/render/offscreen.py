@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..editor.document.drawing import Drawing
-from ..editor.document.framing import Box, Color, frame_box, output_size
+from ..editor.framing import Box, Color, frame_box, output_size
 from ..errors import GraphicsError
 from ..geometry.validation import Ints, as_points
 from .renderer import Background, Renderer

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from ..editor.document.drawing import Drawing
-from ..editor.document.framing import Color
+from ..editor.framing import Color
 from ..errors import InputError
 from ..geometry.validation import Floats, Ints
 from .overlays import NO_OVERLAYS, HeatPainter, Overlays, Reference, StrokePainter

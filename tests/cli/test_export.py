@@ -7,7 +7,7 @@ import pygltflib
 import pytest
 import trimesh
 
-from akap_editor.editor.document.framing import CROPS, crop_box
+from akap_editor.editor.framing import CROPS, crop_box
 from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.open_document import open_document

@@ -7,7 +7,7 @@ import shapely
 from PIL import Image
 
 from akap_editor.editor.document.drawing import Drawing, make_drawing
-from akap_editor.editor.document.framing import MAX_SIZE, frame_box
+from akap_editor.editor.framing import MAX_SIZE, frame_box
 from akap_editor.errors import GraphicsError, InputError
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.render.offscreen import OffscreenRenderer, standalone_context

@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ...editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
 from ...editor.document.easing import EASING_LABELS, EASINGS
-from ...editor.document.framing import Color
+from ...editor.framing import Color
 from ...io.animation.formats import ANIMATION_FORMATS, AnimationFormat, animation_format, write_animation
 from ...io.painter import paint_frames
 from .. import widgets

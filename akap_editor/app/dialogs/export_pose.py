@@ -7,7 +7,7 @@ from pathlib import Path
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...editor.document.document import Document
-from ...editor.document.framing import CROPS, Color, crop_box, output_size
+from ...editor.framing import CROPS, Color, crop_box, output_size
 from ...errors import InputError
 from ...io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of
 from ...io.painter import Painter

@@ -5,7 +5,7 @@ from typing import Protocol, TypeVar
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ...editor.document.framing import Color
+from ...editor.framing import Color
 from .. import widgets
 from ..theme import QUIET
 

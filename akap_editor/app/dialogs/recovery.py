@@ -5,7 +5,7 @@ import time
 from imgui_bundle import ImVec2, imgui
 
 from ...editor.document.document import Document
-from ...editor.document.framing import frame_box
+from ...editor.framing import frame_box
 from ...errors import AkapError
 from ...io.akap.autosave import RecoveryCopy
 from ...io.images import Picture

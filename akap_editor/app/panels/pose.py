@@ -8,8 +8,8 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor import gestures
-from ...editor.document.framing import frame_box
 from ...editor.document.named_poses import NamedPose
+from ...editor.framing import frame_box
 from ...editor.session.edits import RenamePose, ReorderPoses
 from .. import widgets
 from ..app_state import AppState

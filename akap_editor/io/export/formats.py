@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
-from ...editor.document.framing import Color, crop_box
+from ...editor.framing import Color, crop_box
 from ...errors import InputError, file_errors
 from ..atomic import write_atomic
 from ..images import encode_png, join_with_or

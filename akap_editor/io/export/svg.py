@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from ...editor.document.drawing import Drawing
-from ...editor.document.framing import Box, Color, output_size
+from ...editor.framing import Box, Color, output_size
 from ...geometry.mesh import signed_areas
 from ...geometry.validation import Floats
 

@@ -9,7 +9,7 @@ import pytest
 from akap_editor.app.dialogs.export_pose import PoseExportOptions, export_pose
 from akap_editor.app.jobs.pose_export import PoseExportQueue
 from akap_editor.editor import gestures
-from akap_editor.editor.document.framing import crop_box
+from akap_editor.editor.framing import crop_box
 from akap_editor.errors import InputError
 from akap_editor.io.export import formats
 from akap_editor.io.images import read_image

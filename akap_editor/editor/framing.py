@@ -6,9 +6,9 @@ from math import ceil, floor, isfinite
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...errors import InputError
-from ...geometry.validation import Floats, as_points
-from .drawing import Drawing
+from ..errors import InputError
+from ..geometry.validation import Floats, as_points
+from .document.drawing import Drawing
 
 Box = tuple[int, int, int, int]  # x0, y0, x1, y1 in whole drawing units
 Color = tuple[float, float, float]  # red, green, blue from 0 to 1

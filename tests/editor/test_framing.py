@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.document.drawing import Drawing
-from akap_editor.editor.document.framing import (
+from akap_editor.editor.framing import (
     CROPS,
     MAX_SIZE,
     crop_box,
