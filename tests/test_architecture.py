@@ -116,6 +116,29 @@ def test_no_circle_of_imports() -> None:
     TopologicalSorter(imports).prepare()
 
 
+# -- sizes ---------------------------------------------------------------------------------------------------
+
+MAX_LINES, MAX_MODULES = 400, 13
+LONGER = {  # modules with more lines, and why
+    "app/commands/registry.py": "the one table of commands",
+    "app/window.py": "the main loop and what GLFW and ImGui report to it",
+    "deform/methods.py": "the one table of methods",
+}
+
+
+def test_modules_are_short() -> None:
+    lengths = {
+        module.relative_to(PACKAGE).as_posix(): len(module.read_text("utf-8").splitlines())
+        for module in PACKAGE.rglob("*.py")
+    }
+    assert {name for name, length in lengths.items() if length > MAX_LINES} == set(LONGER)
+
+
+def test_folders_have_at_most_a_dozen_modules() -> None:
+    sizes = {folder: len(list(folder.glob("*.py"))) for folder in [PACKAGE, *PACKAGE.rglob("*/")]}
+    assert not {str(folder): size for folder, size in sizes.items() if size > MAX_MODULES}
+
+
 # -- tests mirror the package --------------------------------------------------------------------------------
 
 # Test files about no module of the package.
