@@ -1,14 +1,14 @@
-# Everything a person or CI types. Any POSIX system with GNU make 3.81 (macOS) or later.
+# The commands that people and CI type. Needs a POSIX system with GNU make 3.81 (macOS) or later.
 
 .PHONY: help run test lint format clean
 
 help:
 	@echo 'make run                   open the editor on a bundled cartoon'
 	@echo 'make run FILE=picture.png  open that picture, or a saved project'
-	@echo 'make test                  run all tests, those of the window too; no display is needed'
+	@echo 'make test                  run all tests, including those of the window; needs no display'
 	@echo 'make test ARGS="-k mesh"   pass options on to pytest'
 	@echo 'make lint                  ruff, ruff format --check, mypy, import contracts'
-	@echo 'make format                let ruff repair and format the code'
+	@echo 'make format                let ruff fix and format the code'
 	@echo 'make clean                 remove .venv, caches and output'
 	@echo
 	@echo 'PYTHON=python3.12 chooses the Python that .venv is made with (3.11 or later).'

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Usage: tools/setup.sh run|test|lint
-# Makes a checkout ready for that purpose: system packages, then .venv with the project installed in it.
-# Silent and quick where all is there already. PYTHON names the Python that .venv is made with.
+# Prepares a checkout for that purpose: installs system packages, then the project in .venv.
+# Silent and quick if everything is installed. PYTHON names the Python that .venv is made with.
 set -eu
 cd "$(dirname "$0")/.."
 purpose=$1
@@ -15,7 +15,7 @@ has_library() { # the loader's cache lists "libGL.so.1 (libc6,x86-64) => ..."
     PATH="$PATH:/sbin:/usr/sbin" ldconfig -p | grep -qF "$1 ("
 }
 
-# Prints the Debian packages that this purpose needs and the system lacks, whoever installed what is there.
+# Prints the Debian packages whose content this purpose needs and the system lacks.
 missing_packages() {
     [ "$(uname -s)" = Linux ] && [ "$purpose" != lint ] || return 0
     has_library libGL.so.1 || echo libgl1 # a window; brings libX11 and Mesa
@@ -25,7 +25,7 @@ missing_packages() {
     command -v xdotool >/dev/null || echo xdotool # their mouse and keyboard
 }
 
-# Installs Debian packages, as root or by a sudo that asks nothing; elsewhere says what to type, and fails.
+# Installs Debian packages as root or with a sudo that needs no password; otherwise prints what to type and fails.
 install_packages() {
     if ! command -v apt-get >/dev/null; then
         echo "Please install what Debian calls: $*" >&2
@@ -41,14 +41,14 @@ install_packages() {
         return 1
     fi
     echo "Installing system packages: $*"
-    # The lock may be held by the updates that a new machine starts with.
+    # On a new machine, automatic updates may hold the lock.
     set -- -qq -y --no-install-recommends -o DPkg::Lock::Timeout=120 -o Acquire::Retries=3 "$@"
     $as_root apt-get -qq -o Acquire::Retries=3 update
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install "$@" >/dev/null
 }
 
-# Prints the Python to use: the one in PYTHON, else the first that is new enough. One later than 3.13 is the last
-# choice, because Triangle has no binary wheel for it and would need a C compiler.
+# Prints the Python to use: $PYTHON, or the first one that is new enough. Versions after 3.13 are the last choice,
+# because Triangle has no binary wheel for them and needs a C compiler.
 find_python() {
     if [ -n "${PYTHON:-}" ]; then set -- "$PYTHON"; else set -- python3 python3.13 python3.12 python3.11; fi
     found=''
@@ -67,7 +67,7 @@ find_python() {
 
 make_venv() {
     python=$(find_python)
-    if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then # Debian packs venv apart
+    if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then # Debian has a separate package for venv
         package=$("$python" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])')
         install_packages "$package" || exit 1
     fi
@@ -78,7 +78,7 @@ pip_install() {
     .venv/bin/python -m pip --quiet --disable-pip-version-check --timeout 60 install --editable "$1"
 }
 
-# The marker holds what was installed from where, so that a changed pyproject.toml or a moved folder counts as new.
+# The marker holds the folder and the checksum of pyproject.toml; if either changed, the project is installed again.
 install_project() {
     marker=.venv/installed-$1
     wanted="$PWD $(cksum <pyproject.toml)"
@@ -97,7 +97,7 @@ if [ -n "$packages" ]; then
     # shellcheck disable=SC2086  # one word per package
     if ! install_packages $packages; then
         [ "$purpose" = run ] || exit 1
-        echo "Going on without them." >&2
+        echo "Continuing without them." >&2
     fi
 fi
 if [ "$purpose" = run ]; then install_project run .; else install_project dev ".[dev]"; fi
