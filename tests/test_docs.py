@@ -2,6 +2,7 @@
 
 import importlib.util
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -48,6 +49,24 @@ def test_named_files_exist(page, files):
         if not any(re.search(pattern, path) for path in files)
     ]
     assert not unknown
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_named_functions_and_classes_exist(page):
+    """The last part of every name in backticks is a word of the code or of a script."""
+    names = re.findall(r"`[A-Za-z_.]*?([A-Za-z_]+)(?:\(\.*\))?`", page.read_text("utf-8"))
+    assert not set(names) - words_of_the_code()
+
+
+@cache
+def words_of_the_code():
+    """The words in the package, its shaders, benchmarks, tools and build files."""
+    folders = ("akap_editor", "benchmarks", "shaders", "tools")
+    sources = [path for folder in folders for path in (ROOT / folder).rglob("*.*")]
+    sources = [path for path in sources if path.suffix in (".py", ".vert", ".frag", ".geom", ".sh")]
+    paths = [*sources, ROOT / "pyproject.toml", ROOT / "Makefile"]
+    text = "".join(path.read_text("utf-8") for path in paths)
+    return set(re.findall(r"\w+", text))
 
 
 def test_every_page_is_in_the_index():
