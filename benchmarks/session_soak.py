@@ -106,7 +106,7 @@ class Soak:
             self.now += 1 / 60
             self.editor.advance(budget=0.0)
             session = self.session
-            self.autosave.watch(session.document, self.editor.modified, session.history.last)
+            self.autosave.watch(session.document, self.editor.is_modified, session.history.last)
         self.now += 0.2
 
     def _pin_on_screen(self, pin: int) -> tuple[float, float]:

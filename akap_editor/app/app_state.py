@@ -133,7 +133,7 @@ class AppState:
     @property
     def is_busy(self) -> bool:
         """Whether anything moves or is computed, be it in a thread; when it ends, the window is idle."""
-        moves = self.editor.moving or self.comparison.is_moving or self.timeline.playback.is_playing
+        moves = self.editor.is_moving or self.comparison.is_moving or self.timeline.playback.is_playing
         computes = self.view.is_computing or self.remesher.is_busy or self.writer.is_busy
         return moves or computes or self.needs_frame or self.task is not None
 
@@ -219,4 +219,4 @@ class AppState:
             return "akap-editor"
         path = self.document.path
         name = path.name if path is not None else self.document.drawing.name
-        return f"{name}{' *' if self.editor.modified else ''} - akap-editor"
+        return f"{name}{' *' if self.editor.is_modified else ''} - akap-editor"

@@ -146,7 +146,7 @@ def write_document(state: AppState, path: Path, then: Callable[[], None] | None 
 def confirm_unsaved(state: AppState, proceed: Callable[[], None]) -> None:
     """Call ``proceed`` at once, or after the user has decided what happens to unsaved changes."""
     document = state.document
-    if document is None or not state.editor.modified:
+    if document is None or not state.editor.is_modified:
         proceed()
         return
     name = document.path.name if document.path is not None else document.drawing.name
@@ -184,7 +184,7 @@ def autosave(state: AppState) -> None:
     try:
         last_gesture = session.history.last if session is not None else None
         document = session.present_document if session is not None else None
-        state.autosave.watch(document, state.editor.modified, last_gesture)
+        state.autosave.watch(document, state.editor.is_modified, last_gesture)
     except InputError as error:
         state.notice = str(error)
 
@@ -192,5 +192,5 @@ def autosave(state: AppState) -> None:
 def rescue(state: AppState) -> None:
     """Write a recovery copy of unsaved changes now, because the program is about to end with an error."""
     session = state.editor.session
-    if state.autosave is not None and session is not None and state.editor.modified:
+    if state.autosave is not None and session is not None and state.editor.is_modified:
         state.run_reporting_errors(partial(state.autosave.rescue, session.present_document))

@@ -94,7 +94,7 @@ class BackgroundRemesh:
             self._gesture = self._requested = self._job = None
         has_changed = False
         job = self._job
-        if job is not None and job.result.done() and not self._editor.busy:
+        if job is not None and job.result.done() and not self._editor.is_busy:
             self._job = None
             if job.meshing == self._requested:
                 self._requested = None

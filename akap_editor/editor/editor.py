@@ -87,7 +87,7 @@ class Editor:
             self.session.mark_saved(path)
 
     @property
-    def modified(self) -> bool:
+    def is_modified(self) -> bool:
         """Whether closing would lose changes."""
         return self.session is not None and self.session.is_modified
 
@@ -115,7 +115,7 @@ class Editor:
         """Let keys move the pointer, or end that. The hand has nothing to click, so the pins replace it."""
         if self.tool.is_keyboard_driven:
             self.return_to_idle()
-        elif self.session is not None and not self.busy:
+        elif self.session is not None and not self.is_busy:
             if self.chosen_tool is self.hand_tool:
                 self.chosen_tool = self.pins_tool
             self.set_tool(KeyboardPointer(self))
@@ -127,7 +127,7 @@ class Editor:
             self.session.abort()
 
     @property
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         """Whether a gesture is under way."""
         return not self.tool.is_idle or (self.session is not None and self.session.history.is_open)
 
@@ -182,7 +182,7 @@ class Editor:
 
         Does nothing and returns None without a session or during a gesture.
         """
-        if self.session is None or self.busy:
+        if self.session is None or self.is_busy:
             return None
         self.session.begin(label)
         try:
@@ -206,7 +206,7 @@ class Editor:
     def undo(self) -> None:
         """Undo the last gesture; during a gesture, cancel it."""
         self.trails.clear()
-        if self.busy:
+        if self.is_busy:
             self.cancel()
         elif self.session is not None:
             self.session.undo()
@@ -215,13 +215,13 @@ class Editor:
     def redo(self) -> None:
         """Redo the gesture that was undone last."""
         self.trails.clear()
-        if self.session is not None and not self.busy:
+        if self.session is not None and not self.is_busy:
             self.session.redo()
             self._drop_missing_pins()
 
     def undo_or_redo_to(self, depth: int) -> None:
         """Undo or redo until ``depth`` gestures can be undone, or as many as there are."""
-        if self.session is None or self.busy:
+        if self.session is None or self.is_busy:
             return
         history = self.session.history
         while history.depth > max(depth, 0):
@@ -266,7 +266,7 @@ class Editor:
     # -- motion --------------------------------------------------------------------------------------------
 
     @property
-    def moving(self) -> bool:
+    def is_moving(self) -> bool:
         """Whether `advance` has steps to make."""
         return self.session is not None and self.session.is_moving
 

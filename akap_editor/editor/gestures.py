@@ -36,7 +36,7 @@ class EditContext(Protocol):
     selection: frozenset[int]
 
     @property
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         """Whether a gesture is under way; no other one can start before its end."""
 
     def edit(self, label: str, change: Callable[[Session], T]) -> T | None:
@@ -137,7 +137,7 @@ class NudgeSeries:
     def nudge(self, editor: EditContext, dx: float, dy: float) -> None:
         """Move the targets of the selected pins by (dx, dy) drawing pixels."""
         session, pins = editor.session, editor.selection
-        if session is None or editor.busy or not pins:
+        if session is None or editor.is_busy or not pins:
             return
         now = self._clock()
         entry, last_pins, last_time = self._last or (None, pins, now)

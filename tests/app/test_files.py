@@ -27,7 +27,7 @@ def bent(pinned, tmp_path):
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0], start[1] - 120))
     pinned.state.folder = tmp_path
-    assert pinned.editor.modified
+    assert pinned.editor.is_modified
     return pinned
 
 
@@ -51,7 +51,7 @@ def test_save_as_and_open_again_restore_every_bit(bent, tmp_path):
     bent.type_name(SAVE, "posed")
     assert bent.file_request is None
     assert bent.state.notice == "Saved posed.akap"
-    assert not bent.editor.modified
+    assert not bent.editor.is_modified
     assert bent.state.title == "posed.akap - akap-editor"
     bent.menu("Edit", "Reset Pose")
     assert bent.state.title == "posed.akap * - akap-editor"
@@ -107,7 +107,7 @@ def test_save_asks_once_and_then_writes_to_the_same_file(bent, tmp_path):
     bent.key(CTRL | Key.s)
     assert bent.file_request is None
     assert bits(load(path).state) == bits(bent.session.state)
-    assert not bent.editor.modified
+    assert not bent.editor.is_modified
 
 
 def test_an_existing_file_is_replaced_only_on_demand(bent, tmp_path):
@@ -122,7 +122,7 @@ def test_an_existing_file_is_replaced_only_on_demand(bent, tmp_path):
     bent.do(look)
     bent.dialog(SAVE, "Cancel")
     assert (tmp_path / "old.akap").read_bytes() == b"old"
-    assert bent.editor.modified
+    assert bent.editor.is_modified
     bent.key(CTRL | SHIFT | Key.s)
     bent.type_name(SAVE, "old", enter=False)
     bent.dialog(SAVE, "Replace")
@@ -210,7 +210,7 @@ def test_a_file_that_cannot_be_written_is_told_and_stays_unsaved(bent, tmp_path)
     bent.key(CTRL | SHIFT | Key.s)
     bent.type_name(SAVE, "no-such-folder/posed")
     assert str(tmp_path / "no-such-folder" / "posed.akap") in bent.state.error
-    assert bent.editor.modified
+    assert bent.editor.is_modified
     assert bent.document.path is None
     bent.dialog(MESSAGE, "OK")
     assert not bent.state.error
@@ -284,7 +284,7 @@ def test_cancel_stays(bent, tmp_path, end, answer):
     assert not gone_on(bent)
     assert not bent.state.part(UnsavedChangesDialog).is_open
     assert bent.session.state is state
-    assert bent.editor.modified
+    assert bent.editor.is_modified
 
 
 def test_cancel_of_the_file_dialog_after_save_stays(bent, tmp_path):
@@ -293,7 +293,7 @@ def test_cancel_of_the_file_dialog_after_save_stays(bent, tmp_path):
     bent.dialog(SAVE, "Cancel")
     finish(bent)
     assert not bent.state.closing
-    assert bent.editor.modified
+    assert bent.editor.is_modified
 
 
 def test_a_failed_save_does_not_go_on(bent, tmp_path):
@@ -393,7 +393,7 @@ def test_a_bad_file_is_told_in_one_sentence_and_changes_nothing(bent, tmp_path, 
     assert "\n" not in error
     assert bent.document is before
     assert bent.editor.camera == camera
-    assert bent.editor.modified
+    assert bent.editor.is_modified
     bent.dialog(MESSAGE, "OK")
     bent.key(CTRL | Key.z)
     assert not bent.session.is_posed, "undo still works"
@@ -423,7 +423,7 @@ def test_a_dropped_picture_opens(pinned, tmp_path, image):
     assert pinned.document.drawing.name == "dropped"
     np.testing.assert_array_equal(pinned.document.drawing.mesh.vertices, expected.drawing.mesh.vertices)
     assert pinned.state.folder == tmp_path
-    assert not pinned.editor.modified
+    assert not pinned.editor.is_modified
 
 
 # -- masks --------------------------------------------------------------------------------------------------

@@ -104,8 +104,8 @@ def test_a_step_that_fails_in_its_thread_is_told_and_the_window_sleeps_again(loo
         loop.run(3)
     assert threads
     assert ui.state.error == "the linear system is singular"
-    assert not ui.editor.busy
-    assert not ui.editor.moving
+    assert not ui.editor.is_busy
+    assert not ui.editor.is_moving
     np.testing.assert_array_equal(ui.session.state.targets, targets)
     assert ui.session.state.positions is pose
     assert loop.run(4) == [(IDLE_SECONDS, SETTLE_FRAMES)] * 4, (

@@ -57,7 +57,7 @@ class Frames:
         x, y = self.start
         self.ui.begin_drag(hand, self.start)
         hand.mouse_teleport_to_pos(imgui.ImVec2(x, y - 20))
-        while self.ui.editor.moving:
+        while self.ui.editor.is_moving:
             hand.yield_()
         hand.yield_(3)
         hand.mouse_teleport_to_pos(imgui.ImVec2(*self.end))

@@ -26,7 +26,7 @@ def test_without_a_drawing_nothing_happens():
     gestures.remove_pins(editor, [1])
     gestures.set_settings(editor, Settings("akap"))
     assert gestures.add_pin(editor, (1.0, 1.0)) is None
-    assert not any([editor.moving, editor.advance(), editor.modified, editor.tool.markers.new_pin])
+    assert not any([editor.is_moving, editor.advance(), editor.is_modified, editor.tool.markers.new_pin])
     assert editor.tool.markers.hovered_pin is None
     assert "Open" in editor.hint
 
@@ -49,7 +49,7 @@ def test_opening_ends_the_gesture_of_the_old_drawing(pinned, drawing):
     pinned.editor.open(new_document(drawing))
     assert pinned.tool == "PinsIdle"
     assert not old.history.is_open
-    assert not pinned.editor.busy
+    assert not pinned.editor.is_busy
 
 
 def test_a_drawing_that_cannot_be_opened_leaves_the_old_one(pinned, drawing):
@@ -238,13 +238,13 @@ def test_the_same_settings_again_are_no_edit(pinned):
 )
 def test_a_failed_edit_changes_nothing_and_leaves_no_gesture_open(pinned, bad):
     pinned.drag(END, (90.0, 60.0), steps=2)
-    assert pinned.editor.moving
+    assert pinned.editor.is_moving
     before = pinned.everything
     with pytest.raises(InputError):
         bad(pinned.editor)
     assert pinned.everything == before
-    assert not pinned.editor.busy
-    assert pinned.editor.moving
+    assert not pinned.editor.is_busy
+    assert pinned.editor.is_moving
 
 
 def test_a_new_edit_ends_redo(pinned):
@@ -269,15 +269,15 @@ def test_select_knows_only_pins_that_are_there(pinned):
 
 def test_modified_and_saved(pinned, tmp_path):
     pinned.editor.mark_saved(tmp_path / "a.akap")
-    assert not pinned.editor.modified
+    assert not pinned.editor.is_modified
     for act in (lambda: pinned.click(NECK), lambda: pinned.click(BESIDE), lambda: pinned.scroll(NECK, 2)):
         act()
-        assert not pinned.editor.modified
+        assert not pinned.editor.is_modified
     pinned.drag(END, (90.0, 60.0))
     pinned.settle()
-    assert pinned.editor.modified
+    assert pinned.editor.is_modified
     pinned.undo()
-    assert not pinned.editor.modified
+    assert not pinned.editor.is_modified
 
 
 # -- motion ------------------------------------------------------------------------------------------------
@@ -300,7 +300,7 @@ def test_advance_with_time_makes_steps_until_the_pins_are_near(pinned):
 
 def test_at_rest_advance_does_nothing(pinned):
     before, revision = pinned.everything, pinned.session.document.revision
-    assert not pinned.editor.moving
+    assert not pinned.editor.is_moving
     assert not pinned.editor.advance()
     assert (pinned.everything, pinned.session.document.revision) == (before, revision)
 
@@ -332,7 +332,7 @@ def test_a_solver_error_cancels_the_gesture_and_is_raised(pinned, monkeypatch):
             pinned.editor.advance()
     assert pinned.tool == "PinsIdle"
     assert pinned.everything == before
-    assert not pinned.editor.moving
+    assert not pinned.editor.is_moving
     pinned.drag(END, (95.0, 50.0))
     pinned.settle()
     assert np.hypot(*np.subtract(pinned.where(3), (95.0, 50.0))) < 0.25
@@ -349,7 +349,7 @@ def test_a_solver_error_after_release_keeps_the_last_good_pose(pinned, monkeypat
     with pytest.raises(SolverError):
         pinned.editor.advance()
     assert pinned.everything == before
-    assert not pinned.editor.moving
+    assert not pinned.editor.is_moving
 
 
 def test_camera_is_not_undoable(pinned):

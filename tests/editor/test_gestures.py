@@ -200,7 +200,7 @@ def test_a_double_click_on_a_pin_asks_for_its_values(pinned):
     pinned.release(NECK)
     assert pinned.editor.request == PinRequest("values", 2)
     assert pinned.editor.selection == {2}
-    assert not pinned.editor.busy
+    assert not pinned.editor.is_busy
 
 
 def test_a_double_click_on_the_drawing_adds_one_pin_and_opens_nothing(driver):

@@ -143,7 +143,7 @@ class Driver:
 
     def settle(self) -> None:
         """Frames until the program would sleep."""
-        while self.editor.moving:
+        while self.editor.is_moving:
             self.advance()
 
     def undo(self) -> None:
@@ -177,6 +177,6 @@ class Driver:
             assert 0 <= pin.face < len(mesh.faces)
         assert len(set(self.ids)) == len(self.ids)
         assert self.editor.selection <= set(self.ids)
-        assert self.editor.busy or not self.session.history.is_open
+        assert self.editor.is_busy or not self.session.history.is_open
         assert self.session.document.revision >= self._revision
         self._revision = self.session.document.revision

@@ -104,7 +104,7 @@ class ViewOptions:
         strokes: list[LineSegments] = []
         if self.trails:
             strokes += outlined(editor.trails.segments(), TRAIL, 1.5 * scale)
-        if self.vectors and editor.session is not None and (editor.moving or editor.tool.drags_pins):
+        if self.vectors and editor.session is not None and (editor.is_moving or editor.tool.drags_pins):
             strokes += self._fields.strokes(editor, editor.session, scale)
         else:
             self._fields.drop()
@@ -244,7 +244,7 @@ class _VectorFieldArrows:
         if session.drawing is not self._drawing:
             self._drawing, self._way, self._fields, self.coming = session.drawing, None, None, None
         way, now = session.last_motion, time.perf_counter()
-        if self.coming is None and way is not self._way and not (editor.moving and now < self._until):
+        if self.coming is None and way is not self._way and not (editor.is_moving and now < self._until):
             self._way, self._begun = way, now
             self.coming = editor.worker.submit(session.vector_fields)
             wait([self.coming], FRAME_BUDGET)

@@ -106,7 +106,7 @@ def _defaults(state: AppState) -> None:
 def _can_undo(state: AppState) -> bool:
     """In the middle of a gesture undo takes that one back."""
     editor = state.editor
-    return editor.busy or (editor.session is not None and editor.session.history.undo_label is not None)
+    return editor.is_busy or (editor.session is not None and editor.session.history.undo_label is not None)
 
 
 def _has_memory(state: AppState) -> bool:

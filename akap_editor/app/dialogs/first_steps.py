@@ -44,7 +44,7 @@ class FirstSteps:
         Undo does not bring a step back.
         """
         session, only_moved = state.editor.session, _only_pin_was_dragged(state)
-        if session is not None and session.state.pins and not (only_moved or state.editor.busy):
+        if session is not None and session.state.pins and not (only_moved or state.editor.is_busy):
             displacements = session.state.positions - session.drawing.mesh.vertices
             is_bent = np.ptp(displacements, axis=0).max() > BENT
             self._steps_taken = max(self._steps_taken, 2 if is_bent else 1)

@@ -202,7 +202,7 @@ class KeyframePlayback(Playback):
         time: that of the playhead by default; positions: a pose (n, 2), by default the one that is shown.
         """
         session = self._editor.session
-        if session is None or self._editor.busy:
+        if session is None or self._editor.is_busy:
             return
         time = as_keyframe_time(self.time if time is None else time)
         if positions is None and self.is_previewing:
@@ -281,7 +281,7 @@ class KeyframePlayback(Playback):
 
     def _edit(self, label: str, edit: KeyframeEdit) -> None:
         session = self._editor.session
-        if session is None or self._editor.busy:
+        if session is None or self._editor.is_busy:
             return
         session.end_preview()
         self._editor.apply(label, edit)

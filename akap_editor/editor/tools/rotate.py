@@ -19,7 +19,7 @@ def pin_with_ring(context: ToolContext) -> int | None:
     None with a method that cannot rotate pins, and during a gesture.
     """
     session, pointer = context.session, context.pointer
-    if session is None or not session.supports_rotation or context.busy:
+    if session is None or not session.supports_rotation or context.is_busy:
         return None
     if "alt" not in context.held or pointer is None:
         return None

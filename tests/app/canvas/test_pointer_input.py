@@ -141,7 +141,7 @@ def test_panning_takes_the_canvas_along_and_edits_nothing(pinned, how):
         start, end, button=2 if how == "middle button" else 0, held=Key.space if how == "space" else None
     )
     np.testing.assert_allclose(pinned.place(end), place, atol=1e-9)
-    assert not pinned.editor.modified
+    assert not pinned.editor.is_modified
     assert pinned.tool == ("HandIdle" if how == "hand tool" else "PinsIdle")
 
 
@@ -223,7 +223,7 @@ def test_a_drag_goes_on_over_a_panel_and_ends_there(pinned):
 
 def test_a_press_that_began_on_a_panel_drags_no_pin(pinned):
     pinned.drag(PANEL, pinned.screen(pinned.pin_place(3)), pinned.screen(pinned.pin_place(2)))
-    assert not pinned.editor.modified
+    assert not pinned.editor.is_modified
     assert not pinned.editor.selection
 
 

@@ -213,7 +213,7 @@ CASES = {
     "Select All Pins": (nothing, lambda ui: ui.editor.selection == {1, 2, 3}),
     "Deselect": (one_selected, lambda ui: not ui.editor.selection),
     "Reset Pose": (bent, lambda ui: not ui.session.is_posed and len(ui.pins) == 3),
-    "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.is_posed and ui.editor.modified),
+    "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.is_posed and ui.editor.is_modified),
     "Remember the Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
     "Default Parameters": (
         lambda ui: ui.state.change_settings(
@@ -402,7 +402,7 @@ def test_view_switches(pinned, label, name):
     assert (pinned.screenshot() != picture)[top:bottom, left:right].any()
     pinned.panel(label)
     assert getattr(pinned.state, name) == before
-    assert not pinned.editor.modified
+    assert not pinned.editor.is_modified
 
 
 def test_the_rest_shape_switch_is_an_edit(pinned):
@@ -442,7 +442,7 @@ def test_the_pin_list_selects(pinned):
     assert pinned.editor.selection == {3}
     pin_in_list(pinned, 1)
     assert pinned.editor.selection == {1}
-    assert not pinned.editor.modified
+    assert not pinned.editor.is_modified
     pinned.panel("Remove selected")
     assert [pin.id for pin in pinned.pins] == [2, 3]
 

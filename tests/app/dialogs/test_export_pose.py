@@ -56,7 +56,7 @@ def test_enter_twice_writes_the_picture_as_it_is_seen(bent, tmp_path):
     expected = expected_picture(bent)
     np.testing.assert_array_equal(read_image(tmp_path / "figure-posed.png"), expected)
     assert bent.state.notice == f"Exported figure-posed.png, {expected.shape[1]} × {expected.shape[0]} pixels"
-    assert bent.editor.modified, "an export is not the drawing's file"
+    assert bent.editor.is_modified, "an export is not the drawing's file"
 
 
 def test_all_that_can_be_chosen_about_a_picture(bent, tmp_path):

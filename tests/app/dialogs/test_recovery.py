@@ -73,7 +73,7 @@ def test_recovering_brings_the_drawing_back_unsaved(bent, crash, restart, tmp_pa
     ui.dialog(TITLE, "Recover")
     assert ui.document.state.positions.tobytes() == bent.state.positions.tobytes()
     assert [pin.id for pin in ui.pins] == [1, 2, 3]
-    assert ui.editor.modified
+    assert ui.editor.is_modified
     assert ui.state.title == "figure * - akap-editor"
     assert ui.state.notice == "Recovered figure, which is not saved yet"
     files.autosave(ui.state)
@@ -94,7 +94,7 @@ def test_a_recovered_drawing_belongs_to_its_file(bent, crash, restart, tmp_path)
     ui.dialog(TITLE, "Recover")
     assert ui.state.title == "figure.akap * - akap-editor"
     ui.menu("File", "Save")
-    assert not ui.editor.modified
+    assert not ui.editor.is_modified
     assert (load(folder / "figure.akap").state.positions == bent.state.positions).all()
 
 

@@ -50,7 +50,7 @@ def test_a_recording_opens_in_its_final_pose_with_all_of_it_on_the_timeline(ui, 
     np.testing.assert_array_equal(again.state.positions, session.state.positions)
     assert list(again.recording.events) == list(session.recording.events)
     assert again.history.labels == session.history.labels
-    assert not ui.editor.modified
+    assert not ui.editor.is_modified
     assert ui.state.timeline.is_shown
     assert playback.snapshots[-1].state is again.state
     playback.scrub(0.0)

@@ -89,7 +89,7 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
     pinned.do(lambda hand: hand.yield_(3), settle=False)
     assert pinned.state.notice == "Exporting pose.png ..."
     gestures.move_pin(pinned.editor, 3, (x, y - 40))
-    while pinned.editor.moving:
+    while pinned.editor.is_moving:
         pinned.frame()
     np.testing.assert_allclose(pinned.pin_place(3), (x, y - 40), atol=0.25)
     assert pinned.state.is_busy

@@ -145,7 +145,7 @@ def test_a_new_drawing_bends_as_was_chosen_last_also_in_another_run(tmp_path, do
     files.show_document(second, document)
     assert second.document.state.settings == chosen
     assert second.editor.session.history.depth == 0
-    assert not second.editor.modified
+    assert not second.editor.is_modified
 
 
 def test_a_drawing_with_settings_of_its_own_keeps_them(document, drawing):

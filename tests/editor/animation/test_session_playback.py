@@ -21,7 +21,7 @@ def player(pinned, clock):
     clock.now += 100
     pinned.press(END)
     pinned.move((90.0, 60.0))
-    while pinned.editor.moving:
+    while pinned.editor.is_moving:
         pinned.advance()
         player.follow(pinned.session)
         clock.now += 0.05

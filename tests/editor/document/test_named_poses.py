@@ -41,10 +41,10 @@ def test_adding_and_deleting_poses_is_undone_and_modifies_the_document(posed):
     posed.session.mark_saved(None)
     gestures.delete_pose(posed.editor, "Pose 1")
     assert names(posed) == ["Bent"]
-    assert posed.editor.modified
+    assert posed.editor.is_modified
     posed.undo()
     assert names(posed) == ["Pose 1", "Bent"]
-    assert not posed.editor.modified
+    assert not posed.editor.is_modified
     posed.undo()
     assert names(posed) == ["Pose 1"]
 

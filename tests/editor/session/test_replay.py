@@ -100,7 +100,7 @@ def test_a_replay_yields_the_state_after_each_event_with_its_time(pinned, drawin
     pinned.move((90.0, 60.0))
     poses = [session.state.positions.tobytes()]
     first = len(session.recording.events)
-    while pinned.editor.moving:
+    while pinned.editor.is_moving:
         pinned.advance()
         poses.append(session.state.positions.tobytes())
     replayed = list(replay(parse_recording(session.recording.to_text()), drawing))

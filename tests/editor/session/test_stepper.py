@@ -55,7 +55,7 @@ def test_while_a_step_is_pending_the_pose_stays_and_the_pin_can_be_dragged(drive
     assert driver.session.step_is_ready()
     assert driver.editor.advance(0.0)
     assert driver.state.positions is not rest
-    while driver.editor.moving:
+    while driver.editor.is_moving:
         driver.advance()
         driver.editor.worker.work()
     np.testing.assert_allclose(driver.where(3), FARTHER, atol=0.25)
@@ -86,7 +86,7 @@ def test_a_settled_step_does_not_stop_a_drag_that_has_moved_meanwhile(driver):
     assert driver.session.last_step is not before
     driver.move((100.2, 30.0))  # less than the tolerance within which a pin has arrived
     driver.advance()
-    assert driver.editor.moving
+    assert driver.editor.is_moving
 
 
 def test_escape_while_a_step_is_pending_restores_to_the_last_bit(driver):
@@ -95,7 +95,7 @@ def test_escape_while_a_step_is_pending_restores_to_the_last_bit(driver):
     driver.key("escape")
     assert driver.everything == driver.before
     assert not driver.session.has_pending_step
-    assert not driver.editor.moving
+    assert not driver.editor.is_moving
     assert_replay_is_exact(driver)
 
 
@@ -134,7 +134,7 @@ def test_a_release_does_not_wait_for_the_step(driver):
     driver.editor.worker.work()
     driver.advance()
     assert event_names(driver)[count - 1 :] == ["step", "targets", "commit"]
-    while driver.editor.moving:
+    while driver.editor.is_moving:
         driver.advance()
         driver.editor.worker.work()
     np.testing.assert_allclose(driver.where(3), FARTHER, atol=0.25)
@@ -150,7 +150,7 @@ def test_a_step_that_fails_after_the_release_leaves_the_pose(driver, monkeypatch
     with pytest.raises(SolverError, match="singular"):
         driver.editor.advance(0.0)
     assert driver.state.positions is pose
-    assert not driver.editor.moving
+    assert not driver.editor.is_moving
 
 
 @pytest.mark.parametrize("after", ["cancelled", "released"])

@@ -130,7 +130,7 @@ def test_a_release_completes(pinned, enter):
     enter(pinned)
     pinned.release((70.0, 70.0), BUTTON.get(pinned.tool, "left"))
     assert pinned.tool == "PinsIdle"
-    assert not pinned.editor.busy
+    assert not pinned.editor.is_busy
 
 
 @pytest.mark.parametrize("enter", ENTER)
@@ -179,7 +179,7 @@ def test_a_gesture_is_one_entry_and_undo_and_redo_are_exact(pinned, enter, label
     pinned.redo()
     assert bits(pinned.state) == after
     assert pinned.depth == depth + 1
-    assert not pinned.editor.moving
+    assert not pinned.editor.is_moving
 
 
 @pytest.mark.parametrize(
@@ -215,13 +215,13 @@ def test_a_pin_sits_exactly_where_it_was_clicked(pinned):
 
 def test_adding_and_removing_pins_moves_no_vertex_even_while_it_settles(pinned):
     pinned.drag(END, (85.0, 65.0), steps=2)
-    assert pinned.editor.moving
+    assert pinned.editor.is_moving
     pose = pinned.state.positions.tobytes()
     pinned.click((40.0, 25.0))
     pinned.settle()
     assert pinned.state.positions.tobytes() == pose
     pinned.drag(HEAD, (25.0, 45.0), steps=2)
-    assert pinned.editor.moving
+    assert pinned.editor.is_moving
     pose = pinned.state.positions.tobytes()
     gestures.remove_pins(pinned.editor, [1, 2])
     pinned.settle()
@@ -304,7 +304,7 @@ def test_a_click_beside_the_drawing_clears_the_selection_and_shift_keeps_it(pinn
 def test_a_click_beside_the_drawing_does_not_stop_it_settling(pinned):
     pinned.drag(END, (88.0, 66.0), steps=2)
     pinned.click(BESIDE)
-    assert pinned.editor.moving
+    assert pinned.editor.is_moving
     pinned.settle()
     assert np.hypot(*np.subtract(pinned.where(3), (88.0, 66.0))) < 0.25
 

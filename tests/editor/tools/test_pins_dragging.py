@@ -11,7 +11,7 @@ HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
 def test_the_dragged_pin_arrives_and_the_others_hold(pinned):
     pinned.drag(END, (88.0, 66.0))
     pinned.settle()
-    assert not pinned.editor.moving
+    assert not pinned.editor.is_moving
     for pin, at in ((1, HEAD), (2, NECK), (3, (88.0, 66.0))):
         assert np.hypot(*np.subtract(pinned.where(pin), at)) < 0.25
 
@@ -51,7 +51,7 @@ def test_a_pin_keeps_its_distance_from_the_pointer(pinned):
 
 def test_a_pin_dragged_while_it_moves_starts_from_where_it_is(pinned):
     pinned.drag(END, (88.0, 66.0), steps=2)
-    assert pinned.editor.moving
+    assert pinned.editor.is_moving
     x, y = pinned.where(3)
     pinned.press((x, y))
     pinned.move((x + 4.0, y + 1.0))

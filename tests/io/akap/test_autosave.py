@@ -177,7 +177,7 @@ editor.open(load(sys.argv[1]))
 
 def frame():
     editor.advance()
-    autosave.watch(editor.session.document, editor.modified, editor.session.history.last)
+    autosave.watch(editor.session.document, editor.is_modified, editor.session.history.last)
 
 def act(kind, at):
     editor.handle_event(PointerEvent(kind, editor.camera.to_screen(at)))

@@ -51,7 +51,7 @@ def test_applying_is_one_gesture_that_keeps_the_pose(make_document, picture):
     state = editor.session.state
     assert state.positions.tobytes() == document.state.positions.tobytes()
     assert [(pin.id, pin.face, pin.weights.tolist()) for pin in state.pins] == [(3, 1, [0.5, 0.25, 0.25])]
-    assert not editor.moving
+    assert not editor.is_moving
     assert editor.session.pin_error() == 0
     assert editor.session.history.undo_label == "Apply Pose"
     editor.undo()
