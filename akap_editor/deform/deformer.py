@@ -4,11 +4,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..geometry.mesh import MeshPoints
-from ..geometry.validation import Floats, as_number
+from ..geometry.mesh import MeshPoints, TriMesh
+from ..geometry.operators import to_complex
+from ..geometry.validation import Complexes, Floats, as_number, as_points
+
+MAX_REACH = 1e9  # a target farther from the drawing leaves a pose no digits; as a multiple of √area
 
 
 @dataclass(frozen=True)
@@ -17,7 +21,8 @@ class StepReport:
 
     seconds; substeps; energy: Killing energy of the last field at the pose it was made for, square pixels, 0
     without a field; flipped: faces with a negative area afterwards; pin_error: largest distance of a pin from
-    its target, pixels; blocked: whether the last move was cut short because it would have flipped a face.
+    its target, pixels; blocked: whether the last move was cut short because it would have flipped a face;
+    unfinished: whether the step ended before the targets because they are too far for one step.
     """
 
     seconds: float
@@ -26,6 +31,7 @@ class StepReport:
     flipped: int
     pin_error: float
     blocked: bool = False
+    unfinished: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,3 +90,19 @@ class Deformer(Protocol):
 
         Raises InputError and SolverError.
         """
+
+
+def as_targets(value: ArrayLike, count: int, mesh: TriMesh, pose: Complexes) -> Complexes:
+    """Targets (count, 2) of pins as complex numbers (count,), for a step that starts from ``pose`` (n,).
+
+    Raises InputError on another shape, on numbers that are not finite, and on targets so far away that the
+    vertices around a pin could no longer be told apart.
+    """
+    targets = to_complex(as_points(value, "targets", count))
+    distance = np.abs(targets - pose.mean()).max(initial=0.0)
+    if not distance <= MAX_REACH * mesh.length:
+        raise InputError(
+            f"targets: expected points within {MAX_REACH * mesh.length:.3g} pixels of the drawing, "
+            f"got one {distance:.3g} away"
+        )
+    return targets

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from akap_editor.deform.methods import make_deformer, method_names, presets_of
-from akap_editor.errors import AkapError, InputError
+from akap_editor.errors import AkapError, InputError, SolverError
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
 from tests.support import shapes
 
@@ -205,6 +205,33 @@ def test_no_argument_leads_to_numbers_that_are_not_finite(case, mesh):
             assert np.isfinite(stepped(case, mesh, points, collapsed, targets)).all()
     except AkapError:
         pass  # says so instead; the caller keeps the last good pose
+
+
+@pytest.mark.parametrize("shape_name", ["star", "tied islands"])
+@pytest.mark.parametrize("distance", [30.0, 1e8])
+def test_a_step_ends_however_far_the_targets_are(case, mesh, distance):
+    """All pins in one direction, one of them alone, all in one place, and turned and moved together."""
+    points, pose, targets = scene(mesh)
+    far = distance * mesh.length
+    alone = targets.copy()
+    alone[0, 0] += far
+    turned = (targets - targets[0]) @ [[0.0, 1.0], [-1.0, 0.0]] + [far, -far]
+    for goals in (targets + far, alone, np.tile(targets[:1] + far, (len(targets), 1)), turned):
+        with np.errstate(all="ignore"):
+            try:
+                result = deformer_of(case, mesh, points).step(pose, goals)
+            except SolverError:
+                continue  # the caller keeps the last good pose
+        assert np.isfinite(result.positions).all()
+        assert result.report.substeps < 2000
+
+
+def test_targets_beyond_all_digits_are_refused(case):
+    mesh = shapes.SHAPES["bar"]
+    points, pose, targets = scene(mesh)
+    for value in (1e155, -1e300):
+        with pytest.raises(InputError, match="targets: expected points within .* pixels of the drawing"):
+            deformer_of(case, mesh, points).step(pose, np.full_like(targets, value))
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,9 @@ from ...geometry.mesh import MeshPoints, TriMesh, signed_areas
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints, as_indices, as_number, as_numbers, as_points
 from ..cholesky import SparseCholesky
-from ..deformer import Deformer, StepReport, StepResult
+from ..deformer import Deformer, StepReport, StepResult, as_targets
 from .killing_field import KillingSystem
-from .log_spiral import LogSpirals, linear_flow
+from .log_spiral import LogSpirals, linear_flow, spiral_factor
 from .pin_rotation import PinRotationConstraints
 from .preconditioned_cholesky import dot
 from .rest_energy import SymmetricDirichlet, descend
@@ -28,6 +28,8 @@ _SHORTEST = 2.0**-10  # share of a substep below which a move that would flip a 
 _MAX_TURN = 0.1  # radians that a pin turns in one substep, at most
 _ARRIVED = 1e-4  # share of √area: pins nearer than this to their targets are left to the rest memory alone
 _RETRIES = 3  # of a substep that was blocked
+_MAX_SUBSTEPS = 400  # of one step; farther targets are not reached
+_MAX_BLOCKED = 10  # substeps in a row that end blocked, after their retries; the rest would be, too
 _CORRECTIONS = 2  # most of them in one step
 _LONGEST = 4.0  # times its field: as far as a correction may go
 _LEVER = 10.0  # times the velocity of a pin: as far as others may go where that is more than √area
@@ -126,7 +128,8 @@ class AkapDeformer(Deformer):
         self._newton: SparseCholesky | None = None
         self._stiffness = stiff
         self._exact_system: KillingSystem | None = None
-        self._flow = LogSpirals(mesh).flow if trajectory == "spiral" else linear_flow
+        self._has_spirals = trajectory == "spiral"
+        self._flow = LogSpirals(mesh).flow if self._has_spirals else linear_flow
         self._rest = SymmetricDirichlet(mesh, stiff)
         self._faces, self._least_areas = mesh.faces.copy(), _THINNEST * mesh.rest_areas
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
@@ -181,30 +184,18 @@ class AkapDeformer(Deformer):
         """
         started = time.perf_counter()
         pose = to_complex(as_points(positions, "positions", len(self._mesh.vertices)))
-        goals = to_complex(as_points(targets, "targets", len(self._points)))
+        goals = as_targets(targets, len(self._points), self._mesh, pose)
         wanted = np.full(len(goals), np.nan)
         if angles is not None:
             wanted = as_numbers(angles, "angles", len(goals), allow_nan=True)
         if (np.isfinite(wanted) != self._holding).any():
             self._hold(np.isfinite(wanted))
         way = [_Substep(pose, np.zeros_like(pose), 1.0, pose)]
+        unfinished = False
         if len(goals):
-            starts = self._pin_positions(pose)
-            turns = self._still_to_turn(pose, wanted)
-            largest = float(np.nan_to_num(np.abs(turns)).max())
-            count = max(
-                1,
-                math.ceil(np.abs(goals - starts).max() / self._max_length),
-                math.ceil(largest / _MAX_TURN),
-            )
-            for index in range(1, count + 1):
-                share = index / count
-                places = goals if index == count else starts + share * (goals - starts)
-                aims = _PinGoals(places, wanted - (1 - share) * turns)
-                for _ in range(1 + _RETRIES):  # where faces stood in the way, they were opened
-                    way.append(self._substep(way[-1].end, aims))
-                    if way[-1].share == 1:
-                        break
+            if self._count_substeps(pose, goals, wanted) > _MAX_SUBSTEPS:
+                way += self._rigid_motion(pose, goals)
+            unfinished = self._follow(way, goals, wanted)
             del way[0]
         way[-1] = replace(way[-1], end=self._corrected(way[-1], pose, goals))
         result, field = to_points(way[-1].end.copy()), way[-1].field
@@ -218,9 +209,50 @@ class AkapDeformer(Deformer):
                 flipped=int((signed_areas(result, self._mesh.faces) <= 0).sum()),
                 pin_error=float(np.abs(goals - self._pin_positions(way[-1].end)).max(initial=0.0)),
                 blocked=way[-1].share < 1,
+                unfinished=unfinished,
             ),
             flow=lambda t: to_points(self._along(way, t)),
         )
+
+    def _count_substeps(self, pose: Complexes, goals: Complexes, angles: Floats) -> int:
+        """The number of substeps from a pose (n,) to goals and angles (k,) of the pins."""
+        travel = float(np.abs(goals - self._pin_positions(pose)).max())
+        rotation = float(np.nan_to_num(np.abs(self._still_to_turn(pose, angles))).max())
+        return max(1, math.ceil(travel / self._max_length), math.ceil(rotation / _MAX_TURN))
+
+    def _rigid_motion(self, pose: Complexes, goals: Complexes) -> list[_Substep]:
+        """One exact substep that carries the drawing along with all pins, if that brings them much nearer.
+
+        The rotation fits pins (k,) and goals (k,) by least squares; straight steps have no rotation that does
+        not also grow.
+        """
+        pins = self._pin_positions(pose)
+        center, drift = pins.mean(), goals.mean() - pins.mean()
+        fit = np.vdot(pins - center, goals - goals.mean())
+        angle = float(np.angle(fit)) if self._has_spirals and fit != 0 else 0.0
+        field = 1j * angle * (pose - center) + drift / complex(spiral_factor(np.array([1j * angle]))[0])
+        field[self._held] = 0.0
+        end = self._flow(pose, field, 1.0)
+        before, after = (np.abs(goals - self._pin_positions(each)).max() for each in (pose, end))
+        return [_Substep(pose, field, 1.0, end)] if after < 0.5 * before else []
+
+    def _follow(self, way: list[_Substep], goals: Complexes, angles: Floats) -> bool:
+        """Append substeps towards goals and angles (k,); whether there are more than one step may have."""
+        pose = way[-1].end
+        starts, turns = self._pin_positions(pose), self._still_to_turn(pose, angles)
+        count, blocked = self._count_substeps(pose, goals, angles), 0
+        for index in range(1, min(count, _MAX_SUBSTEPS) + 1):
+            share = index / count
+            places = goals if index == count else starts + share * (goals - starts)
+            aims = _PinGoals(places, angles - (1 - share) * turns)
+            for _ in range(1 + _RETRIES):  # where faces stood in the way, they were opened
+                way.append(self._substep(way[-1].end, aims))
+                if way[-1].share == 1:
+                    break
+            blocked = blocked + 1 if way[-1].share < 1 else 0
+            if blocked == _MAX_BLOCKED:
+                return index < count
+        return count > _MAX_SUBSTEPS
 
     def _along(self, way: list[_Substep], t: float) -> Complexes:
         """The pose at time ``t`` of a step; what the rest memory added comes in gradually."""
@@ -302,7 +334,8 @@ class AkapDeformer(Deformer):
         farthest = max(self._mesh.length, _LEVER * float(np.abs(velocities).max()))
         t = 1.0
         while t >= _SHORTEST:
-            moved = self._flow(pose, field, t)
+            with np.errstate(over="ignore", invalid="ignore"):  # then not finite, and so not near
+                moved = self._flow(pose, field, t)
             near = np.abs(moved - pose).max() <= farthest
             if near and _keeps_faces(pose, moved, self._faces, self._least_areas):
                 return moved, t

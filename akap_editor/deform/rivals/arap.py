@@ -31,7 +31,8 @@ from .rest_based import RestBasedDeformer, product
 
 Rotations = Literal["faces", "spokes-and-rims"]
 
-_MOST = 100_000  # iterations of one step, whatever happens
+_MOST = 100_000  # iterations that can be asked for
+_MOST_TO_CONVERGE = 10_000  # pins that are crowded into a point shrink the rest ever more slowly
 _SAME_PIN = 1e-9  # share of the largest compliance below which pins say the same thing twice
 
 
@@ -41,7 +42,7 @@ class ArapDeformer(RestBasedDeformer):
     mesh: the rest pose.
     iterations: most pairs of a local and a global step in one step; the pose is the first guess.
     tolerance: share of the square root of the mesh's area; once no vertex moves farther, the step ends.
-    converge: iterate until then, whatever ``iterations`` says.
+    converge: iterate until then, but at most 10,000 times, whatever ``iterations`` says.
     rotations: "faces", as in the paper, or "spokes-and-rims".
     Pins are exactly at their targets where these do not contradict one another; the energy may flip faces.
     Raises InputError on settings out of range.
@@ -56,7 +57,7 @@ class ArapDeformer(RestBasedDeformer):
         rotations: Rotations = "faces",
     ) -> None:
         wanted = int(as_number(iterations, "iterations", 1, _MOST))
-        self._iterations = _MOST if converge else wanted
+        self._iterations = _MOST_TO_CONVERGE if converge else wanted
         if rotations not in ("faces", "spokes-and-rims"):
             raise InputError(f"rotations: expected 'faces' or 'spokes-and-rims', got {rotations!r}")
         self._tolerance = as_number(tolerance, "tolerance", 0, 1) * mesh.length

@@ -12,7 +12,7 @@ from ...errors import SolverError
 from ...geometry.mesh import MeshPoints, TriMesh, signed_areas
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints, as_indices, as_points
-from ..deformer import Deformer, StepReport, StepResult
+from ..deformer import Deformer, StepReport, StepResult, as_targets
 
 _SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
 
@@ -50,7 +50,7 @@ class RestBasedDeformer(Deformer, ABC):
         """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2); see `Deformer.step`."""
         started = time.perf_counter()
         pose = to_complex(as_points(positions, "positions", len(self._rest)))
-        goals = to_complex(as_points(targets, "targets", len(self._pins)))
+        goals = as_targets(targets, len(self._pins), self._mesh, pose)
         moved = self._moved(pose, goals) if len(goals) else pose
         moved = np.where(self._held, pose, moved)
         if not np.isfinite(moved).all():

@@ -8,6 +8,7 @@ from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.errors import InputError, SolverError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
+from akap_editor.geometry.operators import to_complex, to_points
 from akap_editor.meshing.outline import outlines
 from akap_editor.meshing.triangulate import triangulate
 from akap_editor.resources import bundled_drawings
@@ -278,3 +279,36 @@ def test_denser_mesh_moves_nearly_alike():
         pose = deformer_with(mesh, mesh.locate(where)).step(mesh.vertices, goals).positions
         poses.append(mesh.evaluate(mesh.locate(coarse.vertices), pose))
     assert np.abs(poses[0] - poses[1]).max() < 1.0
+
+
+@pytest.mark.parametrize("parameters", [{}, {"memory": 1.0}, {"trajectory": "linear"}])
+def test_a_long_way_together_is_one_exact_rigid_motion(parameters):
+    mesh = shapes.SHAPES["bar"]
+    points = shapes.random_pins(mesh, 3)
+    deformer = AkapDeformer(mesh, **parameters)
+    deformer.set_pins(points)
+    angle = 0.0 if "trajectory" in parameters else 2.5
+    turn = np.exp(1j * angle)
+    moved = to_points(turn * to_complex(mesh.vertices) + (3e6 - 1e6j))
+    result = deformer.step(mesh.vertices, mesh.evaluate(points, moved))
+    np.testing.assert_allclose(result.positions, moved, atol=1e-6)
+    assert result.report.substeps <= 2
+    assert not result.report.unfinished
+    half_way = to_complex(result.at(0.5))
+    edges = mesh.edges.T
+    lengths = np.abs(half_way[edges[0]] - half_way[edges[1]])
+    rest = np.abs(np.subtract(*to_complex(mesh.vertices)[edges]))
+    np.testing.assert_allclose(lengths, rest, rtol=1e-6)
+
+
+def test_a_step_that_cannot_reach_its_targets_says_so():
+    mesh = shapes.SHAPES["bar"]
+    points = shapes.random_pins(mesh, 3)
+    deformer = AkapDeformer(mesh)
+    deformer.set_pins(points)
+    targets = mesh.evaluate(points, mesh.vertices)
+    targets[0] += 1e4 * mesh.length
+    report = deformer.step(mesh.vertices, targets).report
+    assert report.unfinished
+    assert report.pin_error > 1e3 * mesh.length
+    assert report.flipped == 0

@@ -83,3 +83,14 @@ def test_stopped_pins_hold_where_they_are_but_moving_and_arrived_ones_keep_their
     session.stop_motion()
     hold_stopped_pins(session)
     np.testing.assert_allclose(session.state.targets, session.pin_positions())
+
+
+@pytest.mark.parametrize("value", [1e155, -1e300, 1e7])
+def test_targets_that_no_drawing_reaches_are_refused(drawing, value):
+    session = Session(new_document(drawing), Ticks())
+    session.begin("Add pin")
+    add_pin(session, (20.0, 40.0))
+    state = session.state
+    with pytest.raises(InputError, match="targets: expected points within .* pixels"):
+        session.apply(SetTargets({1: (value, 40.0)}))
+    assert session.state is state

@@ -17,6 +17,7 @@ from .edit import Edit, Effect, Json, ReplayTarget
 
 Target = tuple[float, float]
 REST_TOLERANCE = 1e-6  # pixels between the recorded and the actual rest position of a pin on an equal mesh
+MAX_TARGET_DISTANCE = 1000.0  # times √area: a drawing would travel there for minutes
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +96,12 @@ class SetTargets(Edit):
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         _check_ids("targets", self.targets, state.pins)
         points = as_points(list(self.targets.values()), "targets", len(self.targets))
+        limit = MAX_TARGET_DISTANCE * drawing.mesh.length
+        if np.abs(points).max(initial=0.0) > limit:
+            raise InputError(
+                f"targets: expected points within {limit:,.0f} pixels of the picture's corner, "
+                f"got {points[np.abs(points).max(axis=1).argmax()].tolist()}"
+            )
         targets = dict(zip(self.targets, points, strict=True))
         pins = (replace(pin, target=targets.get(pin.id, pin.target)) for pin in state.pins)
         return replace(state, pins=tuple(pins))
