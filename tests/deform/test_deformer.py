@@ -230,7 +230,7 @@ def test_targets_beyond_all_digits_are_refused(case):
     mesh = shapes.SHAPES["bar"]
     points, pose, targets = scene(mesh)
     for value in (1e155, -1e300):
-        with pytest.raises(InputError, match="targets: expected points within .* pixels of the drawing"):
+        with pytest.raises(InputError, match=r"targets: expected points within .* pixels of the drawing"):
             deformer_of(case, mesh, points).step(pose, np.full_like(targets, value))
 
 

@@ -91,6 +91,6 @@ def test_targets_that_no_drawing_reaches_are_refused(drawing, value):
     session.begin("Add pin")
     add_pin(session, (20.0, 40.0))
     state = session.state
-    with pytest.raises(InputError, match="targets: expected points within .* pixels"):
+    with pytest.raises(InputError, match=r"targets: expected points within .* pixels"):
         session.apply(SetTargets({1: (value, 40.0)}))
     assert session.state is state
