@@ -81,7 +81,7 @@ class Window:
         self.state = AppState.remembering(preferences or Preferences(), self.wake)
         self.state.autosave = autosave
         if autosave is not None:
-            self.state.part(RecoveryDialog).copies = autosave.lost()
+            self.state.part(RecoveryDialog).copies = autosave.claim_lost_copies()
         self.state.part(FileDialog).uses_native = has_native_dialogs() and not null
         self.frames = 0
         self.after_draw: list[Callable[[], None]] = []

@@ -1,17 +1,17 @@
-"""What a file is, by its content, and whether it is sound."""
+"""Inspects files of all kinds: what they are, by their content, and whether they are sound."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..editor.session.recording import parse_recording
 from ..errors import InputError
 from ..geometry.distortion import distortion
 from ..meshing.picture_mesh import mesh_picture
 from .akap.json_records import pairs, parse_record, require
 from .akap.pose import POSE_FORMAT
 from .akap.project import decode_document
+from .akap.recording import decode_recording
 from .akap.state_records import read_pins
 from .atomic import read_file
 from .images import decode_image, has_transparency
@@ -19,7 +19,7 @@ from .mesh_files.soundness import count_parts, decode_mesh, mesh_defects
 
 Facts = dict[str, Any]
 
-_PICTURES = {
+_PICTURE_KINDS = {  # by their first bytes
     b"\x89PNG": "PNG",
     b"\xff\xd8\xff": "JPEG",
     b"RIFF": "WebP",
@@ -28,7 +28,7 @@ _PICTURES = {
     b"II*\0": "TIFF",
     b"MM\0*": "TIFF",
 }
-_SUFFIXES = {
+_KIND_OF_SUFFIX = {
     ".akap": "drawing",
     ".akaprec": "recording",
     **dict.fromkeys((".obj", ".off", ".glb", ".json"), "mesh"),
@@ -38,8 +38,10 @@ _SUFFIXES = {
 
 @dataclass(frozen=True)
 class Inspection:
-    """kind: "picture", "drawing", "pose", "recording", "mesh" or "unknown"; facts: by name; problems:
-    sentences, none where the file is sound.
+    """The result of an inspection.
+
+    kind: "picture", "drawing", "pose", "recording", "mesh" or "unknown"; facts: values by name; problems:
+    one line each, none if the file is sound.
     """
 
     kind: str
@@ -48,14 +50,14 @@ class Inspection:
 
     @property
     def sound(self) -> bool:
-        """Whether all is well."""
+        """Whether the file has no problems."""
         return not self.problems
 
 
 def inspect(path: str | Path) -> Inspection:
-    """What a file is and whether it is sound. Raises InputError where it cannot be read at all."""
+    """Inspect a file. Raises FileError if it cannot be read at all."""
     data = read_file(path, "a file")
-    kind = _kind(data) or _SUFFIXES.get(Path(path).suffix.lower(), "unknown")
+    kind = _kind_by_content(data) or _KIND_OF_SUFFIX.get(Path(path).suffix.lower(), "unknown")
     if kind == "unknown":
         came = (
             f"expected a picture, a drawing, a recording or a mesh, got something that begins {data[:12]!r}"
@@ -68,9 +70,9 @@ def inspect(path: str | Path) -> Inspection:
     return Inspection(kind, facts, problems)
 
 
-def _kind(data: bytes) -> str | None:
-    """By its first bytes."""
-    if any(data.startswith(magic) for magic in _PICTURES):
+def _kind_by_content(data: bytes) -> str | None:
+    """The kind of a file by its first bytes, None if they do not tell."""
+    if any(data.startswith(magic) for magic in _PICTURE_KINDS):
         return "picture"
     if data.startswith(b"PK"):
         return "drawing"
@@ -83,14 +85,14 @@ def _kind(data: bytes) -> str | None:
 
 def _inspect_picture(data: bytes) -> tuple[Facts, list[str]]:
     image = decode_image(data)
-    kind = next(name for magic, name in _PICTURES.items() if data.startswith(magic))
+    kind = next(name for magic, name in _PICTURE_KINDS.items() if data.startswith(magic))
     facts: Facts = {"format": kind, "width": image.shape[1], "height": image.shape[0]}
     facts["transparent"] = has_transparency(image)
     try:
-        cut = mesh_picture(image[..., 3])
+        meshed = mesh_picture(image[..., 3])
     except InputError as error:
         return facts, [str(error)]
-    facts |= {"parts": cut.parts, "holes": cut.holes, "specks left out": cut.specks}
+    facts |= {"parts": meshed.parts, "holes": meshed.holes, "specks left out": meshed.specks}
     return facts, []
 
 
@@ -131,18 +133,15 @@ def _inspect_pose(data: bytes) -> tuple[Facts, list[str]]:
 
 
 def _inspect_recording(data: bytes) -> tuple[Facts, list[str]]:
-    try:
-        recording = parse_recording(data.decode("utf-8"))
-    except UnicodeDecodeError as error:
-        raise InputError("expected a recording, which is text, got other bytes") from error
-    done = [event["do"] for event in recording.events]
+    recording = decode_recording(data)
+    actions = [event["do"] for event in recording.events]
     facts = {
         "drawing": recording.header.get("name"),
         "vertices": recording.header.get("vertices"),
         "seconds": recording.duration,
-        "events": len(done),
-        "gestures": done.count("commit"),
-        "steps": done.count("step"),
+        "events": len(actions),
+        "gestures": actions.count("commit"),
+        "steps": actions.count("step"),
         "drawing inside": "akap" in recording.header,
     }
     return facts, []

@@ -55,7 +55,7 @@ class RecoveryDialog:
         imgui.same_line()
         if widgets.button("Later") or widgets.cancel_pressed():
             self._drop(copy)
-            copy.leave()
+            copy.release()
         imgui.end_popup()
 
     def _read_first(self, state: AppState, pixels: float) -> tuple[RecoveryCopy, Document, Picture] | None:
@@ -74,7 +74,7 @@ class RecoveryDialog:
             )
         except AkapError as error:
             self.copies.remove(copy)
-            copy.leave()
+            copy.release()
             state.error = f"Unsaved work could not be recovered: {error}"
             return None
         return copy, document, picture
@@ -88,7 +88,7 @@ class RecoveryDialog:
         state.autosave.adopt(copy, document)
         for other in self.copies:
             if other is not copy:
-                other.leave()
+                other.release()
         self.copies, self._content = [], None
         state.notice = f"Recovered {document.drawing.name}, which is not saved yet"
 

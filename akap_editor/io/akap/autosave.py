@@ -1,11 +1,11 @@
-"""Copies of unsaved work in the user's state folder, so that a crash costs a minute at most."""
+"""Recovery copies of unsaved work in the user's state folder, so that a crash costs at most a minute."""
 
 import json
 import os
 import secrets
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,32 +20,30 @@ from .archive import Archive
 from .json_records import parse_record, require
 from .project import PROJECT_SUFFIX, decode_document, encode_document
 
-FOLDER_VARIABLE = "AKAP_EDITOR_STATE"  # environment: another folder, e.g. for tests
-SECONDS = 60.0
-GESTURES = 10
-ORIGIN = "autosave.json"  # an entry that .akap files do not have: where the drawing belongs
+FOLDER_VARIABLE = "AKAP_EDITOR_STATE"  # environment variable with another folder, e.g. for tests
+COPY_SECONDS = 60.0
+COPY_GESTURES = 10
+ORIGIN_ENTRY = "autosave.json"  # only in recovery copies: the path of the document's own file
 MAX_ORIGIN_BYTES = 2**16
 
 
 def state_folder() -> Path:
-    """Where the copies of the user who runs the program are."""
+    """The folder of the recovery copies."""
     folder = os.environ.get(FOLDER_VARIABLE) or platformdirs.user_state_dir("akap-editor", appauthor=False)
     return Path(folder) / "autosave"
 
 
 @dataclass(frozen=True)
 class RecoveryCopy:
-    """A copy that belongs to this program as long as it holds the lock; a dead one's is free."""
+    """An .akap file with unsaved work. The program that holds its lock owns it; a crash releases the lock."""
 
     path: Path
     lock: FileLock
 
     @classmethod
     def claim(cls, path: Path) -> "RecoveryCopy | None":
-        """The copy at ``path``, unless another running program has it. Raises OSError."""
-        lock = FileLock(
-            path.with_suffix(".lock"), thread_local=False
-        )  # one thread takes, another may free it
+        """Lock the copy at ``path``; None if another running program owns it. Raises OSError."""
+        lock = FileLock(path.with_suffix(".lock"), thread_local=False)  # may be released in another thread
         try:
             lock.acquire(blocking=False)
         except Timeout:
@@ -54,29 +52,29 @@ class RecoveryCopy:
 
     @property
     def time(self) -> float:
-        """When it was written, in seconds of `time.time`."""
+        """When the copy was written, in seconds of `time.time`."""
         return self.path.stat().st_mtime
 
     def read(self) -> Document:
-        """The document; ``path`` is that of the file it belongs to, if any. Raises InputError."""
+        """The document, with the ``path`` of its own file, None if it was never saved. Raises InputError."""
         data = read_file(self.path, "a copy of a drawing")
         with file_errors("recover", self.path):
             document = decode_document(data)
-            origin = require(parse_record(Archive(data).read(ORIGIN, MAX_ORIGIN_BYTES)), "path", str)
+            origin = require(parse_record(Archive(data).read(ORIGIN_ENTRY, MAX_ORIGIN_BYTES)), "path", str)
         return replace(document, path=Path(origin) if origin else None)
 
     def write(self, document: Document) -> None:
         """Replace the copy. Raises InputError."""
         origin = json.dumps({"path": str(document.path.absolute()) if document.path else ""})
-        write_atomic(self.path, encode_document(document, [(ORIGIN, origin.encode(), True)]))
+        write_atomic(self.path, encode_document(document, [(ORIGIN_ENTRY, origin.encode(), True)]))
 
     def discard(self) -> None:
-        """Remove it."""
+        """Delete the copy."""
         self.path.unlink(missing_ok=True)
-        self.leave()
+        self.release()
 
-    def leave(self) -> None:
-        """Leave it to the next program that looks for copies."""
+    def release(self) -> None:
+        """Leave the copy to the next program that looks for copies."""
         self.lock.release()
         if not self.path.exists():
             with suppress(OSError):
@@ -84,81 +82,87 @@ class RecoveryCopy:
 
 
 class Autosave:
-    """Keeps a copy of the open document as long as it has unsaved changes.
+    """Keeps a recovery copy of the open document as long as it has unsaved changes.
 
-    `watch` is told of the document all the time. It has it written on another thread, a minute after the
-    first change that is not in the copy, or at every tenth gesture. Several programs may share a folder: each
-    has a file of its own, locked as long as it runs.
-    clock: seconds that never fall.
+    A copy is written in another thread, a minute after the first change that is not in the copy, or at every
+    tenth gesture. Several programs may share a folder: each has its own copy, which it locks while it runs.
+    clock: seconds that never decrease; worker: has one thread, so that no job overtakes another.
     """
 
-    def __init__(self, folder: Path | None = None, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        folder: Path | None = None,
+        clock: Callable[[], float] = time.monotonic,
+        worker: Executor | None = None,
+    ) -> None:
         self._folder = folder or state_folder()
         self._clock = clock
-        self._worker = ThreadPoolExecutor(1, "autosave")  # one job after the other, so none overtakes
+        self._worker = worker or ThreadPoolExecutor(1, "autosave")
         self._job: Future[None] | None = None
-        self._copy: RecoveryCopy | None = None  # belongs to the worker
-        self._has_copy = False  # or will have, once the worker is done
-        self._kept: EditState | None = None  # the state in the copy
-        self._changed_at: float | None = None  # since when there is something that is not in the copy
-        self._gestures = 0
-        self._last: object = None
+        self._copy: RecoveryCopy | None = None  # used in the worker's thread only
+        self._has_copy = False  # or will have when the worker is done
+        self._copied_state: EditState | None = None
+        self._changed_at: float | None = None  # time of the first change that is not in the copy
+        self._gesture_count = 0  # since the last copy
+        self._last_gesture: object = None
 
     def watch(self, document: Document | None, modified: bool, gesture: object = None) -> None:
-        """Take notice of the document; called about once a frame, takes microseconds.
+        """Start a copy if one is due. Called about once a frame; takes microseconds.
 
-        modified: whether there are unsaved changes; gesture: another object after each gesture.
-        Raises InputError, once, where the last copy could not be written; the next try is a minute later.
+        modified: whether there are unsaved changes; gesture: an object that differs after each gesture.
+        Raises InputError once if the last copy could not be written; the next attempt is a minute later.
         """
         if document is None or not modified:
-            self._forget()
-            self._last = gesture
+            self._discard_copy()
+            self._last_gesture = gesture
             return
-        if gesture is not self._last:
-            self._last = gesture
-            self._gestures += 1
+        if gesture is not self._last_gesture:
+            self._last_gesture = gesture
+            self._gesture_count += 1
         if self._job is not None and self._job.done():
             job, self._job = self._job, None
             self._check(job)
-        if document.state is self._kept:
+        if document.state is self._copied_state:
             return
         now = self._clock()
         self._changed_at = now if self._changed_at is None else self._changed_at
-        if self._job is None and (now - self._changed_at >= SECONDS or self._gestures >= GESTURES):
+        is_due = now - self._changed_at >= COPY_SECONDS or self._gesture_count >= COPY_GESTURES
+        if self._job is None and is_due:
             self._job, self._has_copy = self._worker.submit(self._write, document), True
-            self._kept, self._changed_at, self._gestures = document.state, None, 0
+            self._copied_state, self._changed_at, self._gesture_count = document.state, None, 0
+
+    def rescue(self, document: Document) -> None:
+        """Write the copy now and release it, because the program is about to crash. Raises InputError."""
+        self._check(self._worker.submit(self._write, document))
+        self._worker.submit(self._release).result()
+
+    def close(self) -> None:
+        """Delete the copy, because the program ends normally."""
+        self._discard_copy()
+        self._worker.shutdown()
 
     def _check(self, job: "Future[None]") -> None:
         try:
             job.result()
         except (OSError, InputError, NotImplementedError) as error:
-            self._kept = None
-            raise InputError(f"unsaved work is not protected against a crash: {error}") from error
+            self._copied_state = None
+            raise InputError(f"Unsaved work is not protected against a crash. {error}") from error
 
-    def _forget(self) -> None:
-        """What is in the copy is saved elsewhere, or not wanted."""
+    def _discard_copy(self) -> None:
+        """Delete the copy in the worker's thread, because its content is saved or not wanted."""
         if self._has_copy:
             self._worker.submit(self._discard)
         self._has_copy = False
-        self._job = self._kept = self._changed_at = None
-        self._gestures = 0
+        self._job = self._copied_state = self._changed_at = None
+        self._gesture_count = 0
 
-    def rescue(self, document: Document) -> None:
-        """Write the copy now, because the program is about to end by mistake. Raises InputError."""
-        self._check(self._worker.submit(self._write, document))
-
-    def close(self) -> None:
-        """The program ends as it should, and leaves no copy."""
-        self._forget()
-        self._worker.shutdown()
-
-    # -- on the worker ---------------------------------------------------------------------------------------
+    # -- in the worker's thread ------------------------------------------------------------------------------
 
     def _write(self, document: Document) -> None:
         if self._copy is None:
             self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
             self._copy = RecoveryCopy.claim(self._folder / f"{secrets.token_hex(8)}{PROJECT_SUFFIX}")
-            assert self._copy is not None, "nobody else has this name"
+            assert self._copy is not None, "no other program has this name"
         self._copy.write(document)
 
     def _discard(self) -> None:
@@ -166,25 +170,30 @@ class Autosave:
             self._copy.discard()
             self._copy = None
 
+    def _release(self) -> None:
+        if self._copy is not None:
+            self._copy.release()
+            self._copy = None
+
     # -- after a crash ---------------------------------------------------------------------------------------
 
-    def lost(self) -> list[RecoveryCopy]:
-        """The copies of programs that have ended by mistake, the newest first.
+    def claim_lost_copies(self) -> list[RecoveryCopy]:
+        """The copies of programs that have crashed, the newest first.
 
-        They belong to this program until it calls `adopt`, or `RecoveryCopy.discard` or `RecoveryCopy.leave`.
+        This program owns them until it calls `adopt`, or `RecoveryCopy.discard` or `RecoveryCopy.release`.
         """
         copies = []
-        with suppress(OSError, NotImplementedError):  # without a folder, or without locks, there is nothing
+        with suppress(OSError, NotImplementedError):  # there is no folder, or the file system has no locks
             for path in self._folder.glob(f"*{PROJECT_SUFFIX}"):
                 copy = RecoveryCopy.claim(path)
                 if copy is not None and path.exists():
                     copies.append(copy)
                 elif copy is not None:
-                    copy.leave()
+                    copy.release()
         return sorted(copies, key=lambda copy: copy.time, reverse=True)
 
     def adopt(self, copy: RecoveryCopy, document: Document) -> None:
-        """A lost copy becomes the one of this program, and holds what was read from it."""
-        self._forget()
+        """Continue a lost copy as this program's own; ``document`` is what was read from it."""
+        self._discard_copy()
         self._worker.submit(setattr, self, "_copy", copy)
-        self._has_copy, self._kept = True, document.state
+        self._has_copy, self._copied_state = True, document.state

@@ -1,4 +1,4 @@
-"""The .pose.json file: pins and pose, to be carried to another session on the same drawing."""
+"""Reads and writes .pose.json files, which carry pins and pose to another session on the same drawing."""
 
 import json
 import reprlib
@@ -18,12 +18,12 @@ from .state_records import check_state, read_pins
 POSE_SUFFIX = ".pose.json"
 POSE_FORMAT = "akap-pose"
 POSE_VERSION = 1
-MAX_POSE_BYTES = 2**24  # room for 400 000 vertices
+MAX_POSE_BYTES = 2**24  # enough for 400,000 vertices
 
 
 @dataclass(frozen=True, eq=False)
 class SavedPose:
-    """pins: where they hold the drawing; positions: (n, 2) float64, of the mesh's vertices, in pixels."""
+    """Pins and pose of a file. positions: (n, 2) float64, of the mesh's vertices, in pixels."""
 
     pins: tuple[Pin, ...]
     positions: Floats
@@ -32,7 +32,7 @@ class SavedPose:
 def save_pose(document: Document, path: str | Path) -> None:
     """Write pins and pose of a document, whole or not at all.
 
-    Raises InputError where the file cannot be written or could not be read again; the old file is then kept.
+    Raises FileError if the file cannot be written or could not be read again; then the old file stays.
     """
     with file_errors("save", path):
         data = encode_pose(document)
@@ -40,10 +40,10 @@ def save_pose(document: Document, path: str | Path) -> None:
 
 
 def load_pose(path: str | Path, drawing: Drawing) -> SavedPose:
-    """The pose in a file, bit for bit as it was saved, which must be one of this drawing's mesh.
+    """The pose in a file, bit for bit as it was saved.
 
-    Raises InputError, and nothing else, on a file that is missing, damaged, malicious, of a newer version or
-    of another mesh.
+    Raises FileError, and nothing else, if the file is missing, damaged, malicious, of a newer version, or
+    belongs to another mesh than that of ``drawing``.
     """
     data = read_file(path, "a pose")
     with file_errors("open", path):
@@ -51,7 +51,7 @@ def load_pose(path: str | Path, drawing: Drawing) -> SavedPose:
 
 
 def encode_pose(document: Document) -> bytes:
-    """The bytes of a .pose.json file. Raises InputError where they could not be read again."""
+    """The bytes of a .pose.json file. Raises InputError if they could not be read again."""
     drawing, state = document.drawing, document.state
     check_state(state, len(drawing.mesh.vertices), len(drawing.mesh.faces))
     record = {
@@ -68,15 +68,15 @@ def encode_pose(document: Document) -> bytes:
 
 
 def decode_pose(data: bytes, drawing: Drawing) -> SavedPose:
-    """The pose in the bytes of a .pose.json file, of this drawing's mesh. Raises InputError."""
+    """The pose in the bytes of a .pose.json file. Raises InputError, also for a pose of another mesh."""
     _check_size(data)
     record = parse_record(data)
     refuse_newer(file_version(record, POSE_FORMAT), POSE_VERSION)
-    header, there = require(record, "drawing", dict), drawing_header(drawing)
-    if require(header, "mesh", str) != there["mesh"]:
+    header, wanted = require(record, "drawing", dict), drawing_header(drawing)
+    if require(header, "mesh", str) != wanted["mesh"]:
         name, count = require(header, "name", str), require(header, "vertices", int)
         raise InputError(
-            f"expected a pose of this very mesh, with {there['vertices']} vertices, got one of the drawing "
+            f"expected a pose of this very mesh, with {wanted['vertices']} vertices, got one of the drawing "
             f"{reprlib.repr(name)} with {count}"
         )
     vertices, faces = len(drawing.mesh.vertices), len(drawing.mesh.faces)

@@ -1,4 +1,4 @@
-"""The .akap file: a drawing with its mesh, pins, pose and settings, as described in docs/file-format.md."""
+"""Reads and writes .akap files, which hold a document, as described in docs/file-format.md."""
 
 import json
 from collections.abc import Sequence
@@ -35,8 +35,8 @@ PROJECT_SUFFIX = ".akap"
 MIMETYPE = b"application/x-akap"
 DOCUMENT_FORMAT = "akap"
 DOCUMENT_VERSION = 1
-STIFFNESS = "stiffness"  # entry with a factor for each face
-ORIGINAL = "original.png"  # entry with the picture before its background was removed
+STIFFNESS_ENTRY = "stiffness"  # a factor for each face
+ORIGINAL_ENTRY = "original.png"  # the picture before its background was removed
 
 MAX_VERTICES = 1_000_000
 MAX_FACES = 2_000_000
@@ -47,10 +47,10 @@ THUMBNAIL_SIDE = 256
 
 
 def save(document: Document, path: str | Path) -> Document:
-    """Write an .akap file, whole or not at all, and return the document with its ``path`` set.
+    """Write an .akap file, whole or not at all; return the document with its ``path`` set.
 
-    Equal documents give equal bytes. Raises InputError where the file cannot be written or could not be
-    opened again, e.g. for two pins with one id; the old file is then kept.
+    Equal documents give equal bytes. Raises FileError if the file cannot be written, or could not be opened
+    again, e.g. for two pins with one id; then the old file stays.
     """
     with file_errors("save", path):
         data = encode_document(document)
@@ -61,7 +61,7 @@ def save(document: Document, path: str | Path) -> Document:
 def load(path: str | Path) -> Document:
     """The document in an .akap file, bit for bit as it was saved; its ``revision`` is 0.
 
-    Raises InputError, and nothing else, on a file that is missing, damaged, malicious or of a newer version.
+    Raises FileError, and nothing else, if the file is missing, damaged, malicious or of a newer version.
     """
     data = read_file(path, "an .akap file")
     with file_errors("open", path):
@@ -70,9 +70,9 @@ def load(path: str | Path) -> Document:
 
 
 def encode_document(document: Document, more: Sequence[Entry] = ()) -> bytes:
-    """The bytes of an .akap file, with ``more`` entries in the end, which readers ignore.
+    """The bytes of an .akap file. Raises InputError if it could not be opened again.
 
-    Raises InputError where the file could not be opened again.
+    more: additional entries at the end, which readers ignore.
     """
     _check(document)
     drawing = document.drawing
@@ -104,7 +104,7 @@ def decode_document(data: bytes) -> Document:
 
 
 def _check(document: Document) -> None:
-    """What holds for every .akap file and is not promised by the types of a document."""
+    """Raise InputError if the document breaks a rule of .akap files that its types do not enforce."""
     mesh = document.drawing.mesh
     _check_sizes(*document.drawing.size, len(mesh.vertices), len(mesh.faces))
     _check_vertices(mesh.vertices)
@@ -127,34 +127,36 @@ def _check_sizes(width: int, height: int, vertices: int, faces: int) -> None:
 
 
 def _check_vertices(vertices: Floats) -> None:
-    far = np.abs(vertices).max()
-    if not far <= MAX_COORDINATE:  # of NaN, too; areas of anything farther could overflow
-        raise InputError(f"vertices: expected coordinates up to {MAX_COORDINATE:g} pixels, got {far:g}")
+    largest = np.abs(vertices).max()
+    if not largest <= MAX_COORDINATE:  # also for NaN; areas of larger coordinates could overflow
+        raise InputError(f"vertices: expected coordinates up to {MAX_COORDINATE:g} pixels, got {largest:g}")
 
 
-# Writing
+# -- writing -------------------------------------------------------------------------------------------------
 
 
-# The picture of a drawing never changes, and encoding it takes longer than all the rest of a save.
-_encoded: WeakKeyDictionary[Drawing, list[Entry]] = WeakKeyDictionary()
+# The pictures of a drawing never change, and encoding them takes longer than the rest of a save.
+_encoded_pictures: WeakKeyDictionary[Drawing, list[Entry]] = WeakKeyDictionary()
 
 
 def _picture_entries(drawing: Drawing) -> list[Entry]:
-    if drawing not in _encoded:
+    if drawing not in _encoded_pictures:
         pictures = {"picture.png": drawing.image, "thumbnail.png": _thumbnail(drawing.image)}
         if drawing.original is not None:
-            pictures[ORIGINAL] = drawing.original
-        _encoded[drawing] = [(name, encode_png(picture), False) for name, picture in pictures.items()]
-    return _encoded[drawing]
+            pictures[ORIGINAL_ENTRY] = drawing.original
+        entries = [(name, encode_png(picture), False) for name, picture in pictures.items()]
+        _encoded_pictures[drawing] = entries
+    return _encoded_pictures[drawing]
 
 
 def _stiffness_entries(state: EditState) -> list[Entry]:
     if state.stiffness is None:
         return []
-    return [(STIFFNESS, state.stiffness.astype("<f8").tobytes(), True)]
+    return [(STIFFNESS_ENTRY, state.stiffness.astype("<f8").tobytes(), True)]
 
 
 def _describe(document: Document) -> Json:
+    """The entry document.json."""
     drawing = document.drawing
     width, height = drawing.size
     return {
@@ -175,15 +177,15 @@ def _describe(document: Document) -> Json:
 
 
 def _describe_meshing(drawing: Drawing) -> Json:
-    """The background only where the file has it."""
+    """How the mesh was made; the tolerance of a removed background only with the original picture."""
     meshing = drawing.meshing
     assert meshing is not None
-    removed = meshing.background is not None and drawing.original is not None
+    is_background_removed = meshing.background is not None and drawing.original is not None
     return {
         "vertices": int(meshing.vertices),
         "expand": float(meshing.expand),
         "threshold": float(meshing.threshold),
-        **({"background": float(meshing.background or 0.0)} if removed else {}),
+        **({"background": float(meshing.background or 0.0)} if is_background_removed else {}),
     }
 
 
@@ -194,7 +196,7 @@ def _thumbnail(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return np.asarray(picture)
 
 
-# Reading
+# -- reading -------------------------------------------------------------------------------------------------
 
 
 def _decode(archive: Archive) -> Document:
@@ -220,7 +222,7 @@ def _decode(archive: Archive) -> Document:
     with error_context("document.json"):
         pins = read_pins(require(record, "pins", list))
         settings = read_settings(require(record, "settings", dict))
-    stiffness = archive.read_array(STIFFNESS, "<f8", m, 1)[:, 0] if STIFFNESS in archive else None
+    stiffness = archive.read_array(STIFFNESS_ENTRY, "<f8", m, 1)[:, 0] if STIFFNESS_ENTRY in archive else None
     poses, animation = read_named_poses(archive, n), read_keyframes(archive, n)
     state = EditState(pins, positions, settings, None, poses, stiffness, animation)
     vertices = archive.read_array("mesh/vertices", "<f8", n, 2)
@@ -229,7 +231,7 @@ def _decode(archive: Archive) -> Document:
     uv = archive.read_array("mesh/uv", "<f4", n, 2)
     image, original = _picture(archive, "picture.png", width, height), None
     if meshing is not None and meshing.background is not None:
-        original = _picture(archive, ORIGINAL, width, height)
+        original = _picture(archive, ORIGINAL_ENTRY, width, height)
     return Document(Drawing(image, trimesh, uv, name, meshing, original), state)
 
 
@@ -247,5 +249,5 @@ def _picture(archive: Archive, name: str, width: int, height: int) -> NDArray[np
     with error_context(name):
         image = decode_image(content, ("PNG",), (width, height))
         if image.shape[:2] != (height, width):
-            raise InputError("expected a picture that stands upright, got one turned by its EXIF data")
+            raise InputError("expected an upright picture, got one rotated by its EXIF data")
     return freeze(image)

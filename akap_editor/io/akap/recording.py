@@ -1,4 +1,4 @@
-"""The .akaprec file: a recorded session as text, described in docs/file-format.md."""
+"""Reads and writes .akaprec files, which hold a recorded session as text; see docs/file-format.md."""
 
 import base64
 from pathlib import Path
@@ -16,7 +16,7 @@ RECORDING_SUFFIX = ".akaprec"
 
 
 def read_recording(path: str | Path) -> Recording:
-    """The recording in a file. Raises InputError with the file's name and the number of the bad line."""
+    """The recording in a file. Raises FileError with the number of the bad line."""
     data = read_file(path, "a recording")
     with file_errors("open", path):
         return decode_recording(data)
@@ -25,13 +25,13 @@ def read_recording(path: str | Path) -> Recording:
 def decode_recording(data: bytes) -> Recording:
     """The recording in the bytes of a file. Raises InputError, and nothing else."""
     try:
-        return parse_recording(_text(data))
+        return parse_recording(_decode_text(data))
     except UnicodeDecodeError as error:
         raise InputError("expected a recording, which is text, got other bytes") from error
 
 
-def _text(data: bytes) -> str:
-    """The text of a file; a last line that was cut off inside a character ends before it."""
+def _decode_text(data: bytes) -> str:
+    """Decode UTF-8; if the file was cut off inside a character, the text ends before it."""
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:
@@ -41,9 +41,9 @@ def _text(data: bytes) -> str:
 
 
 def write_recording(recording: Recording, path: str | Path, drawing: Drawing | None = None) -> None:
-    """Write a recording, whole or not at all. Raises InputError where that is not possible.
+    """Write a recording, whole or not at all. Raises FileError if that is not possible.
 
-    drawing: goes into the file as well, so that it can be replayed wherever it is sent.
+    drawing: stored in the file as well, so that the recording can be replayed on another computer.
     """
     if drawing is not None:
         data = encode_document(new_document(drawing))
@@ -53,9 +53,9 @@ def write_recording(recording: Recording, path: str | Path, drawing: Drawing | N
 
 
 def recorded_drawing(recording: Recording) -> Drawing:
-    """The drawing that a recording was made on: the one inside it, or the bundled one that it names.
+    """The drawing of a recording: the one inside it, or the bundled one that it names.
 
-    Raises InputError where there is neither, or what is inside is damaged.
+    Raises InputError if there is neither, or if the one inside is damaged.
     """
     header = recording.header
     if "akap" in header:

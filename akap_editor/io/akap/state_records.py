@@ -1,4 +1,4 @@
-"""Pins and settings as JSON, the same in .akap files and in poses, and what holds for both."""
+"""Reads pins and settings from untrusted JSON, and checks states, for .akap files and pose files."""
 
 import reprlib
 from collections import Counter
@@ -21,17 +21,17 @@ MAX_PINS = 10_000
 
 
 def read_pins(records: list[Any]) -> tuple[Pin, ...]:
-    """The pins that `Pin.to_json` wrote. Raises InputError on values of other kinds."""
-    _check_count(len(records))
-    return tuple(map(_pin, records))
+    """The pins that `Pin.to_json` wrote. Raises InputError on values of other types."""
+    _check_pin_count(len(records))
+    return tuple(map(_read_pin, records))
 
 
-def _check_count(pins: int) -> None:
-    if pins > MAX_PINS:
-        raise InputError(f"expected at most {MAX_PINS} pins, got {pins}")
+def _check_pin_count(count: int) -> None:
+    if count > MAX_PINS:
+        raise InputError(f"expected at most {MAX_PINS} pins, got {count}")
 
 
-def _pin(record: Any) -> Pin:
+def _read_pin(record: Any) -> Pin:
     if not isinstance(record, dict):
         raise InputError(f"expected pins to be objects, got {reprlib.repr(record)}")
     weights, target = (numbers(require(record, name, list), name) for name in ("weights", "target"))
@@ -43,15 +43,15 @@ def _pin(record: Any) -> Pin:
 def read_settings(record: Json) -> Settings:
     """The settings that `Settings.to_json` wrote, parameters in the file's order.
 
-    Raises InputError on values of other kinds.
+    Raises InputError on values of other types.
     """
     return Settings(require(record, "method", str), tuple(require(record, "parameters", dict).items()))
 
 
 def check_state(state: EditState, vertices: int, faces: int) -> None:
-    """Raise InputError where a state is not one of a mesh with so many vertices and faces."""
+    """Raise InputError if a state does not fit a mesh with so many vertices and faces, or is not valid."""
     as_points(state.positions, "positions", vertices)
-    _check_count(len(state.pins))
+    _check_pin_count(len(state.pins))
     if state.stiffness is not None:
         as_stiffness(state.stiffness, faces)
     for pin in state.pins:
@@ -77,8 +77,8 @@ def _check_pin(pin: Pin, faces: int) -> None:
         came = f"{pin.weights.size} and {pin.target.size}"
         raise InputError(f"pin {pin.id}: expected 3 weights and a target of 2 coordinates, got {came}")
     low, high = -WEIGHT_TOLERANCE, 1 + WEIGHT_TOLERANCE
-    inside = all(low <= weight <= high for weight in pin.weights)
-    if not inside or abs(pin.weights.sum() - 1) > WEIGHT_TOLERANCE:
+    are_shares = all(low <= weight <= high for weight in pin.weights)
+    if not are_shares or abs(pin.weights.sum() - 1) > WEIGHT_TOLERANCE:
         came = str(pin.weights.tolist())
         raise InputError(f"pin {pin.id}: expected weights from 0 to 1 that sum to 1, got {came}")
     if abs(pin.depth) > MAX_DEPTH:

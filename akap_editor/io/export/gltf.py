@@ -1,4 +1,4 @@
-"""glTF 2.0 binary: mesh, texture, and the pose as a morph target (specification of the Khronos Group)."""
+"""Exports glTF 2.0 binary files: mesh, texture, and the pose as a morph target (Khronos specification)."""
 
 import json
 import struct
@@ -11,33 +11,36 @@ from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats
 from .texture import encode_texture, y_up
 
-PIXELS_PER_UNIT = 100.0  # of the scene; the mesh itself is in pixels
+PIXELS_PER_UNIT = 100.0  # by the scale of the node; the mesh itself is in pixels
 
 _FLOAT, _UINT = 5126, 5125
-_VERTICES, _INDICES = 34962, 34963  # what a buffer view is used for
+_VERTICES, _INDICES = 34962, 34963  # targets of buffer views
 _LINEAR, _MIPMAPS, _CLAMP = 9729, 9987, 33071
 
 
 class _Buffer:
-    """The binary part: views of it, and accessors that say what is in them."""
+    """Collects the binary part of the file, with its buffer views and accessors."""
 
     def __init__(self) -> None:
         self.data = bytearray()
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
 
-    def add(self, data: bytes, **facts: int) -> int:
-        """The number of a new view; each begins at a multiple of 4 bytes."""
-        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data), **facts})
+    def add_view(self, data: bytes, **properties: int) -> int:
+        """Append data, padded to a multiple of 4 bytes; return the number of its buffer view."""
+        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data), **properties})
         self.data += data + bytes(-len(data) % 4)
         return len(self.views) - 1
 
     def add_array(self, array: NDArray[Any], kind: str, bounds: bool = False) -> int:
-        """The number of a new accessor to an array (count, columns) of float32 or, as indices, uint32."""
-        indices = array.dtype == np.uint32
-        view = self.add(array.tobytes(), target=_INDICES if indices else _VERTICES)
-        count = array.size if indices else len(array)
-        accessor: dict[str, Any] = {"bufferView": view, "componentType": _UINT if indices else _FLOAT}
+        """Append an array (count, columns) of float32, or of indices uint32; return its accessor's number.
+
+        kind: "SCALAR", "VEC2" or "VEC3"; bounds: whether the accessor has the least and greatest values.
+        """
+        is_index = array.dtype == np.uint32
+        view = self.add_view(array.tobytes(), target=_INDICES if is_index else _VERTICES)
+        count = array.size if is_index else len(array)
+        accessor: dict[str, Any] = {"bufferView": view, "componentType": _UINT if is_index else _FLOAT}
         accessor |= {"count": count, "type": kind}
         if bounds:
             accessor |= {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
@@ -46,13 +49,13 @@ class _Buffer:
 
 
 def encode_glb(drawing: Drawing, positions: Floats) -> bytes:
-    """The bytes of a .glb file: the mesh at rest, and the pose ``positions`` (n, 2) as a morph target.
+    """The bytes of a .glb file: the rest pose, and the pose ``positions`` (n, 2) as a morph target.
 
-    The target's weight is 1, so that the pose is what is seen. Faces are counterclockwise seen from +z, in
-    the order in which they overlap.
+    The target's weight is 1, so that viewers show the pose. Faces are counterclockwise seen from +z, from
+    back to front.
     """
     buffer = _Buffer()
-    rest, pose = (_in_space(y_up(drawing, points)) for points in (drawing.mesh.vertices, positions))
+    rest, pose = (_to_3d(y_up(drawing, points)) for points in (drawing.mesh.vertices, positions))
     primitive = {
         "attributes": {
             "POSITION": buffer.add_array(rest, "VEC3", bounds=True),
@@ -62,7 +65,7 @@ def encode_glb(drawing: Drawing, positions: Floats) -> bytes:
         "material": 0,
         "targets": [{"POSITION": buffer.add_array(pose - rest, "VEC3", bounds=True)}],
     }
-    image = buffer.add(encode_texture(drawing))
+    image = buffer.add_view(encode_texture(drawing))
     scene = {
         "asset": {"version": "2.0", "generator": "akap-editor"},
         "extensionsUsed": ["KHR_materials_unlit"],
@@ -90,13 +93,13 @@ def encode_glb(drawing: Drawing, positions: Floats) -> bytes:
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
-def _in_space(points: Floats) -> NDArray[np.float32]:
-    """(n, 2) as (n, 3) float32, z = 0."""
+def _to_3d(points: Floats) -> NDArray[np.float32]:
+    """Points (n, 2) as (n, 3) float32 with z = 0."""
     return np.pad(points, [(0, 0), (0, 1)]).astype("<f4")
 
 
 def _material(name: str) -> dict[str, Any]:
-    """Colors without light; alpha blends; both sides are seen, for a pose may turn faces over."""
+    """An unlit material that blends alpha and shows both sides, as a pose may flip faces."""
     return {
         "name": name,
         "pbrMetallicRoughness": {
@@ -111,4 +114,5 @@ def _material(name: str) -> dict[str, Any]:
 
 
 def _chunk(kind: bytes, content: bytes) -> bytes:
+    """A chunk of the file, with its length and type."""
     return struct.pack("<I4s", len(content), kind) + content

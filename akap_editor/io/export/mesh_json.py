@@ -1,4 +1,4 @@
-"""The numbers of a document as JSON: mesh, pose and pins, described in docs/exporting.md."""
+"""Exports mesh, pose and pins as JSON, described in docs/exporting.md."""
 
 import json
 
@@ -9,10 +9,12 @@ MESH_JSON_VERSION = 1
 
 
 def encode_json(document: Document) -> bytes:
-    """One JSON object, one line for each of its values; floats read back are the same float64."""
+    """The bytes of a .json file: one object, one line per value. Floats are exact."""
     drawing, state = document.drawing, document.state
     mesh = drawing.mesh
-    rest, now = (mesh.evaluate(state.points, points) for points in (mesh.vertices, state.positions))
+    rest_points, posed_points = (
+        mesh.evaluate(state.points, positions) for positions in (mesh.vertices, state.positions)
+    )
     record = {
         "format": MESH_JSON_FORMAT,
         "version": MESH_JSON_VERSION,
@@ -29,8 +31,8 @@ def encode_json(document: Document) -> bytes:
                 "depth": pin.depth,
                 "face": pin.face,
                 "weights": pin.weights.tolist(),
-                "rest": rest[index].tolist(),
-                "position": now[index].tolist(),
+                "rest": rest_points[index].tolist(),
+                "position": posed_points[index].tolist(),
                 "target": pin.target.tolist(),
             }
             for index, pin in enumerate(state.pins)

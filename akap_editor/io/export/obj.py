@@ -1,25 +1,25 @@
-"""Wavefront OBJ: the posed mesh, its material and its texture."""
+"""Exports Wavefront OBJ files: the posed mesh, its material and its texture."""
 
 import numpy as np
 
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats
-from .texture import companion, encode_texture, y_up
+from .texture import companion_stem, encode_texture, y_up
 
 
 def encode_obj(drawing: Drawing, positions: Floats, stem: str) -> dict[str, bytes]:
-    """The files of a mesh in the pose ``positions`` (n, 2), by name: texture, material, mesh.
+    """The contents of texture, material and mesh file, by name, for the pose ``positions`` (n, 2).
 
-    Vertices keep their order, so that two poses of a drawing can be blended. Faces are counterclockwise seen
-    from +z, in the order in which they overlap.
+    Vertices keep their order, so that other programs can blend two poses of a drawing. Faces are
+    counterclockwise seen from +z, from back to front.
     """
-    name = companion(stem)
+    name = companion_stem(stem)
     texture, material = f"{name}-texture.png", f"{name}.mtl"
     points, uv = y_up(drawing, positions), drawing.uv * np.array([1, -1]) + np.array([0, 1])
     corners = drawing.mesh.faces[:, ::-1] + 1
     lines = [
         f"mtllib {material}",
-        f"o {companion(drawing.name) or 'drawing'}",
+        f"o {companion_stem(drawing.name) or 'drawing'}",
         *(f"v {x:.9g} {y:.9g} 0" for x, y in points.tolist()),
         *(f"vt {u:.9g} {v:.9g}" for u, v in uv.tolist()),
         "vn 0 0 1",

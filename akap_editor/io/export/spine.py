@@ -1,4 +1,4 @@
-"""Spine: mesh attachments as in its JSON export format, https://esotericsoftware.com/spine-json-format."""
+"""Exports Spine skeletons in its JSON format, https://esotericsoftware.com/spine-json-format."""
 
 import json
 from typing import Any
@@ -9,20 +9,20 @@ from ...editor.document.drawing import Drawing
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
-from .texture import companion, encode_texture, y_up
+from .texture import companion_stem, encode_texture, y_up
 
 SPINE_VERSION = "4.2.00"
-MAX_ATTACHMENT_VERTICES = 32767  # of one mesh: runtimes count vertices in 16 bits, with a sign
+MAX_ATTACHMENT_VERTICES = 32767  # runtimes count vertices with signed 16-bit integers
 _DECIMALS = 3
 
 
 def encode_spine(drawing: Drawing, positions: Floats, stem: str) -> dict[str, bytes]:
-    """The files of a Spine skeleton, by name: texture and JSON. Raises InputError for too large a mesh.
+    """The contents of texture and JSON file, by name. Raises InputError if the mesh is too large.
 
-    One bone; for each part of the drawing a slot with one unweighted mesh attachment. The setup pose is the
-    rest pose, the animation "pose" holds ``positions`` (n, 2) as a deform key.
+    The skeleton has one bone; each component of the mesh is a slot with one unweighted mesh attachment. The
+    setup pose is the rest pose, the animation "pose" holds ``positions`` (n, 2) as a deform key.
     """
-    texture, title = f"{companion(stem)}-texture", drawing.name or "drawing"
+    texture, title = f"{companion_stem(stem)}-texture", drawing.name or "drawing"
     rest, pose = y_up(drawing, drawing.mesh.vertices), y_up(drawing, positions)
     slots, attachments, deform = [], {}, {}
     for number, part in enumerate(_parts(drawing.mesh), start=1):
@@ -46,10 +46,10 @@ def encode_spine(drawing: Drawing, positions: Floats, stem: str) -> dict[str, by
 
 
 class _Part:
-    """One component of a mesh, renumbered as Spine wants it: the hull first, in order.
+    """A component of a mesh, renumbered as Spine requires: the hull (outer contour) first, in order.
 
-    order: (p,) the mesh's vertex of each new one; hull: how many of them are the outer contour; faces, edges:
-    new numbers, (m, 3) and (e, 2).
+    order: (p,) the mesh's vertex for each new number; hull: number of vertices of the hull; faces (m, 3),
+    edges (e, 2): in new numbers, the hull's edges first.
     """
 
     def __init__(self, mesh: TriMesh, number: int) -> None:
@@ -69,13 +69,14 @@ class _Part:
 
 
 def _parts(mesh: TriMesh) -> list[_Part]:
-    """The components, those drawn first in front of the list, as slots are drawn in order."""
+    """The components from back to front, because slots are drawn in order."""
     first = mesh.component[mesh.faces[:, 0]]
     numbers = list(dict.fromkeys(first.tolist()))
     return [_Part(mesh, number) for number in numbers]
 
 
 def _attachment(drawing: Drawing, part: _Part, rest: Floats, texture: str) -> dict[str, Any]:
+    """The mesh attachment of a component; rest (n, 2): vertices with y up."""
     if len(part.order) > MAX_ATTACHMENT_VERTICES:
         raise InputError(
             f"expected parts of at most {MAX_ATTACHMENT_VERTICES} vertices for Spine, got {len(part.order)}; "
@@ -89,13 +90,14 @@ def _attachment(drawing: Drawing, part: _Part, rest: Floats, texture: str) -> di
         "triangles": part.faces.ravel().tolist(),
         "vertices": np.round(_flat(rest[part.order]), _DECIMALS).tolist(),
         "hull": part.hull,
-        "edges": (2 * part.edges).ravel().tolist(),  # places in a list of coordinates
+        "edges": (2 * part.edges).ravel().tolist(),  # indices into the list of coordinates
         "width": width,
         "height": height,
     }
 
 
 def _flat(points: Floats) -> Floats:
+    """Points (n, 2) as x0, y0, x1, y1, ... without negative zeros."""
     return points.ravel() + 0.0
 
 

@@ -1,4 +1,4 @@
-"""SVG: the outline of a pose as paths."""
+"""Exports the outline of a pose as paths of an SVG picture."""
 
 from xml.sax.saxutils import escape
 
@@ -10,16 +10,17 @@ from ...editor.framing import Box, Color, output_size
 from ...geometry.mesh import signed_areas
 from ...geometry.validation import Floats
 
-GRID = 0.001
+GRID_SIZE = 0.001  # pixels
 
 
 def silhouette(drawing: Drawing, positions: Floats) -> list[shapely.Polygon]:
-    """What the mesh covers in the pose ``positions`` (n, 2), largest part first; overlaps count once.
+    """The area that the mesh covers in the pose ``positions`` (n, 2), as polygons, the largest first.
 
-    Points are on a grid of `GRID` pixels, on which the slivers that rounding leaves at overlaps vanish.
+    Points are snapped to a grid of `GRID_SIZE` pixels, which removes the slivers that rounding leaves at
+    overlaps.
     """
     faces = drawing.mesh.faces[signed_areas(positions, drawing.mesh.faces) != 0]
-    covered = shapely.set_precision(shapely.union_all(shapely.polygons(positions[faces])), GRID)
+    covered = shapely.set_precision(shapely.union_all(shapely.polygons(positions[faces])), GRID_SIZE)
     parts = [part for part in shapely.get_parts(covered) if part.geom_type == "Polygon"]
     return sorted(parts, key=lambda part: -part.area)
 
@@ -31,9 +32,9 @@ def encode_svg(
     scale: float,
     background: Color | None,
 ) -> str:
-    """An SVG picture of ``box``: one path for each part of the pose, its holes by the even-odd rule.
+    """The text of an SVG picture of ``box``: one path per polygon, its holes by the even-odd rule.
 
-    Paths are in drawing units, three decimals. Raises InputError as `output_size` does.
+    Paths are in drawing units with three decimals. Raises InputError as `output_size` does.
     """
     output_size(box, scale)
     x0, y0, x1, y1 = box
@@ -54,5 +55,6 @@ def encode_svg(
 
 
 def _ring(ring: shapely.LinearRing) -> str:
-    points = np.round(shapely.get_coordinates(ring)[:-1], 3) + 0.0  # + 0: no "-0"
+    """A closed subpath."""
+    points = np.round(shapely.get_coordinates(ring)[:-1], 3) + 0.0  # + 0.0 removes "-0"
     return "M" + "L".join(f"{x:.10g} {y:.10g}" for x, y in points.tolist()) + "Z"

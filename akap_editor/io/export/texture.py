@@ -1,4 +1,4 @@
-"""What the mesh formats share: the texture, and the plane as others see it."""
+"""Shared by the mesh formats: the texture, coordinates with y up, names of additional files."""
 
 import re
 
@@ -10,38 +10,39 @@ from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats
 from ..images import Picture, encode_png
 
-REACH = 16  # pixels beyond what is visible that get a color: enough for four mip levels
+BLEED_PIXELS = 16  # around visible pixels: enough for four mip levels
 
 
 def encode_texture(drawing: Drawing) -> bytes:
-    """The picture as a PNG file whose invisible pixels have the color of what is visible near them."""
+    """The bytes of a PNG file with the drawing's picture, see `bleed`."""
     return encode_png(bleed(drawing.image))
 
 
 def bleed(image: Picture) -> Picture:
-    """``image`` (h, w, 4) with the colors of its rim continued outwards; alpha, and what is visible, stay.
+    """``image`` (h, w, 4) with invisible pixels near visible ones in the color of the nearest visible pixel.
 
-    Programs filter textures with straight alpha: whatever color lies next to the rim shines through.
+    Alpha and visible pixels stay as they are. Renderers filter textures with straight alpha, so that the
+    color of invisible neighbors shows at edges.
     """
     visible = image[..., 3] > 0
     result = image.copy()
     if not visible.any():
         return result
     padded = np.pad(visible, 1)
-    around = [padded[1:-1, :-2], padded[1:-1, 2:], padded[:-2, 1:-1], padded[2:, 1:-1]]
-    rim = np.argwhere(visible & ~np.logical_and.reduce(around))
-    hidden = np.argwhere(maximum_filter(visible, 2 * REACH + 1, mode="constant") & ~visible)
-    _, nearest = cKDTree(rim).query(hidden)
-    result[(*hidden.T, slice(3))] = image[(*rim[nearest].T, slice(3))]
+    neighbors = [padded[1:-1, :-2], padded[1:-1, 2:], padded[:-2, 1:-1], padded[2:, 1:-1]]
+    edge = np.argwhere(visible & ~np.logical_and.reduce(neighbors))
+    hidden = np.argwhere(maximum_filter(visible, 2 * BLEED_PIXELS + 1, mode="constant") & ~visible)
+    _, nearest = cKDTree(edge).query(hidden)
+    result[(*hidden.T, slice(3))] = image[(*edge[nearest].T, slice(3))]
     return result
 
 
 def y_up(drawing: Drawing, points: Floats) -> Floats:
-    """Drawing units as most programs count: pixels, y up, origin below the middle of the picture's frame."""
+    """Points (n, 2) as most programs expect them: pixels, y up, origin at the middle of the lower edge."""
     width, height = drawing.size
     return np.array([-width / 2, height]) + points * [1.0, -1.0]
 
 
-def companion(stem: str) -> str:
-    """The beginning of the name of a file that another one names: some readers stop at a space."""
+def companion_stem(stem: str) -> str:
+    """The stem for a file that the exported file names; without spaces, where some readers stop."""
     return re.sub(r"\s+", "_", stem)

@@ -7,7 +7,8 @@ import pytest
 
 from akap_editor.app import files
 from akap_editor.app.dialogs.recovery import RecoveryDialog
-from akap_editor.io.akap.autosave import SECONDS, Autosave
+from akap_editor.editor.session.stepper import INLINE
+from akap_editor.io.akap.autosave import Autosave
 from akap_editor.io.akap.project import load, save
 
 TITLE = "Recover unsaved work"
@@ -15,18 +16,8 @@ TITLE = "Recover unsaved work"
 
 @pytest.fixture
 def crash(tmp_path):
-    """Leaves a copy as a program does that ends without a word."""
-
-    def leave(document):
-        now = [0.0]
-        autosave = Autosave(tmp_path, clock=lambda: now[0])
-        autosave.watch(document, True)
-        now[0] = SECONDS
-        autosave.watch(document, True)
-        autosave._worker.shutdown()
-        autosave._copy.lock.release()
-
-    return leave
+    """Leaves a copy like a program that crashes."""
+    return lambda document: Autosave(tmp_path, worker=INLINE).rescue(document)
 
 
 @pytest.fixture
@@ -36,15 +27,14 @@ def restart(ui, tmp_path):
 
     def start():
         earlier.append(ui.state.autosave)
-        ui.state.autosave = Autosave(tmp_path)
-        ui.state.part(RecoveryDialog).copies = ui.state.autosave.lost()
+        ui.state.autosave = Autosave(tmp_path, worker=INLINE)
+        ui.state.part(RecoveryDialog).copies = ui.state.autosave.claim_lost_copies()
         ui.settle()
         return ui
 
     yield start
-    ui.state.autosave._worker.shutdown()
     for copy in ui.state.part(RecoveryDialog).copies:
-        copy.leave()
+        copy.release()
 
 
 @pytest.fixture
@@ -53,10 +43,6 @@ def bent(pinned):
     start = pinned.screen(pinned.pin_place(3))
     pinned.drag(start, (start[0], start[1] - 90))
     return pinned.document
-
-
-def wait(ui):
-    ui.state.autosave._worker.submit(int).result()
 
 
 def test_nothing_is_offered_where_nothing_was_lost(restart):
@@ -77,11 +63,9 @@ def test_recovering_brings_the_drawing_back_unsaved(bent, crash, restart, tmp_pa
     assert ui.state.title == "figure * - akap-editor"
     assert ui.state.notice == "Recovered figure, which is not saved yet"
     files.autosave(ui.state)
-    wait(ui)
     assert list(tmp_path.glob("*.akap")), "a second crash would lose it otherwise"
     files.write_document(ui.state, tmp_path / "saved.pose")
     files.autosave(ui.state)
-    wait(ui)
     assert os.listdir(tmp_path) == ["saved.pose"]
 
 
@@ -145,8 +129,6 @@ def test_a_crash_of_the_program_itself_keeps_the_work(bent, ui, tmp_path):
     ui.session.mark_unsaved()
     ui.state.autosave = Autosave(tmp_path)
     files.rescue(ui.state)
-    ui.state.autosave._worker.shutdown()
-    ui.state.autosave._copy.lock.release()
-    (copy,) = Autosave(tmp_path).lost()
+    (copy,) = Autosave(tmp_path).claim_lost_copies()
     assert np.array_equal(copy.read().state.positions, bent.state.positions)
-    copy.leave()
+    copy.release()

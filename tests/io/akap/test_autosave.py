@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,23 +16,24 @@ import pytest
 
 import akap_editor
 from akap_editor.errors import InputError
-from akap_editor.io.akap import autosave as module
-from akap_editor.io.akap.autosave import GESTURES, SECONDS, Autosave
+from akap_editor.io.akap import autosave as autosave_module
+from akap_editor.io.akap.autosave import COPY_GESTURES, COPY_SECONDS, ORIGIN_ENTRY, Autosave
 from akap_editor.io.akap.project import encode_document, load
 from tests.io.akap.test_project import assert_equal
 
 
 class Watch:
-    """An autosave with a clock that is set by hand."""
+    """An autosave whose clock and thread belong to the test."""
 
     def __init__(self, folder):
         self.now = 0.0
-        self.autosave = Autosave(folder, clock=lambda: self.now)
+        self.worker = ThreadPoolExecutor(1)
+        self.autosave = Autosave(folder, lambda: self.now, self.worker)
 
     def see(self, document, modified=True, gesture=None):
-        """Tell of a document, and wait until the worker has done its work."""
+        """Watch a document, and wait until the thread is done."""
         self.autosave.watch(document, modified, gesture)
-        self.autosave._worker.submit(int).result()
+        self.worker.submit(int).result()
 
 
 @pytest.fixture
@@ -43,11 +45,23 @@ def folder(tmp_path):
 def watch(folder):
     watch = Watch(folder)
     yield watch
-    watch.autosave._worker.shutdown()
+    watch.worker.shutdown()
 
 
 def moved(document, way):
     return document.with_state(replace(document.state, positions=document.state.positions + way))
+
+
+def hold_writes(monkeypatch):
+    """Lets no file be written until the returned event is set."""
+    go_on = threading.Event()
+
+    def write(path, data):
+        go_on.wait()
+        path.write_bytes(data)
+
+    monkeypatch.setattr(autosave_module, "write_atomic", write)
+    return go_on
 
 
 def copies(folder):
@@ -56,32 +70,32 @@ def copies(folder):
 
 def test_a_minute_after_the_first_change_there_is_a_copy(watch, folder, document):
     watch.see(document)
-    watch.now = SECONDS - 0.1
+    watch.now = COPY_SECONDS - 0.1
     watch.see(moved(document, 1))
     assert copies(folder) == []
-    watch.now = SECONDS
+    watch.now = COPY_SECONDS
     last = moved(document, 2)
     watch.see(last)
     (path,) = copies(folder)
     assert_equal(load(path), last)
-    watch.now += SECONDS
+    watch.now += COPY_SECONDS
     watch.see(last)
     assert_equal(load(path), last)
     later = moved(document, 3)
     watch.see(later)
     assert_equal(load(path), last), "the next minute begins with the next change"
-    watch.now += SECONDS
+    watch.now += COPY_SECONDS
     watch.see(later)
     assert_equal(load(path), later)
     assert copies(folder) == [path]
 
 
 def test_every_tenth_gesture_is_copied(watch, folder, document):
-    for count in range(1, 2 * GESTURES):
+    for count in range(1, 2 * COPY_GESTURES):
         document = moved(document, 1)
         watch.see(document, gesture=object())
-        assert bool(copies(folder)) == (count >= GESTURES)
-        if count == GESTURES:
+        assert bool(copies(folder)) == (count >= COPY_GESTURES)
+        if count == COPY_GESTURES:
             tenth = document
     (path,) = copies(folder)
     assert_equal(load(path), tenth)
@@ -93,7 +107,7 @@ def test_every_tenth_gesture_is_copied(watch, folder, document):
 @pytest.mark.parametrize("end", ["saved", "closed", "nothing open"])
 def test_no_copy_is_left_of_what_is_saved_or_not_wanted(watch, folder, document, end):
     watch.see(document)
-    watch.now = SECONDS
+    watch.now = COPY_SECONDS
     watch.see(document)
     assert len(copies(folder)) == 1
     if end == "closed":
@@ -104,10 +118,9 @@ def test_no_copy_is_left_of_what_is_saved_or_not_wanted(watch, folder, document,
 
 
 def test_what_is_saved_while_a_copy_is_being_written_leaves_none(watch, folder, document, monkeypatch):
-    go_on = threading.Event()
-    monkeypatch.setattr(module, "write_atomic", lambda path, data: (go_on.wait(), path.write_bytes(data)))
+    go_on = hold_writes(monkeypatch)
     watch.autosave.watch(document, True)
-    watch.now = SECONDS
+    watch.now = COPY_SECONDS
     watch.autosave.watch(document, True)
     watch.autosave.watch(document, False)
     go_on.set()
@@ -116,12 +129,11 @@ def test_what_is_saved_while_a_copy_is_being_written_leaves_none(watch, folder, 
 
 
 def test_watching_never_waits_for_the_writer(watch, folder, document, monkeypatch):
-    go_on = threading.Event()
-    monkeypatch.setattr(module, "write_atomic", lambda path, data: (go_on.wait(), path.write_bytes(data)))
+    go_on = hold_writes(monkeypatch)
     for _ in range(50):  # a second copy is due, but the first one is not done
         document = moved(document, 1)
         watch.autosave.watch(document, True, object())
-        watch.now += SECONDS
+        watch.now += COPY_SECONDS
     assert copies(folder) == []
     go_on.set()
     watch.see(document)
@@ -131,17 +143,18 @@ def test_watching_never_waits_for_the_writer(watch, folder, document, monkeypatc
 
 def test_failure_is_told_once_and_tried_again_a_minute_later(watch, folder, document, monkeypatch):
     def fail(*_):
-        raise InputError("cannot write: no space left on device")
+        raise InputError("Couldn't save: no space left on device")
 
     watch.see(document)
-    watch.now = SECONDS
+    watch.now = COPY_SECONDS
     with monkeypatch.context() as patch:
-        patch.setattr(module, "write_atomic", fail)
+        patch.setattr(autosave_module, "write_atomic", fail)
         watch.see(document)
-        with pytest.raises(InputError, match=r"^unsaved work is not protected against a crash: cannot"):
+        message = r"^Unsaved work is not protected against a crash\. Couldn't save: no space"
+        with pytest.raises(InputError, match=message):
             watch.see(document)
         watch.see(document)
-    watch.now += SECONDS - 1
+    watch.now += COPY_SECONDS - 1
     watch.see(document)
     assert copies(folder) == []
     watch.now += 1
@@ -153,17 +166,18 @@ def test_a_file_in_place_of_the_folder_is_told(tmp_path, document):
     (tmp_path / "state").write_text("not a folder")
     watch = Watch(tmp_path / "state")
     watch.see(document)
-    watch.now = SECONDS
+    watch.now = COPY_SECONDS
     watch.see(document)
-    with pytest.raises(InputError, match="unsaved work is not protected"):
+    with pytest.raises(InputError, match="Unsaved work is not protected"):
         watch.see(document)
-    assert watch.autosave.lost() == []
+    assert watch.autosave.claim_lost_copies() == []
 
 
 # -- several programs, and those that died ------------------------------------------------------------------
 
 EDIT = """
-import sys
+import sys, time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from akap_editor.editor import gestures
@@ -172,7 +186,8 @@ from akap_editor.editor.events import PointerEvent
 from akap_editor.io.akap.autosave import Autosave
 from akap_editor.io.akap.project import load
 
-editor, autosave = Editor(), Autosave(Path(sys.argv[2]))
+editor, worker = Editor(), ThreadPoolExecutor(1)
+autosave = Autosave(Path(sys.argv[2]), time.monotonic, worker)
 editor.open(load(sys.argv[1]))
 
 def frame():
@@ -193,7 +208,7 @@ while True:  # and never let go
     x += 1
     act("move", (at[0], at[1] + 20 + x % 20))
     if x == 30:
-        autosave._worker.submit(int).result()
+        worker.submit(int).result()
         print("dragging", flush=True)
 """
 
@@ -223,11 +238,11 @@ def test_what_a_killed_program_had_is_found_and_what_a_running_one_has_is_not(fi
             assert program.stdout.readline() == b"dragging\n"
         autosave = Autosave(folder)
         assert len(copies(folder)) == 2
-        assert autosave.lost() == [], "both are at work"
+        assert autosave.claim_lost_copies() == [], "both are at work"
         killed.kill()
         killed.wait()
-        (copy,) = autosave.lost()
-        assert Autosave(folder).lost() == [], "it is offered to one program only"
+        (copy,) = autosave.claim_lost_copies()
+        assert Autosave(folder).claim_lost_copies() == [], "it is offered to one program only"
         document = copy.read()
         assert document.path == figure
         assert len(document.state.pins) == 10
@@ -235,10 +250,10 @@ def test_what_a_killed_program_had_is_found_and_what_a_running_one_has_is_not(fi
         original = load(figure)
         assert document.drawing.mesh.vertices.tobytes() == original.drawing.mesh.vertices.tobytes()
         assert (document.drawing.image == original.drawing.image).all()
-        copy.leave()
-        (copy,) = Autosave(folder).lost()
+        copy.release()
+        (copy,) = Autosave(folder).claim_lost_copies()
         copy.discard()
-        assert autosave.lost() == []
+        assert autosave.claim_lost_copies() == []
         assert len(copies(folder)) == 1, "the running program's"
     finally:
         for program in (killed, running):
@@ -249,21 +264,19 @@ def test_what_a_killed_program_had_is_found_and_what_a_running_one_has_is_not(fi
 def test_an_adopted_copy_lives_until_the_drawing_is_saved(folder, document):
     dead = Watch(folder)
     dead.see(document)
-    dead.now = SECONDS
-    dead.see(document)
-    dead.autosave._copy.lock.release()
+    dead.autosave.rescue(document)
     watch = Watch(folder)
-    (copy,) = watch.autosave.lost()
+    (copy,) = watch.autosave.claim_lost_copies()
     recovered = copy.read()
     assert recovered.path is None
     watch.autosave.adopt(copy, recovered)
     watch.see(recovered)
     assert copies(folder) == [copy.path]
-    assert Autosave(folder).lost() == []
-    watch.now = SECONDS
+    assert Autosave(folder).claim_lost_copies() == []
+    watch.now = COPY_SECONDS
     changed = moved(recovered, 1)
     watch.see(changed)
-    watch.now += SECONDS
+    watch.now += COPY_SECONDS
     watch.see(changed)
     assert copies(folder) == [copy.path]
     assert_equal(load(copy.path), changed)
@@ -289,9 +302,9 @@ ORIGINS = {
 @pytest.mark.parametrize("origin", ORIGINS)
 def test_a_copy_that_is_no_good_is_an_input_error(folder, document, origin):
     folder.mkdir()
-    more = [] if ORIGINS[origin] is None else [(module.ORIGIN, ORIGINS[origin], True)]
+    more = [] if ORIGINS[origin] is None else [(ORIGIN_ENTRY, ORIGINS[origin], True)]
     (folder / "bad.akap").write_bytes(encode_document(document, more))
-    (copy,) = Autosave(folder).lost()
+    (copy,) = Autosave(folder).claim_lost_copies()
     with pytest.raises(InputError, match=r"Couldn't recover “.*bad\.akap”\. "):
         copy.read()
     assert (folder / "bad.akap").exists()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from akap_editor.io.export.texture import REACH, bleed, companion, y_up
+from akap_editor.io.export.texture import BLEED_PIXELS, bleed, companion_stem, y_up
 
 
 def test_bleeding_changes_only_hidden_colors(bent):
@@ -21,7 +21,7 @@ def test_each_hidden_pixel_has_the_color_of_a_nearest_visible_one():
     y, x = np.nonzero(image[..., 3])
     for row, column in np.argwhere(image[..., 3] == 0):
         away = (y - row) ** 2 + (x - column) ** 2
-        assert away.min() <= REACH**2
+        assert away.min() <= BLEED_PIXELS**2
         nearest = [image[y[i], x[i], :3].tolist() for i in np.flatnonzero(away == away.min())]
         assert result[row, column, :3].tolist() in nearest
 
@@ -41,7 +41,7 @@ def test_what_is_far_away_stays(bent):
     image = np.zeros((100, 100, 4), dtype=np.uint8)
     image[50, 50] = (9, 9, 9, 255)
     result = bleed(image)
-    side = 2 * REACH + 1
+    side = 2 * BLEED_PIXELS + 1
     assert (result[..., 0] == 9).sum() == side**2
     assert not bleed(np.zeros((4, 4, 4), dtype=np.uint8)).any()
 
@@ -53,5 +53,5 @@ def test_y_up_is_a_reflection_about_the_foot_of_the_frame(bent):
 
 
 def test_names_that_others_can_read():
-    assert companion("my  old\tcat") == "my_old_cat"
-    assert companion("Bär") == "Bär"
+    assert companion_stem("my  old\tcat") == "my_old_cat"
+    assert companion_stem("Bär") == "Bär"
