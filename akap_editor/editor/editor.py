@@ -57,7 +57,7 @@ class Editor:
         self._fitted: Camera | None = None
         self._clock = clock
         self._nudges = NudgeSeries(clock)
-        self._last_hit_test: tuple[TriMesh, Floats, Point, bool] | None = None  # mesh, pose, place, result
+        self._last_hit_test: tuple[TriMesh, Floats, Point, bool] | None = None  # mesh, pose, point, result
 
     # -- document ------------------------------------------------------------------------------------------
 
@@ -328,9 +328,9 @@ class Editor:
         if self.session is None:
             return False
         mesh, pose = self.session.drawing.mesh, self.session.state.positions
-        place, last = self.camera.to_drawing(position), self._last_hit_test
-        if last is None or last[0] is not mesh or last[1] is not pose or last[2] != place:
-            last = self._last_hit_test = mesh, pose, place, mesh.find(place, pose) is not None
+        point, last = self.camera.to_drawing(position), self._last_hit_test
+        if last is None or last[0] is not mesh or last[1] is not pose or last[2] != point:
+            last = self._last_hit_test = mesh, pose, point, mesh.find(point, pose) is not None
         return last[3]
 
     @property

@@ -1,4 +1,4 @@
-"""What a window tells the editor, in words that need no window."""
+"""Input events of the editor, independent of any window system."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -6,14 +6,14 @@ from typing import Literal
 from .camera import Point
 
 Button = Literal["left", "middle", "right"]
-ARROWS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}  # keys, and where to
+ARROWS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}  # keys and their directions
 
 
 @dataclass(frozen=True)
 class PointerEvent:
-    """A press, a move or a release; position in points of the window, y down.
+    """A press, a movement or a release of the mouse; position in points of the window, y down.
 
-    clicks: how many times in a row the button went down there, 2 for a double click.
+    clicks: number of quick presses at the same place, 2 for a double click.
     """
 
     kind: Literal["press", "move", "release"]
@@ -26,7 +26,7 @@ class PointerEvent:
 
 @dataclass(frozen=True)
 class ScrollEvent:
-    """The wheel, turned by ``amount`` notches (up is positive) at ``position``."""
+    """A turn of the mouse wheel by ``amount`` notches, up is positive, at ``position``."""
 
     position: Point
     amount: float
@@ -34,7 +34,7 @@ class ScrollEvent:
 
 @dataclass(frozen=True)
 class KeyEvent:
-    """A key pressed or let go, by its lower-case name: "escape", "space", "alt", "left", "enter", ..."""
+    """A press or a release of a key with a lower-case name: "escape", "space", "alt", "left", "enter", ..."""
 
     key: str
     pressed: bool = True
@@ -43,7 +43,7 @@ class KeyEvent:
 
 @dataclass(frozen=True)
 class PinRequest:
-    """What the pointer asked the window to open for a pin."""
+    """A request to the window: open the values or the menu of a pin."""
 
     kind: Literal["values", "menu"]
     pin: int

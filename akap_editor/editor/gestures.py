@@ -55,12 +55,12 @@ class EditContext(Protocol):
 # -- pins ----------------------------------------------------------------------------------------------------
 
 
-def add_pin(editor: EditContext, place: Point) -> int | None:
-    """Add a pin at a place of the drawing (pixels) and select it.
+def add_pin(editor: EditContext, position: Point) -> int | None:
+    """Add a pin at a position of the current pose, pixels, and select it.
 
-    Returns its id; None beside the drawing. Raises InputError if the place is not finite.
+    Returns its id; None outside the drawing. Raises InputError if the position is not finite.
     """
-    pin = editor.edit("Add Pin", lambda session: pin_edits.add_pin(session, place))
+    pin = editor.edit("Add Pin", lambda session: pin_edits.add_pin(session, position))
     if pin is not None:
         editor.select({pin})
     return pin
@@ -87,13 +87,13 @@ def remove_last_pin(editor: EditContext) -> None:
         remove_pins(editor, {editor.session.state.pins[-1].id})
 
 
-def move_pin(editor: EditContext, pin: int, place: Point) -> None:
-    """Set the target of a pin (drawing pixels). Raises InputError on an unknown id or a place not finite."""
-    editor.apply("Move Pin", SetTargets({pin: place}))
+def move_pin(editor: EditContext, pin: int, position: Point) -> None:
+    """Set the target of a pin, pixels. Raises InputError on an unknown id or if it is not finite."""
+    editor.apply("Move Pin", SetTargets({pin: position}))
 
 
 def set_depth(editor: EditContext, pin: int, depth: int) -> None:
-    """Set the depth of a pin: higher is nearer to the viewer. Raises InputError on a depth out of range."""
+    """Set the depth of a pin; greater depths are in front. Raises InputError on a depth out of range."""
     editor.edit("Set Depth", lambda session: pin_edits.set_depths(session, {pin: depth}))
 
 
@@ -135,7 +135,7 @@ class NudgeSeries:
         self._last: tuple[HistoryEntry | None, frozenset[int], float] | None = None  # entry, pins, time
 
     def nudge(self, editor: EditContext, dx: float, dy: float) -> None:
-        """Move the targets of the selected pins by (dx, dy) drawing pixels."""
+        """Move the targets of the selected pins by (dx, dy) pixels."""
         session, pins = editor.session, editor.selection
         if session is None or editor.is_busy or not pins:
             return

@@ -91,7 +91,7 @@ class PinsIdle(IdleTool):
         elif ring_pin is not None:
             context.set_tool(PointingRotationRing(context, event, ring_pin))
         elif pin is None:
-            self._press_beside_pins(event)
+            self._press_outside_pins(event)
         elif event.alt:
             context.set_tool(RemovingPin(context, event, pin))
         elif event.clicks == 2 and pin != self.newest_pin:
@@ -99,7 +99,7 @@ class PinsIdle(IdleTool):
         else:
             context.set_tool(PointingPin(context, event, pin, self, is_new=False))
 
-    def _press_beside_pins(self, event: PointerEvent) -> None:
+    def _press_outside_pins(self, event: PointerEvent) -> None:
         """Add a pin on the drawing, except with Shift or Alt, which are for pins that exist."""
         context = self.context
         if event.shift or event.alt:
@@ -230,7 +230,7 @@ class OpeningPinMenu(Pointing):
 
 
 class PointingCanvas(Pointing):
-    """The canvas is pressed beside the drawing, or with Shift or Alt, and not dragged yet."""
+    """The canvas is pressed outside the drawing, or with Shift or Alt, and not dragged yet."""
 
     hint = "Drag to select pins with a box"
 

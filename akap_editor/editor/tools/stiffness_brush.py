@@ -135,10 +135,10 @@ class Painting(Tool):
             self._stiffness = apply_stroke(self.session.state.stiffness, self._coverage, self._factor)
 
     def _at_rest(self, position: Point) -> Floats | None:
-        """The point (2,) of the rest pose that is seen at a point of the screen; None beside the drawing."""
+        """The point (2,) of the rest pose that is seen at a point of the screen; None outside the drawing."""
         session = self.session
-        mesh, place = session.drawing.mesh, self.context.camera.to_drawing(position)
-        point = mesh.find(place, session.state.positions, session.document.face_order)
+        mesh, center = session.drawing.mesh, self.context.camera.to_drawing(position)
+        point = mesh.find(center, session.state.positions, session.document.face_order)
         return None if point is None else np.round(mesh.evaluate(point, mesh.vertices)[0], 3)
 
     def release(self, event: PointerEvent) -> None:
