@@ -11,7 +11,7 @@ from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.edits import SetPose
 from akap_editor.errors import InputError, SolverError
 from akap_editor.geometry.mesh import TriMesh
-from tests.support.editor_driver import BESIDE, bits
+from tests.support.editor_driver import OUTSIDE, bits
 
 NECK, END = (62.0, 40.0), (105.0, 40.0)
 
@@ -96,7 +96,7 @@ def test_hover(pinned):
     pinned.move((45.0, 25.0))
     assert pinned.hovered_pin is None
     assert pinned.would_add_pin
-    pinned.move(BESIDE)
+    pinned.move(OUTSIDE)
     assert not pinned.would_add_pin
     pinned.move((45.0, 25.0))
     pinned.editor.chosen_tool = pinned.editor.hand_tool
@@ -129,7 +129,7 @@ def test_the_hint_of_a_drag_says_why_nothing_bends(driver):
     assert driver.tool == "DraggingPin"
     assert "all of it moves" in driver.editor.hint
     driver.release((70.0, 30.0))
-    driver.move(BESIDE)
+    driver.move(OUTSIDE)
     assert "add another one that holds it in place" in driver.editor.hint
 
 
@@ -142,16 +142,26 @@ def test_the_hint_of_a_drag_that_bends_is_how_to_end_it(pinned):
 
 def test_the_hint_of_idle_says_what_a_press_would_do(driver):
     hints = []
-    for at in (BESIDE, NECK):
+    for at in (OUTSIDE, NECK):
         driver.move(at)
         hints.append(driver.editor.hint)
     driver.click(NECK)
-    for at in (NECK, BESIDE):
+    for at in (NECK, OUTSIDE):
         driver.move(at)
         hints.append(driver.editor.hint)
     driver.editor.chosen_tool = driver.editor.hand_tool
     hints.append(driver.editor.hint)
     assert len(set(hints)) == 5
+
+
+def test_held_keys(pinned, drawing):
+    for name in ("h", "alt"):
+        pinned.key(name)
+    assert pinned.editor.held == {"h", "alt"}
+    pinned.key("alt", pressed=False)
+    assert pinned.editor.held == {"h"}
+    pinned.editor.open(new_document(drawing))
+    assert pinned.editor.held == {"h"}
 
 
 # -- edits -------------------------------------------------------------------------------------------------
@@ -218,7 +228,7 @@ def test_removing_nothing_is_no_edit(pinned, ids):
 
 def test_a_pin_beside_the_drawing_is_no_edit(pinned):
     before = pinned.everything
-    assert gestures.add_pin(pinned.editor, BESIDE) is None
+    assert gestures.add_pin(pinned.editor, OUTSIDE) is None
     assert pinned.everything == before
 
 
@@ -270,7 +280,7 @@ def test_select_knows_only_pins_that_are_there(pinned):
 def test_modified_and_saved(pinned, tmp_path):
     pinned.editor.mark_saved(tmp_path / "a.akap")
     assert not pinned.editor.is_modified
-    for act in (lambda: pinned.click(NECK), lambda: pinned.click(BESIDE), lambda: pinned.scroll(NECK, 2)):
+    for act in (lambda: pinned.click(NECK), lambda: pinned.click(OUTSIDE), lambda: pinned.scroll(NECK, 2)):
         act()
         assert not pinned.editor.is_modified
     pinned.drag(END, (90.0, 60.0))

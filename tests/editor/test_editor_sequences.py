@@ -14,12 +14,12 @@ from akap_editor.editor.session.edits import EDITS
 from akap_editor.editor.session.stepper import INLINE
 from akap_editor.errors import InputError
 from tests.support.edit_examples import EDIT_EXAMPLES
-from tests.support.editor_driver import BESIDE, Driver, bits, replayed_state
+from tests.support.editor_driver import OUTSIDE, Driver, bits, replayed_state
 
 HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
 
 places = st.one_of(
-    st.sampled_from([HEAD, NECK, END, (45.0, 25.0), (45.0, 55.0), BESIDE, (118.0, 78.0)]),
+    st.sampled_from([HEAD, NECK, END, (45.0, 25.0), (45.0, 55.0), OUTSIDE, (118.0, 78.0)]),
     st.tuples(st.floats(-20, 140), st.floats(-20, 100)),
 )
 buttons = st.sampled_from(["left", "left", "left", "middle", "right"])

@@ -1,6 +1,5 @@
-"""Drives an editor as a hand would, and checks after every event what must always hold."""
+"""A driver of the editor: it presses, moves and releases, and checks invariants after every event."""
 
-from collections.abc import Callable
 from concurrent.futures import Executor
 from typing import Any
 
@@ -17,11 +16,11 @@ from akap_editor.editor.session.stepper import INLINE
 from akap_editor.geometry.mesh import signed_areas
 
 Point = tuple[float, float]
-BESIDE = (2.0, 2.0)  # a corner of the picture that the drawing leaves free
+OUTSIDE = (2.0, 2.0)  # a corner of the picture that the drawing leaves free
 
 
 class Ticks:
-    """A clock that moves on a millisecond at each look."""
+    """A clock that advances by a millisecond each time it is read."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -53,12 +52,14 @@ def replayed_state(recording: Recording, drawing: Drawing) -> EditState:
 
 
 class Driver:
-    """An editor with one drawing open; places are in drawing pixels."""
+    """An editor with one document open; points are in drawing pixels.
 
-    def __init__(
-        self, document: Document, clock: Callable[[], float] | None = None, worker: Executor = INLINE
-    ) -> None:
-        self.editor = Editor(clock or Ticks(), worker)
+    clock: of the editor.
+    """
+
+    def __init__(self, document: Document, clock: Ticks | None = None, worker: Executor = INLINE) -> None:
+        self.clock = Ticks() if clock is None else clock
+        self.editor = Editor(self.clock, worker)
         self.editor.open(document)
         self._revision = 0
         self.check()
@@ -164,7 +165,22 @@ class Driver:
     # -- what always holds ---------------------------------------------------------------------------------
 
     def check(self) -> None:
-        """Raises AssertionError where the session has become something that it must never be."""
+        """Check what holds after every event: a valid state, and tools, selection and popup that fit it."""
+        self._check_state()
+        editor, ids = self.editor, set(self.ids)
+        assert editor.selection <= ids
+        assert editor.request is None or editor.request.pin in ids
+        assert editor.is_busy or not self.session.history.is_open
+        assert editor.is_busy or editor.tool.is_idle
+        assert editor.hint
+        markers = editor.tool.markers
+        assert markers.hovered_pin is None or markers.hovered_pin in ids
+        assert markers.ring is None or markers.ring.pin in ids
+        assert set(markers.pin_targets) <= ids
+        assert self.session.document.revision >= self._revision
+        self._revision = self.session.document.revision
+
+    def _check_state(self) -> None:
         state, mesh = self.state, self.session.drawing.mesh
         assert np.isfinite(state.positions).all()
         assert (signed_areas(state.positions, mesh.faces) > 0).all()
@@ -176,7 +192,3 @@ class Driver:
             assert abs(pin.weights.sum() - 1) < 1e-9
             assert 0 <= pin.face < len(mesh.faces)
         assert len(set(self.ids)) == len(self.ids)
-        assert self.editor.selection <= set(self.ids)
-        assert self.editor.is_busy or not self.session.history.is_open
-        assert self.session.document.revision >= self._revision
-        self._revision = self.session.document.revision

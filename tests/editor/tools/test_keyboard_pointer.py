@@ -12,7 +12,7 @@ from akap_editor.editor.tools.keyboard_pointer import (
     STEP,
 )
 from akap_editor.errors import SolverError
-from tests.support.editor_driver import BESIDE
+from tests.support.editor_driver import OUTSIDE
 
 NECK, END = (62.0, 40.0), (105.0, 40.0)
 
@@ -78,7 +78,7 @@ def test_enter_adds_a_pin_exactly_there_in_one_gesture(driver):
 
 
 def test_enter_beside_the_drawing_adds_nothing(driver):
-    at(driver, BESIDE)
+    at(driver, OUTSIDE)
     assert not driver.would_add_pin
     before = driver.everything
     enter(driver)
@@ -216,7 +216,7 @@ def test_the_hand_is_laid_aside(driver):
 
 
 def test_hints_say_what_enter_does(pinned):
-    at(pinned, BESIDE)
+    at(pinned, OUTSIDE)
     assert "Arrows" in pinned.editor.hint
     pinned.editor.tool.reveal_pin(pinned.ids[0])
     assert "selects this pin" in pinned.editor.hint

@@ -10,13 +10,13 @@ from akap_editor.errors import InputError
 from akap_editor.io.export import EXPORT_FORMATS, ExportOptions, export, format_of
 from akap_editor.io.images import read_image, write_png
 
-BESIDE = {".obj": ["cat-texture.png", "cat.mtl"], ".spine.json": ["cat-texture.png"]}
+OUTSIDE = {".obj": ["cat-texture.png", "cat.mtl"], ".spine.json": ["cat-texture.png"]}
 
 
 @pytest.mark.parametrize("each", EXPORT_FORMATS, ids=lambda each: each.suffix)
 def test_the_name_decides_on_the_files(bent, painter, tmp_path, each):
     written = export(bent, tmp_path / f"cat{each.suffix}", ExportOptions(), painter)
-    assert [path.name for path in written] == [*BESIDE.get(each.suffix, []), f"cat{each.suffix}"]
+    assert [path.name for path in written] == [*OUTSIDE.get(each.suffix, []), f"cat{each.suffix}"]
     assert sorted(tmp_path.iterdir()) == sorted(written)
     assert all(path.stat().st_size for path in written)
     assert bool(painter.asked) == (each.suffix == ".png")
