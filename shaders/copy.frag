@@ -1,5 +1,5 @@
 #version 330 core
-// The same picture, pixel by pixel.
+// Copies the picture pixel by pixel.
 
 uniform sampler2D source;
 

@@ -1,5 +1,5 @@
 #version 330 core
-// Mesh edges: drawing units to clip space.
+// Mesh edges and line segments: drawing units to clip space.
 
 uniform vec4 view;  // sx, sy, tx, ty: ndc = s * position + t
 

@@ -1,5 +1,5 @@
 #version 330 core
-// The textured mesh; the picture is premultiplied. A tint of (r, g, b, share) replaces so much of its colors.
+// The textured mesh; the picture is premultiplied. The tint (r, g, b, share) replaces this share of its colors.
 
 uniform sampler2D picture;
 uniform float opacity;

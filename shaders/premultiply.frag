@@ -1,5 +1,5 @@
 #version 330 core
-// Straight to premultiplied alpha, pixel by pixel.
+// Converts straight to premultiplied alpha, pixel by pixel.
 
 uniform sampler2D source;
 

@@ -1,5 +1,5 @@
 #version 330 core
-// Premultiplied to straight alpha in whole steps of 1/255; a pixel that rounds to alpha 0 has no color.
+// Converts premultiplied to straight alpha, rounded to 1/255; a pixel that rounds to alpha 0 has no color.
 
 uniform sampler2D source;
 

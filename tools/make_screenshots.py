@@ -161,7 +161,7 @@ def brush(window: Window) -> None:
 def field(window: Window) -> None:
     """The vector fields during a drag."""
     state, camera = window.state, window.state.editor.camera
-    state.view.vectors = True
+    state.view.show_vector_fields = True
     pin = posed_elephant().state.pins[-1]
     x, y = camera.to_screen((pin.target[0], pin.target[1]))
     state.editor.handle_event(PointerEvent("press", (x, y)))
@@ -172,14 +172,14 @@ def field(window: Window) -> None:
 @shot("heat")
 def heat(window: Window) -> None:
     """The distortion map with its color scale."""
-    window.state.view.heat = "angle"
+    window.state.view.distortion_measure = "angle"
     window.state.show_pins = False
 
 
 @shot("ghost")
 def ghost(window: Window) -> None:
     """The rest pose behind the pose."""
-    window.state.view.ghost = True
+    window.state.view.show_rest_pose = True
 
 
 @shot("split")

@@ -19,7 +19,7 @@ from ..geometry.validation import Floats
 from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from ..render.overlays import Overlays
-from .canvas.view_options import ViewOptions, skins
+from .canvas.view_options import ViewOptions, onion_poses
 from .jobs.background_thread import BackgroundThread, Wake, no_window
 from .jobs.pose_export import PoseExportQueue
 from .jobs.task import Task
@@ -95,9 +95,9 @@ class AppState:
         for name in SWITCHES:
             setattr(state, name, preferences.get(name, getattr(state, name)))
         state.timeline.is_shown = preferences.get("show_timeline", False)
-        state.view.recall(preferences.get("overlays", {}))
+        state.view.restore(preferences.get("overlays", {}))
         if state.view.reference_path is not None:
-            state.run_after_frame(state.view.read_reference_again)
+            state.run_after_frame(state.view.reload_reference)
         brush: list[object] = preferences.get("brush", [])
         match brush:
             case [int() | float() as factor, int() | float() as radius]:
@@ -109,7 +109,7 @@ class AppState:
         for name in SWITCHES:
             self.preferences.put(name, getattr(self, name))
         self.preferences.put("show_timeline", self.timeline.is_shown)
-        self.preferences.put("overlays", self.view.kept())
+        self.preferences.put("overlays", self.view.to_json())
         brush = self.editor.brush_tool.brush
         self.preferences.put("brush", [brush.factor, brush.radius])
         try:
@@ -196,12 +196,12 @@ class AppState:
 
     def overlays(self, scale: float) -> Overlays:
         """What the renderer shows besides the drawing. scale: framebuffer pixels per point of the design."""
-        distortion = self.measure() if self.view.heat is not None else None
+        distortion = self.measure() if self.view.distortion_measure is not None else None
         mesh = self.show_mesh or self.remesher.is_active
         overlays = self.view.overlays(self.editor, distortion, mesh, scale)
         if not self.timeline.shows_keyframes:
             return overlays
-        return replace(overlays, skins=skins(*self.timeline.keyframe_playback.onion_poses()))
+        return replace(overlays, onion_poses=onion_poses(*self.timeline.keyframe_playback.onion_poses()))
 
     def measure(self) -> Distortion | None:
         """The distortion of the current pose, computed once for each pose."""

@@ -5,7 +5,7 @@ from pathlib import Path
 import imgui_bundle
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-Rgba = tuple[float, float, float, float]
+from ..render.overlays import Rgba
 
 FONT_SIZE = 15.0
 

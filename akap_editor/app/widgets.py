@@ -6,9 +6,10 @@ from bisect import bisect_left
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document.settings import Settings
+from ..render.overlays import Rgba
 from .app_state import AppState
 from .commands.command import Command
-from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT, Rgba, packed
+from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT, packed
 
 _BAR = (
     imgui.WindowFlags_.no_title_bar

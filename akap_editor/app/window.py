@@ -23,10 +23,10 @@ from . import files, start_page, theme, widgets
 from . import glfw_key_order as key_order
 from .app_state import AppState
 from .canvas import split_view
+from .canvas.legend import draw_legend
 from .canvas.pin_markers import draw_markers
 from .canvas.pointer_input import Canvas
 from .canvas.scene import Scene
-from .canvas.view_options import draw_legend
 from .commands import registry as commands
 from .commands.focus_navigation import give_keys_to_panels
 from .commands.palette import Palette
@@ -133,7 +133,7 @@ class Window:
             self._is_open = False
         self.remember()
         self.state.writer.close()
-        self.state.exporter.__exit__()
+        self.state.exporter.release()
         self.state.thumbnails.release()
         self._picture.release()
         imgui.backends.opengl3_shutdown()

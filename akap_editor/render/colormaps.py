@@ -1,4 +1,4 @@
-"""Color scales in which equal steps look equal, computed in OKLab (Ottosson 2020)."""
+"""Perceptually uniform color scales, computed in OKLab (Ottosson 2020)."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,20 +25,20 @@ _TO_LINEAR = np.array(
 
 
 def srgb(lightness: ArrayLike, chroma: ArrayLike, hue: ArrayLike) -> Floats:
-    """sRGB (c, 3) from 0 to 1 of OKLab colors in polar form; hue in degrees. Cut off at the gamut."""
-    turn = np.radians(hue)
-    lab = np.stack(np.broadcast_arrays(lightness, chroma * np.cos(turn), chroma * np.sin(turn)), axis=-1)
+    """Convert OKLab colors in polar form to sRGB (c, 3), clipped to 0 to 1; hue in degrees."""
+    angle = np.radians(hue)
+    lab = np.stack(np.broadcast_arrays(lightness, chroma * np.cos(angle), chroma * np.sin(angle)), axis=-1)
     linear = np.clip((lab @ _TO_ROOTS.T) ** 3 @ _TO_LINEAR.T, 0.0, 1.0)
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 
 
 def sequential() -> Floats:
-    """(64, 3): dark violet over green to light yellow; lightness grows evenly, so it reads in gray too."""
+    """(64, 3) from dark violet over green to light yellow; lightness grows evenly, also in gray."""
     t = np.linspace(0.0, 1.0, _STEPS)
     return srgb(0.26 + 0.66 * t, 0.10 + 0.05 * t, 295.0 - 190.0 * t)
 
 
 def diverging() -> Floats:
-    """(64, 3): blue over near white to orange; the ends are told apart by all common color vision."""
+    """(64, 3) from blue over near white to orange, which all common color vision tells apart."""
     t = np.linspace(-1.0, 1.0, _STEPS)
     return srgb(0.93 - 0.42 * np.abs(t), 0.145 * np.abs(t), np.where(t < 0, 255.0, 50.0))

@@ -1,70 +1,80 @@
-"""A picture that takes long to draw, kept as long as nothing in it changes."""
+"""Caches the last picture, and draws another one only if its content has changed."""
 
 from collections.abc import Callable
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import moderngl
+import numpy as np
 
 from .shaders import load_program
 
 
-class FrameCache:
-    """Shows the picture drawn last; draws another where it would come out differently.
+def has_same_content(first: object, second: object) -> bool:
+    """Whether two descriptions of a picture are the same.
 
-    `release` must be called in the end.
+    Dataclasses are compared field by field, tuples item by item, arrays by identity, everything else by
+    equality. So a new field of a dataclass takes part by itself.
     """
+    if first is second:
+        return True
+    if type(first) is not type(second) or isinstance(first, np.ndarray):
+        return False
+    if isinstance(first, tuple) and isinstance(second, tuple):
+        return len(first) == len(second) and all(map(has_same_content, first, second))
+    if is_dataclass(first):
+        names = [field.name for field in fields(first)]
+        return all(has_same_content(getattr(first, name), getattr(second, name)) for name in names)
+    return bool(first == second)
+
+
+class FrameCache:
+    """Shows a picture that takes long to draw. `release` must be called in the end."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._copy = load_program(ctx, "fullscreen.vert", "copy.frag")
-        self._pass = ctx.vertex_array(self._copy, [])
+        self._copy_program = load_program(ctx, "fullscreen.vert", "copy.frag")
+        self._copy_pass = ctx.vertex_array(self._copy_program, [])
         self._texture: moderngl.Texture | None = None
         self._framebuffer: moderngl.Framebuffer | None = None
-        self._values: Any = None
-        self._things: tuple[object, ...] = ()
+        self._content: Any = None
 
     def show(
         self,
         target: moderngl.Framebuffer,
         size: tuple[int, int],
+        content: object,
         draw: Callable[[moderngl.Framebuffer], None],
-        values: object,
-        things: tuple[object, ...],
     ) -> None:
-        """Fill ``target``, ``size`` in pixels, with what ``draw`` draws, all of it opaque.
+        """Fill ``target``, ``size`` in pixels, with the opaque picture that ``draw`` draws.
 
-        values, things: on which that depends, those that are compared by value and by identity.
+        content: describes the picture, see `has_same_content`; ``draw`` must use nothing else. It is kept, so
+        its arrays must not be modified.
         """
         framebuffer, texture = self._framebuffer, self._texture
         if framebuffer is None or texture is None or framebuffer.size != size:
-            target.use()  # moderngl trips over a framebuffer that is released while bound
-            self._forget()
+            target.use()  # moderngl fails if a framebuffer is released while it is bound
+            self._release_picture()
             texture = self._texture = self._ctx.texture(size, 4)
             framebuffer = self._framebuffer = self._ctx.framebuffer([texture])
-        same = len(things) == len(self._things) and all(map(_is, things, self._things))
-        if not same or values != self._values:
-            self._things = ()  # should it fail
+        if self._content is None or not has_same_content(content, self._content):
+            self._content = None  # in case drawing fails
             draw(framebuffer)
-            self._values, self._things = values, things
+            self._content = content
         target.use()
         self._ctx.viewport, self._ctx.scissor = (0, 0, *size), None
         self._ctx.enable_only(moderngl.NOTHING)
         texture.use(0)
-        self._pass.render(moderngl.TRIANGLES, vertices=3)
+        self._copy_pass.render(moderngl.TRIANGLES, vertices=3)
 
     def release(self) -> None:
         """Free every OpenGL object."""
-        self._forget()
-        self._pass.release()
-        self._copy.release()
+        self._release_picture()
+        self._copy_pass.release()
+        self._copy_program.release()
 
-    def _forget(self) -> None:
+    def _release_picture(self) -> None:
         for item in (self._framebuffer, self._texture):
             if item is not None:
                 item.release()
-        self._framebuffer = self._texture = None
-        self._values, self._things = None, ()
-
-
-def _is(a: object, b: object) -> bool:
-    return a is b
+        self._framebuffer = self._texture = self._content = None

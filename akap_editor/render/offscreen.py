@@ -15,8 +15,8 @@ from ..geometry.validation import Ints, as_points
 from .renderer import Background, Renderer
 from .shaders import load_program
 
-TILE = 2048  # pixels a side that are drawn at once: bounds the memory of the graphics card
-SAMPLES = 4  # per pixel, of the mesh's edges: textures are sampled once, so what they hold stays exact
+TILE_SIZE = 2048  # pixels, of the squares that are drawn one by one: bounds the memory of the graphics card
+SAMPLES = 4  # per pixel along edges of the mesh; inside, the texture is sampled once and stays exact
 
 
 def standalone_context() -> moderngl.Context:
@@ -32,27 +32,31 @@ def standalone_context() -> moderngl.Context:
 
 
 class OffscreenRenderer:
-    """A context manager that renders drawings to arrays.
+    """Renders drawings to arrays. Use it as a context manager, or call `release` in the end.
 
-    context: an OpenGL context that is current in all calls, e.g. the window's; by default one of its own,
-    made on first use, without any display server.
+    context: an OpenGL context that is current in all calls, for example the window's. By default it makes its
+    own one on first use, which needs no display server.
     """
 
     def __init__(self, context: moderngl.Context | None = None) -> None:
         self._context = context
-        self._owned = context is None
+        self._owns_context = context is None
         self._renderer: Renderer | None = None
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *error: object) -> None:
+        self.release()
+
+    def release(self) -> None:
+        """Free every OpenGL object, and the context if it is its own."""
         if self._renderer is not None:
             with self._current():
                 for item in (self._unpremultiply_pass, self._unpremultiply, self._renderer):
                     item.release()
             self._renderer = None
-        if self._owned and self._context is not None:
+        if self._owns_context and self._context is not None:
             self._context.release()
             self._context = None
 
@@ -65,14 +69,14 @@ class OffscreenRenderer:
         background: Color | None = None,
         order: Ints | None = None,
     ) -> NDArray[np.uint8]:
-        """The drawing in a pose as (h, w, 4) uint8, straight alpha; where alpha is 0, so is the color.
+        """Render the drawing in a pose to (h, w, 4) uint8, straight alpha; transparent pixels are black.
 
         positions: (n, 2) drawing units; box: the part of the drawing plane to show, by default `frame_box` of
-        the pose; scale: pixels per drawing unit, the size is rounded up (see `output_size`); background:
-        (r, g, b) from 0 to 1, or None for transparent; order: (m,) the faces as they are drawn, the last one
-        in front, see `Document.face_order`. A drawing at rest comes out as its picture was, within what its
-        mesh covers. The driver's limit of sizes does not matter.
-        Raises InputError for a bad argument or too large a picture, GraphicsError without OpenGL 3.3.
+        the pose; scale: pixels per drawing unit, the size is rounded up (see `output_size`); background: None
+        for transparent; order: (m,) the faces in drawing order, the last one in front, see
+        `Document.face_order`. In the rest pose the result equals the drawing's picture wherever the mesh
+        covers it. The picture may be larger than the driver's limit. Raises InputError for a bad argument or
+        a picture that is too large, GraphicsError without OpenGL 3.3.
         """
         pose = as_points(positions, "positions", len(drawing.mesh.vertices))
         box = frame_box(drawing, [pose]) if box is None else box
@@ -82,7 +86,7 @@ class OffscreenRenderer:
         with self._current():
             renderer = self._prepared_renderer(self._context)
             renderer.show(drawing, pose, order)
-            side = min(TILE, renderer.max_texture_size)
+            side = min(TILE_SIZE, renderer.max_texture_size)
             picture = np.empty((height, width, 4), dtype=np.uint8)
             for top in range(0, height, side):
                 for left in range(0, width, side):
@@ -99,13 +103,13 @@ class OffscreenRenderer:
         scale: float,
         background: Background,
     ) -> NDArray[np.uint8]:
-        """The part of the plane with its top left ``corner`` at a drawing unit, ``size`` in pixels.
+        """Render one tile, ``size`` in pixels; ``corner`` is its top left corner in drawing units.
 
-        Drawn in 16-bit floats, so that the division by alpha is exact, and divided on the graphics card.
+        It is drawn in 16-bit floats, so that the graphics card can divide it by alpha exactly.
         """
         assert self._context is not None
         ctx = self._context
-        # y is not turned: the target's bottom row, which is read first, is the top row of the result.
+        # y is not flipped: the bottom row of the target is read first and is the top row of the result
         sx, sy = 2 * scale / size[0], 2 * scale / size[1]
         view = sx, sy, -1 - sx * corner[0], -1 - sy * corner[1]
         sampled = ctx.renderbuffer(size, 4, samples=min(SAMPLES, ctx.max_samples), dtype="f2")
@@ -137,5 +141,5 @@ class OffscreenRenderer:
         return self._renderer
 
     def _current(self) -> AbstractContextManager[object]:
-        """Makes an own context current; a given one is current already."""
-        return self._context if self._owned and self._context is not None else nullcontext()
+        """Makes its own context current; a given one is current already."""
+        return self._context if self._owns_context and self._context is not None else nullcontext()

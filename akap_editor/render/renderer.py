@@ -1,4 +1,4 @@
-"""Draws a posed drawing with OpenGL, given a context; the window and the exporter share it."""
+"""Draws a posed drawing and its overlays with OpenGL; the window and the exporter share it."""
 
 from dataclasses import dataclass
 
@@ -11,16 +11,16 @@ from ..editor.document.drawing import Drawing
 from ..editor.framing import Color
 from ..errors import InputError
 from ..geometry.validation import Floats, Ints
-from .overlays import NO_OVERLAYS, HeatPainter, Overlays, Reference, StrokePainter
+from .overlays import NO_OVERLAYS, FaceColorPainter, LinePainter, Overlays, Reference, Rgba
 from .shaders import View, load_program
 
 
 @dataclass(frozen=True)
 class Background:
-    """What lies behind the drawing; colors are (r, g, b) from 0 to 1.
+    """What is drawn behind the drawing.
 
-    color: fills the target, or None for transparent; checker: two colors of a checkerboard inside the
-    picture's frame, or None; cell: side of its cells in framebuffer pixels.
+    color: fills the target, None for transparent; checker: the two colors of a checkerboard in the picture's
+    frame, or None; cell: side of its cells in framebuffer pixels.
     """
 
     color: Color | None = None
@@ -30,14 +30,14 @@ class Background:
 
 TRANSPARENT = Background()
 CANVAS = Background(color=(0.094, 0.098, 0.110), checker=((0.165, 0.169, 0.184), (0.192, 0.196, 0.212)))
+NO_TINT = (0.0, 0.0, 0.0, 0.0)
 
 
 class Renderer:
-    """Owns every OpenGL object of one context; knows nothing of windows.
+    """Draws one drawing at a time: `show` uploads it, `draw` draws it with its overlays.
 
-    `show` says what to draw and `draw` draws it. The context must be current in all calls, and `release` be
-    called in the end. precise: a 16-bit float texture in place of 8 bit, so that colors survive when an
-    export divides them by a low alpha.
+    The context must be current in all calls, and `release` must be called in the end. precise: use a texture
+    of 16-bit floats instead of 8 bits, so that colors stay exact when an export divides them by a low alpha.
     """
 
     def __init__(self, ctx: moderngl.Context, *, precise: bool = False) -> None:
@@ -46,25 +46,25 @@ class Renderer:
         self.max_texture_size: int = ctx.info["GL_MAX_TEXTURE_SIZE"]
         self._premultiply = load_program(ctx, "fullscreen.vert", "premultiply.frag")
         self._mesh_program = load_program(ctx, "mesh.vert", "mesh.frag")
-        self._line_program = load_program(ctx, "lines.vert", "lines.geom", "lines.frag")
-        self._frame_program = load_program(ctx, "frame.vert", "frame.frag")
-        self._heat = HeatPainter(ctx)
-        self._strokes = StrokePainter(ctx)
+        self._edge_program = load_program(ctx, "lines.vert", "mesh_edges.geom", "mesh_edges.frag")
+        self._checker_program = load_program(ctx, "checkerboard.vert", "checkerboard.frag")
+        self._face_colors = FaceColorPainter(ctx)
+        self._lines = LinePainter(ctx)
         self._premultiply_pass = ctx.vertex_array(self._premultiply, [])
-        self._frame = ctx.vertex_array(self._frame_program, [])
+        self._checker = ctx.vertex_array(self._checker_program, [])
         self._drawing: Drawing | None = None
         self._positions: Floats | None = None
         self._order: Ints | None = None
-        self._of_drawing: list[moderngl.Buffer | moderngl.Texture | moderngl.VertexArray] = []
+        self._drawing_objects: list[moderngl.Buffer | moderngl.Texture | moderngl.VertexArray] = []
         self._reference: Reference | None = None
-        self._of_reference: list[moderngl.Buffer | moderngl.Texture | moderngl.VertexArray] = []
+        self._reference_objects: list[moderngl.Buffer | moderngl.Texture | moderngl.VertexArray] = []
 
     def show(self, drawing: Drawing, positions: Floats, order: Ints | None = None) -> None:
-        """Set what `draw` draws: a drawing in the pose ``positions``, (n, 2) float64 in drawing units.
+        """Upload the drawing in the pose ``positions``, (n, 2) float64 in drawing units.
 
-        order: (m,) the faces as they are drawn, the last one in front; by default as the mesh has them. All
-        are compared by identity, so that only what changed is uploaded. Raises InputError where the shape of
-        ``positions`` does not fit the drawing.
+        order: (m,) the faces in drawing order, the last one in front; by default that of the mesh. Arguments
+        are compared by identity with those of the last call, and only what changed is uploaded. Raises
+        InputError if the shape of ``positions`` does not fit the drawing.
         """
         expected = drawing.mesh.vertices.shape
         if positions.shape != expected:
@@ -72,7 +72,7 @@ class Renderer:
         if drawing is not self._drawing:
             self._upload_drawing(drawing)
         if positions is not self._positions:
-            self._position_buffer.orphan()  # so that the driver need not wait for the last frame
+            self._position_buffer.orphan()  # otherwise the driver waits until the last frame is drawn
             self._position_buffer.write(np.ascontiguousarray(positions, dtype=np.float32))
             self._positions = positions
         if order is not self._order:
@@ -81,7 +81,7 @@ class Renderer:
             self._order = order
 
     def hide(self) -> None:
-        """Nothing is to be drawn until the next `show`."""
+        """Draw no drawing until the next `show`."""
         self._release_drawing()
 
     def draw(
@@ -94,12 +94,11 @@ class Renderer:
         overlays: Overlays = NO_OVERLAYS,
         region: tuple[int, int, int, int] | None = None,
     ) -> None:
-        """Draw into the whole ``framebuffer``; without a drawing only the plain background.
+        """Draw into ``framebuffer``, in premultiplied colors; without a drawing only the background's color.
 
         size: width and height in framebuffer pixels; view: (sx, sy, tx, ty) with ndc = s * position + t, see
-        `Camera.view`; overlays: what is shown besides the drawing; region: (x, y, width, height) in
-        framebuffer pixels from the bottom left, outside of which all stays as it is. Colors come out
-        premultiplied.
+        `Camera.view`; region: (x, y, width, height) in framebuffer pixels from the bottom left, the only part
+        that is drawn; by default all of it.
         """
         framebuffer.use()
         self._ctx.viewport = (0, 0, *size)
@@ -114,35 +113,35 @@ class Renderer:
         if overlays.reference is not None:
             self._draw_reference(overlays.reference, self._drawing.size, view)
         self._texture.use(0)
-        if overlays.ghost > 0:
-            self._draw_pictured(self._rest, overlays.ghost, view)
-        for skin in overlays.skins:
-            self._skin_buffer.orphan()
-            self._skin_buffer.write(np.ascontiguousarray(skin.positions, dtype=np.float32))
-            self._draw_pictured(self._skin, skin.opacity, view, skin.tint)
-        if overlays.heat is not None:
-            self._heat.draw(self._heated, overlays.heat, self._order, view)
+        if overlays.rest_pose_opacity > 0:
+            self._draw_textured(self._rest_mesh, overlays.rest_pose_opacity, view)
+        for pose in overlays.onion_poses:
+            self._onion_buffer.orphan()
+            self._onion_buffer.write(np.ascontiguousarray(pose.positions, dtype=np.float32))
+            self._draw_textured(self._onion_mesh, pose.opacity, view, pose.tint)
+        if overlays.face_colors is not None:
+            self._face_colors.draw(self._face_color_mesh, overlays.face_colors, self._order, view)
         else:
-            self._draw_pictured(self._mesh, 1.0, view)
+            self._draw_textured(self._mesh, 1.0, view)
         if overlays.mesh_lines:
-            self._line_program["view"] = view
-            self._line_program["viewport"] = size
-            self._lines.render(moderngl.LINES)
-        self._strokes.draw(overlays.strokes, size, view)
+            self._edge_program["view"] = view
+            self._edge_program["viewport"] = size
+            self._edges.render(moderngl.LINES)
+        self._lines.draw(overlays.lines, size, view)
 
     def release(self) -> None:
-        """Free every OpenGL object; the renderer is of no use afterwards."""
+        """Free every OpenGL object; the renderer cannot be used afterwards."""
         self._release_drawing()
         self._release_reference()
         for item in (
-            self._heat,
-            self._strokes,
+            self._face_colors,
+            self._lines,
             self._premultiply_pass,
-            self._frame,
+            self._checker,
             self._premultiply,
             self._mesh_program,
-            self._line_program,
-            self._frame_program,
+            self._edge_program,
+            self._checker_program,
         ):
             item.release()
 
@@ -154,57 +153,57 @@ class Renderer:
         size: tuple[int, int],
         view: View,
     ) -> None:
-        program = self._frame_program
+        program = self._checker_program
         program["view"] = view
         program["frame"] = frame
         program["origin"] = round((view[2] + 1) / 2 * size[0]), round((view[3] + 1) / 2 * size[1])
         program["cell"] = cell
         program["even"], program["odd"] = colors
-        self._frame.render(moderngl.TRIANGLE_STRIP, vertices=4)
+        self._checker.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
-    def _draw_pictured(
+    def _draw_textured(
         self,
         mesh: moderngl.VertexArray,
         opacity: float,
         view: View,
-        tint: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0),
+        tint: Rgba = NO_TINT,
     ) -> None:
-        """A mesh with the picture that is bound."""
+        """Draw a mesh with the texture that is bound to unit 0."""
         self._mesh_program["view"] = view
         self._mesh_program["opacity"] = opacity
         self._mesh_program["tint"] = tint
         mesh.render()
 
     def _draw_reference(self, reference: Reference, frame: tuple[int, int], view: View) -> None:
-        """The picture as large as it goes into the frame, in its middle."""
+        """Draw the picture in the middle of the frame, as large as it fits."""
         if self._reference is None or self._reference.image is not reference.image:
             self._release_reference()
             height, width = reference.image.shape[:2]
             half = np.array([width, height]) * min(frame[0] / width, frame[1] / height) / 2
             corners = np.array([(0, 0), (1, 0), (0, 1), (1, 1)], dtype=np.float32)
-            places = self._ctx.buffer((np.array(frame) / 2 + (2 * corners - 1) * half).astype(np.float32))
+            positions = self._ctx.buffer((np.array(frame) / 2 + (2 * corners - 1) * half).astype(np.float32))
             uv = self._ctx.buffer(corners)
             faces = self._ctx.buffer(np.array([0, 1, 3, 0, 3, 2], dtype=np.uint32))
             self._reference_texture = self._make_texture(reference.image)
             self._reference_quad = self._ctx.vertex_array(
-                self._mesh_program, [(places, "2f", "in_position"), (uv, "2f", "in_uv")], faces
+                self._mesh_program, [(positions, "2f", "in_position"), (uv, "2f", "in_uv")], faces
             )
-            self._of_reference = [self._reference_quad, places, uv, faces, self._reference_texture]
+            self._reference_objects = [self._reference_quad, positions, uv, faces, self._reference_texture]
             self._reference = reference
         self._reference_texture.use(0)
-        self._draw_pictured(self._reference_quad, reference.opacity, view)
+        self._draw_textured(self._reference_quad, reference.opacity, view)
 
     def _release_reference(self) -> None:
-        for item in self._of_reference:
+        for item in self._reference_objects:
             item.release()
-        self._of_reference, self._reference = [], None
+        self._reference_objects, self._reference = [], None
 
     def _upload_drawing(self, drawing: Drawing) -> None:
         self._release_drawing()
         ctx, mesh = self._ctx, drawing.mesh
         self._texture = self._make_texture(drawing.image)
         self._position_buffer = ctx.buffer(reserve=mesh.vertices.size * 4, dynamic=True)
-        self._skin_buffer = ctx.buffer(reserve=mesh.vertices.size * 4, dynamic=True)
+        self._onion_buffer = ctx.buffer(reserve=mesh.vertices.size * 4, dynamic=True)
         uv = ctx.buffer(drawing.uv)
         rest = ctx.buffer(mesh.vertices.astype(np.float32))
         faces = self._face_buffer = ctx.buffer(mesh.faces.astype(np.uint32))
@@ -212,15 +211,15 @@ class Renderer:
         positions = (self._position_buffer, "2f", "in_position")
         corners = (uv, "2f", "in_uv")
         self._mesh = ctx.vertex_array(self._mesh_program, [positions, corners], faces)
-        self._heated = ctx.vertex_array(self._heat.program, [positions, corners], faces)
-        skin = (self._skin_buffer, "2f", "in_position")
-        self._skin = ctx.vertex_array(self._mesh_program, [skin, corners], faces)
-        self._rest = ctx.vertex_array(self._mesh_program, [(rest, "2f", "in_position"), corners], faces)
-        self._lines = ctx.vertex_array(self._line_program, [positions], edges)
-        self._of_drawing = [self._mesh, self._heated, self._rest, self._lines]
-        self._of_drawing += [
-            self._skin,
-            self._skin_buffer,
+        self._face_color_mesh = ctx.vertex_array(self._face_colors.program, [positions, corners], faces)
+        onion = (self._onion_buffer, "2f", "in_position")
+        self._onion_mesh = ctx.vertex_array(self._mesh_program, [onion, corners], faces)
+        self._rest_mesh = ctx.vertex_array(self._mesh_program, [(rest, "2f", "in_position"), corners], faces)
+        self._edges = ctx.vertex_array(self._edge_program, [positions], edges)
+        self._drawing_objects = [self._mesh, self._face_color_mesh, self._rest_mesh, self._edges]
+        self._drawing_objects += [
+            self._onion_mesh,
+            self._onion_buffer,
             self._position_buffer,
             uv,
             rest,
@@ -231,15 +230,15 @@ class Renderer:
         self._drawing = drawing
 
     def _release_drawing(self) -> None:
-        for item in self._of_drawing:
+        for item in self._drawing_objects:
             item.release()
-        self._of_drawing = []
+        self._drawing_objects = []
         self._drawing = self._positions = self._order = None
 
     def _make_texture(self, image: NDArray[np.uint8]) -> moderngl.Texture:
-        """The picture premultiplied, with mip levels made from premultiplied colors, so that no rim darkens.
+        """The picture as a premultiplied texture, scaled down if it is larger than the driver allows.
 
-        Scaled down where it is larger than the driver allows.
+        Its mip levels are made from premultiplied colors, so that edges do not darken.
         """
         height, width = image.shape[:2]
         shrink = min(1.0, self.max_texture_size / max(width, height))

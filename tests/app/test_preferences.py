@@ -10,7 +10,7 @@ import pytest
 from akap_editor.app import files
 from akap_editor.app import preferences as module
 from akap_editor.app.app_state import SWITCHES, AppState
-from akap_editor.app.canvas.view_options import RANGES, ViewOptions
+from akap_editor.app.canvas.view_options import DISTORTION_RANGES, ViewOptions
 from akap_editor.app.preferences import MOST_RECENT, Preferences, preferences_path
 from akap_editor.app.window import SIZE, SMALLEST, _remembered_place, _remembered_size
 from akap_editor.editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
@@ -175,14 +175,22 @@ def test_overlays_come_back(path, tmp_path):
     picture = tmp_path / "behind.png"
     picture.write_bytes(resource("assets", "drawings", "bar.png").read_bytes())
     state = AppState.remembering(Preferences(path))
-    state.view.vectors = state.view.ghost = state.view.trails = True
-    state.view.heat, state.view.heat_range = "angle", 4
+    state.view.show_vector_fields = state.view.show_rest_pose = state.view.show_pin_trails = True
+    state.view.distortion_measure, state.view.distortion_range = "angle", 4
     state.view.set_reference(np.zeros((1, 1, 4), np.uint8), picture)
     state.view.show_reference = False
     state.editor.brush_tool.brush = Brush(80.0, 500.0, erasing=True)
     state.remember()
     again = AppState.remembering(Preferences(path))
-    for name in ("vectors", "ghost", "trails", "heat", "heat_range", "show_reference", "reference_path"):
+    for name in (
+        "show_vector_fields",
+        "show_rest_pose",
+        "show_pin_trails",
+        "distortion_measure",
+        "distortion_range",
+        "show_reference",
+        "reference_path",
+    ):
         assert getattr(again.view, name) == getattr(state.view, name), name
     assert again.view.reference is None, "a start must not wait for it"
     while again.needs_frame:
@@ -205,16 +213,16 @@ def test_a_reference_picture_that_is_gone_is_not_missed(path, tmp_path):
 
 def test_overlays_that_make_no_sense_are_passed_over():
     view = ViewOptions()
-    view.recall({"vectors": 1, "ghost": True, "heat": ["area"], "range": "wide", "reference": 3})
-    assert (view.vectors, view.ghost, view.heat, view.heat_range) == (
+    view.restore({"vectors": 1, "ghost": True, "heat": ["area"], "range": "wide", "reference": 3})
+    assert (view.show_vector_fields, view.show_rest_pose, view.distortion_measure, view.distortion_range) == (
         False,
         True,
         None,
-        ViewOptions.heat_range,
+        ViewOptions.distortion_range,
     )
     assert view.reference_path is None
-    view.recall({"range": RANGES[0]})
-    assert view.heat_range == 0
+    view.restore({"range": DISTORTION_RANGES[0]})
+    assert view.distortion_range == 0
 
 
 @pytest.mark.parametrize("brush", [[1e9, -1.0], [float("nan")] * 2, ["a", 2], [3], {}])

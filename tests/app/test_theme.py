@@ -7,7 +7,7 @@ import pytest
 from imgui_bundle import imgui
 
 from akap_editor.app import theme
-from akap_editor.app.canvas import view_options as overlays
+from akap_editor.app.canvas import vector_field_arrows, view_options
 from akap_editor.app.panels.side_panel import numbers_panel
 from akap_editor.app.timeline import keyframe_track as key_track
 from akap_editor.render import colormaps
@@ -111,12 +111,12 @@ def test_what_is_on_differs_from_what_is_off_for_everybody(name):
 
 
 TOGETHER = {
-    "fields of the drag": (overlays.GREEN, overlays.BLUE),
-    "trails and followed field": (overlays.TRAIL, overlays.GREEN),
-    "trails and other field": (overlays.TRAIL, overlays.BLUE),
-    "trails and chosen pins": (overlays.TRAIL, theme.ACCENT),
+    "fields of the drag": (vector_field_arrows.U_OPT_COLOR, vector_field_arrows.U_SMOOTH_COLOR),
+    "trails and followed field": (view_options.TRAIL_COLOR, vector_field_arrows.U_OPT_COLOR),
+    "trails and other field": (view_options.TRAIL_COLOR, vector_field_arrows.U_SMOOTH_COLOR),
+    "trails and chosen pins": (view_options.TRAIL_COLOR, theme.ACCENT),
     "energies": (numbers_panel.AREA_COLOR, numbers_panel.ANGLE_COLOR),
-    "poses before and after": (overlays.BEFORE, overlays.AFTER),
+    "poses before and after": (view_options.BEFORE_TINT, view_options.AFTER_TINT),
     "shrunk and grown": tuple(colormaps.diverging()[[0, -1]]),
     "recorded and rest of a timeline": (key_track.RED, theme.ACCENT),
     "chosen keyframes and others": (theme.ACCENT, theme.TEXT),

@@ -36,8 +36,8 @@ def bend(ui):
 def overlays(ui):
     bend(ui)
     view = ui.state.view
-    view.vectors = view.ghost = view.trails = ui.state.show_mesh = True
-    view.heat = "area"
+    view.show_vector_fields = view.show_rest_pose = view.show_pin_trails = ui.state.show_mesh = True
+    view.distortion_measure = "area"
     view.set_reference(np.full((30, 30, 4), 200, dtype=np.uint8))
 
 

@@ -9,12 +9,10 @@ import glfw
 import numpy as np
 import pytest
 
-from akap_editor.app.canvas import scene as picture_module
 from akap_editor.app.commands.registry import SHORTCUTS
 from akap_editor.app.commands.shortcuts_page import ShortcutsPage
 from akap_editor.app.window import SETTLE_FRAMES
 from akap_editor.deform.akap.deformer import AkapDeformer
-from akap_editor.editor import gestures
 from akap_editor.editor.editor import FRAME_BUDGET
 from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.stepper import INLINE
@@ -164,52 +162,6 @@ def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, loop):
     np.testing.assert_allclose(held.ui.pin_place(3), held.goal, atol=0.25)
 
 
-@pytest.mark.parametrize("ends", ["at rest", "switched off", "closed"])
-def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, monkeypatch, ends):
-    pinned.state.view.vectors = True
-    gate, fields = Event(), AkapDeformer.vector_fields
-    patch = monkeypatch.setattr
-    patch(AkapDeformer, "vector_fields", lambda *motion: gate.wait(DEADLINE) and fields(*motion))
-    gestures.move_pin(pinned.editor, 3, tuple(pinned.pin_place(3) - (0, 20)))
-    while not pinned.state.view.is_computing:
-        pinned.frame()
-    if ends == "switched off":
-        pinned.state.view.vectors = False
-    elif ends == "closed":
-        pinned.editor.close()
-    else:
-        gate.set()
-        pinned.session.stop_motion()
-    gate.set()
-    pinned.settle()
-    assert not pinned.window.needs_frame
-    assert not pinned.state.is_busy
-
-
-def test_fields_are_computed_beside_the_window_and_then_shown(pinned, monkeypatch):
-    pinned.state.view.vectors = True
-    gate, fields = Event(), AkapDeformer.vector_fields
-    patch = monkeypatch.setattr
-    patch(AkapDeformer, "vector_fields", lambda *motion: gate.wait(DEADLINE) and fields(*motion))
-    x, y = pinned.pin_place(3)
-    pinned.session.begin("Drag Pin")
-    pinned.session.apply(SetTargets({3: (x, y - 40)}))
-    while not pinned.state.view.is_computing:
-        pinned.frame()
-    frames = pinned.window.frames
-    pinned.frame()
-    assert pinned.window.frames == frames + 1
-    assert not pinned.state.overlays(1.0).strokes
-    gate.set()
-    seen = []
-    while pinned.state.is_busy:
-        pinned.frame()
-        seen.append(len(pinned.state.overlays(1.0).strokes))
-    pinned.session.commit()
-    assert max(seen) > 0
-    pinned.settle()
-
-
 @pytest.mark.parametrize("press", ["wheel", "key"])
 def test_view_changes_are_seen_in_the_very_next_frame(ui, press):
     io = imgui.get_io()
@@ -240,37 +192,3 @@ def test_the_title_tells_what_is_open_and_whether_it_is_saved(pinned, changed):
         pinned.drag(start, (start[0], start[1] - 60))
     pinned.settle()
     assert glfw.get_window_title(pinned.window.handle) == f"figure{' *' if changed else ''} - akap-editor"
-
-
-def test_a_kept_picture_shows_every_change(pinned, monkeypatch):
-    """What a window shows that draws all of it in each frame."""
-
-    def hover(at):
-        imgui.get_io().add_mouse_pos_event(*at)
-
-    x, y = pinned.pin_place(3)
-    changes = [
-        lambda: hover(pinned.screen(pinned.pin_place(2))),
-        lambda: setattr(pinned.editor, "camera", pinned.editor.camera.zoomed(1.3, pinned.empty_place)),
-        lambda: setattr(pinned.state, "checker", False),
-        lambda: setattr(pinned.state, "show_mesh", True),
-        lambda: setattr(pinned.state.view, "ghost", True),
-        lambda: setattr(pinned.state.view, "trails", True),
-        lambda: setattr(pinned.state.view, "heat", "area"),
-        lambda: gestures.move_pin(pinned.editor, 3, (x, y - 30)),
-        lambda: setattr(pinned.state.view, "heat_range", 0),
-        lambda: gestures.set_depth(pinned.editor, 3, 2),
-        lambda: setattr(pinned.state, "split", True),
-        lambda: setattr(pinned.state, "split", False),
-        pinned.editor.undo,
-    ]
-    pictures = set()
-    for number, change in enumerate(changes):
-        change()
-        snapshots = []
-        for least in (0, 10**9):
-            monkeypatch.setattr(picture_module, "KEPT_FROM", least)
-            snapshots.append(canvas(pinned, pinned.screenshot()).astype(np.int16))
-        np.testing.assert_allclose(*snapshots, rtol=0, atol=4, err_msg=f"change {number}")  # layers round
-        pictures.add(snapshots[0].tobytes())
-    assert len(pictures) >= 8, "most of the changes are seen"

@@ -1,27 +1,39 @@
-"""A picture that is kept: the same pixels, drawn only where something in it has changed."""
+"""A cached picture: the same pixels, drawn again only if its content has changed."""
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
-from akap_editor.render.frame_cache import FrameCache
+from akap_editor.render.frame_cache import FrameCache, has_same_content
+from akap_editor.render.overlays import NO_OVERLAYS, FaceColors, LineSegments, Overlays
 
 SIZE = (40, 30)
-THING, OTHER = np.zeros(3), np.zeros(3)
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    number: float = 1.0
+    array: object = None
+    overlays: Overlays = NO_OVERLAYS
+
+
+CONTENT = Content(array=np.zeros(3))
 
 
 @pytest.fixture
-def kept(ctx):
+def cache(ctx):
     made = FrameCache(ctx)
     yield made
     made.release()
 
 
 @pytest.fixture
-def show(ctx, kept):
-    """Shows a picture of which the left half has a color; what was read from the target, and the calls."""
+def show(ctx, cache):
+    """Shows a picture whose left half has a color, and reads it back; `calls` lists the colors drawn."""
     calls = []
 
-    def show(color, values=(1.0, True), things=(THING, None), size=SIZE):
+    def show(color, content=CONTENT, size=SIZE):
         target = ctx.simple_framebuffer(size)
         target.clear(1.0, 0.0, 1.0, 1.0)
 
@@ -34,8 +46,8 @@ def show(ctx, kept):
             ctx.scissor = (0, 0, size[0] // 2, size[1])
             framebuffer.clear(*color, 1.0)
 
-        with ctx.scope(target):  # moderngl trips over a framebuffer that is released while bound
-            kept.show(target, size, draw, values, things)
+        with ctx.scope(target):  # moderngl fails if a framebuffer is released while it is bound
+            cache.show(target, size, content, draw)
         pixels = np.frombuffer(target.read(components=3, alignment=1), np.uint8).reshape(*size[::-1], 3)
         target.release()
         return pixels
@@ -44,8 +56,8 @@ def show(ctx, kept):
     return show
 
 
-def test_it_is_shown_again_without_being_drawn(show):
-    first, second = show((0.2, 0.4, 0.6)), show((0.9, 0.9, 0.9))
+def test_a_picture_is_shown_again_without_being_drawn(show):
+    first, second = show((0.2, 0.4, 0.6)), show((0.9, 0.9, 0.9), replace(CONTENT))
     assert show.calls == [(0.2, 0.4, 0.6)]
     np.testing.assert_array_equal(first[:, :20], np.full((30, 20, 3), (51, 102, 153)))
     assert not first[:, 20:].any()
@@ -55,14 +67,14 @@ def test_it_is_shown_again_without_being_drawn(show):
 @pytest.mark.parametrize(
     "change",
     [
-        {"values": (1.0, False)},
-        {"things": (OTHER, None)},
-        {"things": (THING, OTHER)},
-        {"things": (THING, None, OTHER)},
+        {"content": replace(CONTENT, number=2.0)},
+        {"content": replace(CONTENT, array=np.zeros(3))},
+        {"content": replace(CONTENT, array=None)},
+        {"content": replace(CONTENT, overlays=Overlays(mesh_lines=True))},
         {"size": (20, 30)},
     ],
 )
-def test_whatever_changes_it_is_drawn_anew(show, change):
+def test_another_content_or_size_is_drawn(show, change):
     show((0.2, 0.4, 0.6))
     changed = show((1.0, 0.0, 0.0), **change)
     assert len(show.calls) == 2
@@ -71,7 +83,7 @@ def test_whatever_changes_it_is_drawn_anew(show, change):
     assert len(show.calls) == 2
 
 
-def test_after_a_failure_nothing_old_is_shown(ctx, kept, show):
+def test_after_a_failure_no_old_picture_is_shown(ctx, cache, show):
     show((0.2, 0.4, 0.6))
 
     def fail(_):
@@ -79,6 +91,54 @@ def test_after_a_failure_nothing_old_is_shown(ctx, kept, show):
 
     target = ctx.simple_framebuffer(SIZE)
     with ctx.scope(target), pytest.raises(ValueError, match="a bug"):
-        kept.show(target, SIZE, fail, (2.0,), (THING,))
+        cache.show(target, SIZE, replace(CONTENT, number=2.0), fail)
     target.release()
     assert tuple(show((1.0, 0.0, 0.0))[0, 0]) == (255, 0, 0)
+
+
+# -- what is compared ---------------------------------------------------------------------------------------
+
+LEVELS, COLORS = np.zeros(4), np.zeros((2, 3))
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "same"),
+    [
+        (1.0, 1.0, True),
+        (1.0, 2.0, False),
+        (1, 1.0, False),
+        ((1, (2, 3)), (1, (2, 3)), True),
+        ((1, 2), (1, 2, 3), False),
+        (LEVELS, LEVELS, True),
+        (LEVELS, LEVELS.copy(), False),
+        (None, LEVELS, False),
+        (FaceColors(LEVELS, COLORS), FaceColors(LEVELS, COLORS), True),
+        (FaceColors(LEVELS, COLORS), FaceColors(LEVELS.copy(), COLORS), False),
+        (FaceColors(LEVELS, COLORS), FaceColors(LEVELS, COLORS, translucent=True), False),
+        (
+            Overlays(lines=(LineSegments(LEVELS, (1, 1, 1, 1), 2.0),)),
+            Overlays(lines=(LineSegments(LEVELS, (1, 1, 1, 1), 2.0),)),
+            True,
+        ),
+        (
+            Overlays(lines=(LineSegments(LEVELS, (1, 1, 1, 1), 2.0),)),
+            Overlays(lines=(LineSegments(LEVELS, (1, 1, 1, 1), 3.0),)),
+            False,
+        ),
+    ],
+)
+def test_arrays_are_compared_by_identity_and_values_by_equality(first, second, same):
+    assert has_same_content(first, second) is same
+
+
+@dataclass(frozen=True, eq=False)
+class NewOverlays(Overlays):
+    """Overlays with a field that the cache has never heard of."""
+
+    sparkle: float = 0.0
+
+
+def test_a_new_field_takes_part_in_the_comparison():
+    assert has_same_content(NewOverlays(sparkle=1.0), NewOverlays(sparkle=1.0))
+    assert not has_same_content(NewOverlays(sparkle=1.0), NewOverlays(sparkle=2.0))
+    assert not has_same_content(NewOverlays(), Overlays())

@@ -225,14 +225,14 @@ def test_tiles_join_without_a_seam(offscreen, sheet, noise, monkeypatch, scale):
     drawing = sheet(noise)
     pose = drawing.mesh.vertices @ [[0.9, 0.3], [-0.3, 0.9]] + [20.3, -7.7]
     whole = offscreen.render(drawing, pose, scale=scale)
-    monkeypatch.setattr("akap_editor.render.offscreen.TILE", 17)
+    monkeypatch.setattr("akap_editor.render.offscreen.TILE_SIZE", 17)
     tiled = offscreen.render(drawing, pose, scale=scale)
     assert np.abs(premultiplied(tiled) - premultiplied(whole)).max() <= 2
 
 
 def test_at_rest_tiles_are_exact(offscreen, sheet, noise, monkeypatch):
     drawing = sheet(noise)
-    monkeypatch.setattr("akap_editor.render.offscreen.TILE", 16)
+    monkeypatch.setattr("akap_editor.render.offscreen.TILE_SIZE", 16)
     assert np.array_equal(offscreen.render(drawing, drawing.mesh.vertices), without_hidden_color(noise))
 
 

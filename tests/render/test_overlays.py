@@ -50,7 +50,7 @@ def test_each_face_has_the_color_of_its_level(renderer, white_sheet, shoot, reor
     order = np.random.default_rng(3).permutation(count) if reordered else None
     renderer.show(white_sheet, white_sheet.mesh.vertices, order)
     levels = np.linspace(0, 1, count)
-    colors = face_colors(white_sheet, shoot(heat=FaceColors(levels, SCALE)))
+    colors = face_colors(white_sheet, shoot(face_colors=FaceColors(levels, SCALE)))
     expected = 255 * ((1 - levels)[:, None] * SCALE[0] + levels[:, None] * SCALE[1])
     assert np.abs(colors - expected).max() <= 2
 
@@ -58,14 +58,14 @@ def test_each_face_has_the_color_of_its_level(renderer, white_sheet, shoot, reor
 def test_faces_off_the_scale_stand_out(white_sheet, shoot):
     levels = np.full(len(white_sheet.mesh.faces), 0.5)
     levels[5], levels[9] = -1.0, np.nan
-    colors = face_colors(white_sheet, shoot(heat=FaceColors(levels, np.array([[0.5] * 3, [0.5] * 3]))))
+    colors = face_colors(white_sheet, shoot(face_colors=FaceColors(levels, np.array([[0.5] * 3, [0.5] * 3]))))
     assert (np.ptp(colors, axis=1) > 200).nonzero()[0].tolist() == [5, 9]
 
 
 def test_heat_keeps_the_alpha_of_the_picture(renderer, sheet, noise, shoot):
     drawing = sheet(noise)
     renderer.show(drawing, drawing.mesh.vertices)
-    shot = shoot((64, 48), TRANSPARENT, heat=FaceColors(np.zeros(len(drawing.mesh.faces)), SCALE))
+    shot = shoot((64, 48), TRANSPARENT, face_colors=FaceColors(np.zeros(len(drawing.mesh.faces)), SCALE))
     np.testing.assert_array_equal(shot[..., 3], noise[..., 3])
     assert (shot[..., :3] <= shot[..., 3:] + 1).all()
 
@@ -73,7 +73,7 @@ def test_heat_keeps_the_alpha_of_the_picture(renderer, sheet, noise, shoot):
 def test_a_new_heat_replaces_the_old_one(white_sheet, shoot):
     count = len(white_sheet.mesh.faces)
     for level, channel in ((0.0, 2), (1.0, 0), (0.0, 2)):
-        colors = face_colors(white_sheet, shoot(heat=FaceColors(np.full(count, level), SCALE)))
+        colors = face_colors(white_sheet, shoot(face_colors=FaceColors(np.full(count, level), SCALE)))
         assert (colors.argmax(axis=1) == channel).all()
 
 
@@ -81,25 +81,25 @@ def test_strokes_are_as_wide_as_asked_and_lie_in_order(white_sheet, shoot):
     across = np.array([[[8.0, 32.0], [56.0, 32.0]]])
     down = np.array([[[32.0, 8.0], [32.0, 56.0]]])
     red, green = LineSegments(across, (1, 0, 0, 1), 6.0), LineSegments(down, (0, 1, 0, 1), 2.0)
-    shot = shoot(strokes=(red, green))
+    shot = shoot(lines=(red, green))
     column = shot[:, 20, 1] < 128
     assert column.nonzero()[0].tolist() == list(range(29, 35))
     row = shot[16, :, 0] < 128
     assert row.nonzero()[0].tolist() == [31, 32]
     assert shot[32, 32, :3].tolist() == [0, 255, 0]
-    assert (shoot(strokes=(LineSegments(np.zeros((0, 2, 2)), (1, 0, 0, 1), 2.0),)) == 255).all()
+    assert (shoot(lines=(LineSegments(np.zeros((0, 2, 2)), (1, 0, 0, 1), 2.0),)) == 255).all()
 
 
 def test_many_strokes_after_few(white_sheet, shoot):
-    shoot(strokes=(LineSegments(np.array([[[1.0, 1.0], [9.0, 1.0]]]), (1, 0, 0, 1), 1.0),))
+    shoot(lines=(LineSegments(np.array([[[1.0, 1.0], [9.0, 1.0]]]), (1, 0, 0, 1), 1.0),))
     y = np.arange(64) + 0.5
     rows = np.stack([np.stack([0 * y, y], axis=1), np.stack([0 * y + 64, y], axis=1)], axis=1)
-    assert (shoot(strokes=(LineSegments(rows, (0, 0, 1, 1), 1.0),))[..., :3] == (0, 0, 255)).all()
+    assert (shoot(lines=(LineSegments(rows, (0, 0, 1, 1), 1.0),))[..., :3] == (0, 0, 255)).all()
 
 
 def test_the_rest_pose_shines_through_behind_the_drawing(renderer, white_sheet, shoot):
     renderer.show(white_sheet, white_sheet.mesh.vertices + np.array([32, 0]))
-    shot = shoot(ghost=0.25)
+    shot = shoot(rest_pose_opacity=0.25)
     assert np.abs(shot[:, :31, :3] - 64).max() <= 1
     assert (shot[:, 33:, :3] == 255).all()
     assert (shoot()[:, :31, :3] == 0).all()

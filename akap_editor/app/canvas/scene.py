@@ -1,59 +1,128 @@
-"""What the window shows under its panels: the drawing, and the second one beside it."""
+"""Draws what lies under the panels: the drawing with its overlays, and the second pose of the split view."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import moderngl
 
+from ...editor.document.drawing import Drawing
+from ...geometry.validation import Floats, Ints
 from ...render.frame_cache import FrameCache
+from ...render.overlays import NO_OVERLAYS, Overlays
 from ...render.renderer import CANVAS, Background, Renderer
+from ...render.shaders import View
 from ..app_state import AppState
-from . import split_view
+from .split_view import comparison_camera, right_half
 
 PLAIN = Background(color=CANVAS.color)
-# Faces of a mesh from which on a picture is kept. Without a graphics card such a mesh takes several times as
-# long to draw as the copy of its picture, and the pointer that hovers over it should not feel that.
-KEPT_FROM = 10_000
+# Without a graphics card, drawing a mesh of so many faces takes several times as long as copying its picture,
+# and a pointer that only hovers over it would feel that.
+MIN_CACHED_FACES = 10_000
+
+
+@dataclass(frozen=True, eq=False)
+class PosedDrawing:
+    """A drawing in a pose.
+
+    positions: (n, 2); order: (m,) faces in drawing order, None for that of the mesh; region: see
+    `Renderer.draw`.
+    """
+
+    drawing: Drawing
+    positions: Floats
+    order: Ints | None
+    view: View
+    region: tuple[int, int, int, int] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class SceneContent:
+    """Everything that the picture of a scene depends on; the cache compares it field by field.
+
+    size: of the picture in pixels; main: None if nothing is open; comparison: None without a split view.
+    """
+
+    size: tuple[int, int]
+    background: Background
+    main: PosedDrawing | None = None
+    comparison: PosedDrawing | None = None
+    overlays: Overlays = NO_OVERLAYS
 
 
 class Scene:
-    """Draws it, or shows it again where nothing has changed. `release` must be called in the end."""
+    """Draws the scene in each frame; `release` must be called in the end.
+
+    Of a large mesh it shows the last picture again, unless the content has changed.
+    """
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self._renderer = Renderer(ctx)
-        self._kept = FrameCache(ctx)
+        self._cache = FrameCache(ctx)
 
     def draw(self, state: AppState, size: tuple[int, int], window: tuple[int, int], scale: float) -> None:
-        """Fill the screen, of a ``size`` in framebuffer pixels and, as ``window``, in points.
-
-        scale: points for a point of the design.
+        """Fill the screen. size, window: of it, in framebuffer pixels and in points; scale: points per design
+        point.
         """
-        document, camera = state.document, state.editor.camera
-        view = camera.view(*window)
-        background = replace(CANVAS, cell=CANVAS.cell * scale) if state.checker else PLAIN
-        overlays = state.overlays(scale * size[0] / max(window[0], 1))
-
-        def draw(target: moderngl.Framebuffer) -> None:
-            if document is None:
-                self._renderer.hide()
-            else:
-                self._renderer.show(document.drawing, document.state.positions, document.face_order)
-            self._renderer.draw(target, size, view, background=background, overlays=overlays)
-            split_view.render(state, self._renderer, target, size, window, background)
-
-        if document is None or len(document.drawing.mesh.faces) < KEPT_FROM:
-            draw(self._ctx.screen)
-            return
-        split = state.editor.canvas if state.split else None
-        values = view, window, background, overlays.mesh_lines, overlays.ghost, split
-        shown = [document]
-        if state.split and state.comparison.session is not None:
-            shown.append(state.comparison.session.document)
-        poses = [thing for each in shown for thing in (each.drawing, each.state.positions, each.face_order)]
-        more = overlays.heat, overlays.reference, *overlays.skins, *overlays.strokes
-        self._kept.show(self._ctx.screen, size, draw, values, (*poses, *more))
+        content = scene_content(state, size, window, scale)
+        if content.main is None or len(content.main.drawing.mesh.faces) < MIN_CACHED_FACES:
+            self._draw(content, self._ctx.screen)
+        else:
+            self._cache.show(self._ctx.screen, size, content, lambda target: self._draw(content, target))
 
     def release(self) -> None:
         """Free every OpenGL object."""
-        self._kept.release()
+        self._cache.release()
         self._renderer.release()
+
+    def _draw(self, content: SceneContent, target: moderngl.Framebuffer) -> None:
+        renderer, main, comparison = self._renderer, content.main, content.comparison
+        if main is None:
+            renderer.hide()
+            renderer.draw(target, content.size, (1.0, 1.0, 0.0, 0.0), background=content.background)
+            return
+        renderer.show(main.drawing, main.positions, main.order)
+        renderer.draw(
+            target, content.size, main.view, background=content.background, overlays=content.overlays
+        )
+        if comparison is not None:
+            renderer.show(comparison.drawing, comparison.positions, comparison.order)
+            renderer.draw(
+                target,
+                content.size,
+                comparison.view,
+                background=content.background,
+                region=comparison.region,
+            )
+
+
+def scene_content(
+    state: AppState, size: tuple[int, int], window: tuple[int, int], scale: float
+) -> SceneContent:
+    """The content of the next frame; arguments as in `Scene.draw`."""
+    background = replace(CANVAS, cell=CANVAS.cell * scale) if state.checker else PLAIN
+    document, density = state.document, size[0] / max(window[0], 1)
+    overlays = state.overlays(scale * density)
+    if document is None:
+        return SceneContent(size, background)
+    view = state.editor.camera.view(*window)
+    main = PosedDrawing(document.drawing, document.state.positions, document.face_order, view)
+    comparison = _comparison(state, size, window, density)
+    return SceneContent(size, background, main, comparison, overlays)
+
+
+def _comparison(
+    state: AppState, size: tuple[int, int], window: tuple[int, int], density: float
+) -> PosedDrawing | None:
+    """The second pose in the right half. density: framebuffer pixels per point."""
+    session = state.comparison.session
+    if not state.split or session is None:
+        return None
+    canvas = state.editor.canvas
+    left, top, right, bottom = (round(density * edge) for edge in right_half(canvas))
+    return PosedDrawing(
+        session.drawing,
+        session.state.positions,
+        session.document.face_order,
+        comparison_camera(state.editor.camera, canvas).view(*window),
+        region=(left, size[1] - bottom, right - left, bottom - top),
+    )

@@ -1,6 +1,5 @@
-"""Two methods on the same pins at once: the left half of the canvas is edited, the right half follows."""
+"""Shows two methods side by side: the left half of the canvas is edited, the right half follows."""
 
-import moderngl
 from imgui_bundle import ImVec2, imgui
 
 from ...deform.methods import nearest_preset, presets
@@ -9,14 +8,15 @@ from ...editor.editor import FRAME_BUDGET
 from ...editor.events import ScrollEvent
 from ...editor.session.session import Session
 from ...geometry.distortion import Distortion
-from ...render.renderer import Background, Renderer
 from ..app_state import AppState
 from ..theme import QUIET, TEXT, packed
 from .pin_markers import draw_pin
 
-Canvas = tuple[float, float, float, float]
+Rectangle = tuple[float, float, float, float]  # left, top, right, bottom in points of the window
 
-_PANE = (
+# The right half is a window, so that clicks on it do not reach the drawing in the left half; it has no
+# background, because the renderer draws the second pose under it.
+_RIGHT_HALF_FLAGS = (
     imgui.WindowFlags_.no_decoration
     | imgui.WindowFlags_.no_background
     | imgui.WindowFlags_.no_move
@@ -26,15 +26,26 @@ _PANE = (
 )
 
 
-def halves(canvas: Canvas) -> tuple[Canvas, Canvas]:
-    """The canvas (left, top, right, bottom) cut in two of one size."""
+def halves(canvas: Rectangle) -> tuple[Rectangle, Rectangle]:
+    """The left and the right half of the canvas, of the same size."""
     left, top, right, bottom = canvas
     middle = round((left + right) / 2)
     return (left, top, middle, bottom), (middle, top, right, bottom)
 
 
-def draw(state: AppState, canvas: Canvas, scale: float) -> Canvas:
-    """Draw names and numbers and step the second method; what is left of the canvas for editing."""
+def right_half(left_half: Rectangle) -> Rectangle:
+    """The half beside the one that is edited."""
+    left, top, right, bottom = left_half
+    return right, top, right + (right - left), bottom
+
+
+def comparison_camera(camera: Camera, left_half: Rectangle) -> Camera:
+    """The camera of the right half, which shows the same part of the plane as ``camera`` in the left half."""
+    return camera.panned(left_half[2] - left_half[0], 0.0)
+
+
+def draw(state: AppState, canvas: Rectangle, scale: float) -> Rectangle:
+    """Step the second method and draw the texts of both halves; returns the part of the canvas to edit in."""
     session = state.editor.session
     if not state.split or session is None:
         state.comparison.close()
@@ -43,105 +54,77 @@ def draw(state: AppState, canvas: Canvas, scale: float) -> Canvas:
 
     def follow() -> None:
         if state.comparison.follow(session, state.editor.worker, FRAME_BUDGET):
-            state.wake()
+            state.wake()  # for the next step
 
     if not state.run_reporting_errors(follow):
         state.split = False
         return canvas
     settings = session.state.settings
-    name = nearest_preset(settings.method, dict(settings.parameters)).label
-    _caption(left, name, state.measure(), session, scale)
-    _pane(state, right, scale)
+    method = nearest_preset(settings.method, dict(settings.parameters)).label
+    _draw_caption(left, method, state.measure(), session, scale)
+    _draw_right_half(state, right, scale)
     return left
 
 
-def _pane(state: AppState, pane: Canvas, scale: float) -> None:
-    """The right half: a window without background, so that no click in it reaches the left half's drawing."""
+def _draw_right_half(state: AppState, half: Rectangle, scale: float) -> None:
+    """The choice of the second method, its numbers, and its pins."""
     comparison = state.comparison
-    imgui.set_next_window_pos(ImVec2(pane[0], pane[1]))
-    imgui.set_next_window_size(ImVec2(pane[2] - pane[0], pane[3] - pane[1]))
+    left, top, right, bottom = half
+    imgui.set_next_window_pos(ImVec2(left, top))
+    imgui.set_next_window_size(ImVec2(right - left, bottom - top))
     imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(12 * scale, 10 * scale))
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
-    imgui.begin("Comparison", None, _PANE)
-    imgui.set_next_item_width(min(220 * scale, pane[2] - pane[0] - 24 * scale))
+    imgui.begin("Comparison", None, _RIGHT_HALF_FLAGS)
+    imgui.set_next_item_width(min(220 * scale, right - left - 24 * scale))
     specs = [preset.spec for preset in presets()]
     labels = [preset.label for preset in presets()]
     changed, index = imgui.combo("##beside", specs.index(comparison.spec), labels, len(labels))
     if changed:
         comparison.spec = specs[index]
-    wheel, at = imgui.get_io().mouse_wheel, imgui.get_mouse_pos()
-    if imgui.is_window_hovered() and wheel:  # zooms both halves, as in the left one
-        state.editor.handle_event(ScrollEvent((at.x - (pane[2] - pane[0]), at.y), wheel))
+    wheel, pointer = imgui.get_io().mouse_wheel, imgui.get_mouse_pos()
+    if imgui.is_window_hovered() and wheel:  # zooms both halves about the same place of the drawing
+        state.editor.handle_event(ScrollEvent((pointer.x - (right - left), pointer.y), wheel))
     imgui.end()
     imgui.pop_style_var(2)
-    lines = imgui.get_background_draw_list()
-    lines.add_line(ImVec2(pane[0], pane[1]), ImVec2(pane[0], pane[3]), packed((1, 1, 1, 0.16)), scale)
+    background = imgui.get_background_draw_list()
+    background.add_line(ImVec2(left, top), ImVec2(left, bottom), packed((1, 1, 1, 0.16)), scale)
     if comparison.session is not None:
-        _caption(pane, "", comparison.measure(), comparison.session, scale)
+        _draw_caption(half, "", comparison.measure(), comparison.session, scale)
         if state.show_pins:
-            _pins(pane, comparison.session, _camera(state.editor.camera, pane, state.editor.canvas), scale)
+            camera = comparison_camera(state.editor.camera, state.editor.canvas)
+            _draw_pins(half, comparison.session, camera, scale)
 
 
-def _caption(pane: Canvas, name: str, found: Distortion | None, session: Session, scale: float) -> None:
-    """A method's name at the top and its numbers at the bottom of a half."""
-    lines = imgui.get_background_draw_list()
-    left, top, right, bottom = pane
-    lines.add_text(ImVec2(left + 12 * scale, top + 14 * scale), packed(TEXT), name)
-    if found is None:
-        return
-    first = [f"E_area {found.area:.3f}", f"E_angle {found.angle:.3f}"]
-    if found.flipped:
-        first.append(f"{found.flipped} flipped")
-    second = [f"Pins off {session.pin_error():.2f} px"]
-    if session.last_step is not None:
-        second.append(f"{1e3 * session.last_step.report.seconds:.1f} ms a step")
-    room = right - left - 24 * scale
-    numbers = "\n".join(_joined(facts, room) for facts in (first, second))
-    height = imgui.calc_text_size(numbers).y
-    lines.add_text(ImVec2(left + 12 * scale, bottom - height - 12 * scale), packed(QUIET), numbers)
-
-
-def _joined(facts: list[str], room: float) -> str:
-    """In one line, or where there is no room for it, each in its own."""
-    line = "   ".join(facts)
-    return line if imgui.calc_text_size(line).x <= room else "\n".join(facts)
-
-
-def _pins(pane: Canvas, session: Session, camera: Camera, scale: float) -> None:
-    lines = imgui.get_background_draw_list()
-    lines.push_clip_rect(ImVec2(*pane[:2]), ImVec2(*pane[2:]))
-    for x, y in session.pin_positions().tolist():
-        draw_pin(lines, camera.to_screen((x, y)), scale)
-    lines.pop_clip_rect()
-
-
-def _camera(camera: Camera, pane: Canvas, edited: Canvas) -> Camera:
-    """The camera of the right half, which shows the same part of the plane as the left."""
-    return camera.panned(pane[0] - edited[0], 0.0)
-
-
-def render(
-    state: AppState,
-    renderer: Renderer,
-    target: moderngl.Framebuffer,
-    pixels: tuple[int, int],
-    window: tuple[int, int],
-    background: Background,
+def _draw_caption(
+    half: Rectangle, method: str, distortion: Distortion | None, session: Session, scale: float
 ) -> None:
-    """Draw the second pose over the right half. pixels, window: sizes in framebuffer pixels and in points."""
-    session = state.comparison.session
-    if not state.split or session is None:
+    """The name of the method at the top of a half, its numbers at the bottom."""
+    background = imgui.get_background_draw_list()
+    left, top, right, bottom = half
+    background.add_text(ImVec2(left + 12 * scale, top + 14 * scale), packed(TEXT), method)
+    if distortion is None:
         return
-    left, top, right, bottom = state.editor.canvas
-    pane = right, top, right + (right - left), bottom
-    density = pixels[0] / max(window[0], 1)
-    x0, x1 = (round(density * x) for x in (pane[0], pane[2]))
-    y0, y1 = (round(density * y) for y in (pane[1], pane[3]))
-    renderer.show(session.drawing, session.state.positions, session.document.face_order)
-    renderer.draw(
-        target,
-        pixels,
-        _camera(state.editor.camera, pane, state.editor.canvas).view(*window),
-        background=background,
-        region=(x0, pixels[1] - y1, x1 - x0, y1 - y0),
-    )
+    first_line = [f"E_area {distortion.area:.3f}", f"E_angle {distortion.angle:.3f}"]
+    if distortion.flipped:
+        first_line.append(f"{distortion.flipped} flipped")
+    second_line = [f"Pins off {session.pin_error():.2f} px"]
+    if session.last_step is not None:
+        second_line.append(f"{1e3 * session.last_step.report.seconds:.1f} ms a step")
+    width = right - left - 24 * scale
+    numbers = "\n".join(_fit_into(width, line) for line in (first_line, second_line))
+    height = imgui.calc_text_size(numbers).y
+    background.add_text(ImVec2(left + 12 * scale, bottom - height - 12 * scale), packed(QUIET), numbers)
+
+
+def _fit_into(width: float, texts: list[str]) -> str:
+    """The texts in one line, or one below the other if the line is wider than ``width``."""
+    line = "   ".join(texts)
+    return line if imgui.calc_text_size(line).x <= width else "\n".join(texts)
+
+
+def _draw_pins(half: Rectangle, session: Session, camera: Camera, scale: float) -> None:
+    background = imgui.get_background_draw_list()
+    background.push_clip_rect(ImVec2(*half[:2]), ImVec2(*half[2:]))
+    for x, y in session.pin_positions().tolist():
+        draw_pin(background, camera.to_screen((x, y)), scale)
+    background.pop_clip_rect()

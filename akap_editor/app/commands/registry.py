@@ -13,7 +13,7 @@ from ...editor.tools.base import IdleTool
 from ...resources import bundled_drawings
 from .. import file_commands, files
 from ..app_state import AppState
-from ..canvas.view_options import RANGES, Measure
+from ..canvas.view_options import Measure
 from ..dialogs.about import AboutDialog
 from ..dialogs.export_pose import ExportPoseDialog
 from ..panels.method_parameters import with_default_values
@@ -131,26 +131,19 @@ def _toggle_timeline(state: AppState) -> None:
     state.timeline.is_shown = not state.timeline.is_shown
 
 
-def _next_range(state: AppState) -> None:
-    """The next wider range of the scale; after the widest the narrowest."""
-    state.view.heat_range = (state.view.heat_range + 1) % len(RANGES)
+def _distortion_toggle(measure: Measure) -> tuple[Callable[[AppState], None], Callable[[AppState], bool]]:
+    return (
+        lambda state: state.view.toggle_distortion_map(measure),
+        lambda state: state.view.distortion_measure == measure,
+    )
 
 
-def _heat_toggle(measure: Measure) -> tuple[Callable[[AppState], None], Callable[[AppState], bool]]:
-    """One map at a time: choosing one switches the other off."""
-
-    def flip(state: AppState) -> None:
-        state.view.heat = None if state.view.heat == measure else measure
-
-    return flip, lambda state: state.view.heat == measure
-
-
-_field, _field_on = _view_toggle("vectors")
-_ghost, _ghost_on = _view_toggle("ghost")
-_trails, _trails_on = _view_toggle("trails")
+_field, _field_on = _view_toggle("show_vector_fields")
+_ghost, _ghost_on = _view_toggle("show_rest_pose")
+_trails, _trails_on = _view_toggle("show_pin_trails")
 _reference, _reference_on = _view_toggle("show_reference")
-_area, _area_on = _heat_toggle("area")
-_angle, _angle_on = _heat_toggle("angle")
+_area, _area_on = _distortion_toggle("area")
+_angle, _angle_on = _distortion_toggle("angle")
 _mesh, _mesh_on = _toggle("show_mesh")
 _pins, _pins_on = _toggle("show_pins")
 _checker, _checker_on = _toggle("checker")
@@ -305,7 +298,11 @@ SHOW_FIELD = Command("Vector Field of the Drag", _field, (Key.v,), "", has_drawi
 SHOW_AREA = Command("Distortion of Areas", _area, (Key.d,), "", has_drawing, _area_on)
 SHOW_ANGLE = Command("Distortion of Angles", _angle, (SHIFT | Key.d,), "", has_drawing, _angle_on)
 NEXT_RANGE = Command(
-    "Next Range of Distortion", _next_range, (Key.r,), "", lambda state: state.view.heat is not None
+    "Next Range of Distortion",
+    lambda state: state.view.use_next_distortion_range(),
+    (Key.r,),
+    "",
+    lambda state: state.view.distortion_measure is not None,
 )
 SHOW_GHOST = Command("Rest Pose", _ghost, (Key.g,), "", has_drawing, _ghost_on)
 SHOW_TRAILS = Command("Pin Trails", _trails, (Key.t,), "", has_drawing, _trails_on)

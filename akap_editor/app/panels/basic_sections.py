@@ -6,7 +6,7 @@ from ...deform.methods import get_method, nearest_preset, presets
 from ...editor.document.settings import Settings
 from .. import widgets
 from ..app_state import AppState
-from ..canvas.view_options import RANGES
+from ..canvas.view_options import DISTORTION_RANGES
 from ..commands import registry as commands
 from ..theme import QUIET
 from . import method_parameters as settings_panel
@@ -96,11 +96,11 @@ def view(state: AppState, scale: float) -> None:
         label = command.label.removeprefix("Show ").capitalize()
         if command.enabled(state) and widgets.switch(label, on, f"Key: {command.key_name}")[0]:
             widgets.run(state, command)
-    if state.view.heat is not None:
+    if state.view.distortion_measure is not None:
         imgui.align_text_to_frame_padding()
         imgui.text("Scale ends at")
         imgui.same_line()
         imgui.set_next_item_width(-1)
-        ends = [f"× {limit:g}" for limit in RANGES]
-        _, state.view.heat_range = imgui.combo("##range", state.view.heat_range, ends)
+        ends = [f"× {limit:g}" for limit in DISTORTION_RANGES]
+        _, state.view.distortion_range = imgui.combo("##range", state.view.distortion_range, ends)
         widgets.show_tooltip("The change of area or shape at the ends of the colors. R for the next one.")

@@ -5,9 +5,10 @@ from itertools import pairwise
 
 from imgui_bundle import ImVec2, imgui
 
+from ...render.overlays import Rgba
 from .. import widgets
 from ..app_state import AppState
-from ..theme import FRAME, Rgba, packed
+from ..theme import FRAME, packed
 from .measurements import KEPT
 
 AREA_COLOR: Rgba = (0.45, 0.68, 1.0, 1.0)

@@ -87,12 +87,12 @@ def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned)
     stiffness = pinned.session.state.stiffness
     assert stiffness.max() == 100.0
     assert len(pinned.pins) == 3
-    assert isinstance(pinned.state.overlays(1.0).heat, FaceColors)
+    assert isinstance(pinned.state.overlays(1.0).face_colors, FaceColors)
     tinted = pinned.screenshot()
     x, y = map(round, pinned.screen((140.0, 70.0)))
     assert (tinted[y, x] != plain[y, x]).any()
     pinned.key(Key.p)
-    assert pinned.state.overlays(1.0).heat is None
+    assert pinned.state.overlays(1.0).face_colors is None
     assert (pinned.screenshot()[y, x] == plain[y, x]).all()
     pinned.key(Key.s)
     pinned.drag(start, end, button=1)

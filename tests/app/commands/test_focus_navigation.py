@@ -3,7 +3,7 @@
 from imgui_bundle import imgui  # isort: skip
 import pytest
 
-from akap_editor.app.canvas.view_options import RANGES
+from akap_editor.app.canvas.view_options import DISTORTION_RANGES
 from akap_editor.app.commands.command import SHIFT, Key
 from akap_editor.app.dialogs.first_steps import FirstSteps
 from akap_editor.editor import gestures
@@ -207,7 +207,7 @@ def pane():
 
 def test_f6_goes_to_every_pane_and_back_to_the_canvas(keyed):
     keyed.state.split, keyed.state.part(FirstSteps).is_open = True, True
-    keyed.state.view.heat = "area"
+    keyed.state.view.distortion_measure = "area"
     keyed.settle()
     panes = ["Panel", "Tools", "Timeline", "Comparison", "##legend", "First steps", ""]
     assert keys(keyed, *[Key.f6] * 7, look=pane) == panes
@@ -227,14 +227,14 @@ def test_the_second_method_is_chosen_by_keys(pinned):
 
 
 def test_the_range_of_the_scale_is_chosen_by_keys(ui):
-    ui.state.view.heat = "area"
+    ui.state.view.distortion_measure = "area"
     ui.settle()
     keys(ui, Key.r)
-    assert RANGES[ui.state.view.heat_range] == 2.0
+    assert DISTORTION_RANGES[ui.state.view.distortion_range] == 2.0
     keys(ui, *[Key.f6] * 3, Key.space)
-    assert RANGES[ui.state.view.heat_range] == 4.0
+    assert DISTORTION_RANGES[ui.state.view.distortion_range] == 4.0
     walk_to(ui, "##range", Key.space, Key.up_arrow, Key.space)
-    assert RANGES[ui.state.view.heat_range] == 2.0
+    assert DISTORTION_RANGES[ui.state.view.distortion_range] == 2.0
 
 
 def test_first_steps_are_put_away_by_keys(ui):

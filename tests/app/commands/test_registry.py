@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app import glfw_key_order as key_order
-from akap_editor.app.canvas.view_options import RANGES
+from akap_editor.app.canvas.view_options import DISTORTION_RANGES
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
 from akap_editor.app.commands.palette import Palette
@@ -181,8 +181,8 @@ CASES = {
     "Look Up": (moved_camera, looks(0, -1)),
     "Look Down": (moved_camera, looks(0, 1)),
     "Next Range of Distortion": (
-        lambda ui: setattr(ui.state.view, "heat", "area"),
-        lambda ui: RANGES[ui.state.view.heat_range] == 2.0,
+        lambda ui: setattr(ui.state.view, "distortion_measure", "area"),
+        lambda ui: DISTORTION_RANGES[ui.state.view.distortion_range] == 2.0,
     ),
     "Play": (once_keyed, lambda ui: ui.state.timeline.keyframe_playback.time == 0.2),
     "Export Animation...": (keyed, lambda ui: ui.state.part(ExportAnimationDialog).is_open),
@@ -230,14 +230,14 @@ CASES = {
     "Show Mesh": (nothing, lambda ui: ui.state.show_mesh),
     "Show Pins": (nothing, lambda ui: not ui.state.show_pins),
     "Checkerboard": (nothing, lambda ui: not ui.state.checker),
-    "Vector Field of the Drag": (nothing, lambda ui: ui.state.view.vectors),
-    "Distortion of Areas": (nothing, lambda ui: ui.state.view.heat == "area"),
+    "Vector Field of the Drag": (nothing, lambda ui: ui.state.view.show_vector_fields),
+    "Distortion of Areas": (nothing, lambda ui: ui.state.view.distortion_measure == "area"),
     "Distortion of Angles": (
-        lambda ui: setattr(ui.state.view, "heat", "area"),
-        lambda ui: ui.state.view.heat == "angle",
+        lambda ui: setattr(ui.state.view, "distortion_measure", "area"),
+        lambda ui: ui.state.view.distortion_measure == "angle",
     ),
-    "Rest Pose": (nothing, lambda ui: ui.state.view.ghost),
-    "Pin Trails": (nothing, lambda ui: ui.state.view.trails),
+    "Rest Pose": (nothing, lambda ui: ui.state.view.show_rest_pose),
+    "Pin Trails": (nothing, lambda ui: ui.state.view.show_pin_trails),
     "Reference Picture...": (nothing, lambda ui: ui.file_request is not None),
     "Show Reference Picture": (
         lambda ui: ui.state.view.set_reference(ui.document.drawing.image),
@@ -362,7 +362,7 @@ def test_a_shortcut_within_one_frame_is_not_its_key_alone(pinned):
     io.add_key_event(Key.d, False)
     pinned.settle()
     assert not pinned.editor.selection
-    assert pinned.state.overlays(1.0).heat is None
+    assert pinned.state.overlays(1.0).face_colors is None
     assert not io.key_ctrl
 
 

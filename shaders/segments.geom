@@ -1,5 +1,5 @@
 #version 330 core
-// Widens each segment to a ribbon with round-looking, smooth sides.
+// Widens each segment to a ribbon with smooth sides.
 
 layout(lines) in;
 layout(triangle_strip, max_vertices = 4) out;

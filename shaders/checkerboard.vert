@@ -1,5 +1,5 @@
 #version 330 core
-// The rectangle of the picture's frame, without any vertex buffer.
+// The rectangle of the picture's frame, without a vertex buffer.
 
 uniform vec4 view;  // sx, sy, tx, ty: ndc = s * position + t
 uniform vec2 frame;  // width and height of the picture, drawing units

@@ -16,7 +16,7 @@ void main() {
     vec2 along = (end - start) * 0.5 * viewport;
     float span = length(along);
     if (span < 1e-3) return;
-    // Short edges fade, so that a dense mesh seen from afar does not cover the picture.
+    // Short edges fade, so that a dense mesh does not cover a picture that is zoomed out.
     strength = clamp(span / 14.0, 0.12, 1.0);
     vec2 across = vec2(-along.y, along.x) / span * REACH * 2.0 / viewport;
     for (int corner = 0; corner < 4; ++corner) {

@@ -1,7 +1,7 @@
 #version 330 core
-// Checkerboard whose cells keep their size on the screen while the picture is zoomed.
+// Checkerboard whose cells keep their size on the screen at any zoom.
 
-uniform vec2 origin;  // a corner of the frame, whole framebuffer pixels, so that no pixel lies between two cells
+uniform vec2 origin;  // of the frame, in whole framebuffer pixels, so that no pixel lies between two cells
 uniform float cell;   // framebuffer pixels
 uniform vec3 even, odd;
 

@@ -1,5 +1,5 @@
 #version 330 core
-// A dark hair line in a faint light halo: one of the two shows on any picture.
+// A dark hairline with a faint light halo: one of the two is visible on any picture.
 
 in float offset;
 flat in float strength;
