@@ -42,7 +42,9 @@ def test_the_fields_are_seen_during_a_drag_only(pinned):
     def actions(hand):
         pinned.begin_drag(hand, start)
         hand.mouse_move_to_pos(imgui.ImVec2(start[0] - 30, start[1] - 100))
-        hand.yield_(5)
+        hand.yield_(2)
+        while pinned.state.is_busy:
+            hand.yield_()
         counts.append([len(s.segments) for s in pinned.state.overlays(1.0).lines])
         hand.mouse_up(0)
 
