@@ -136,3 +136,111 @@ def test_the_example_in_the_readme_runs(monkeypatch, capsys):
     example = (ROOT / "README.md").read_text("utf-8").partition("```python\n")[2].partition("```")[0]
     exec(compile(example, "README.md", "exec"), {})
     assert "Distortion(area=2.0" in capsys.readouterr().out
+
+
+# -- arguments that make no sense ---------------------------------------------------------------------------
+
+NONSENSE = {
+    "0": 0,
+    "-1": -1,
+    "1.5": 1.5,
+    "True": True,
+    "None": None,
+    "NaN": float("nan"),
+    "infinity": float("inf"),
+    "1e300": 1e300,
+    "an integer of 400 digits": 10**400,
+    "text": "x",
+    "bytes": b"x",
+    "an empty list": [],
+    "a ragged list": [[1, 2], [3]],
+    "a dictionary": {},
+    "an object": object(),
+    "an array": np.zeros(3),
+}
+
+
+def sensible_calls(folder: Path) -> dict[str, tuple[Any, dict[str, Any]]]:
+    """Every public function and class with arguments that it takes."""
+    image = np.zeros((60, 90, 4), dtype=np.uint8)
+    image[10:50, 9:81] = (250, 130, 20, 255)
+    drawing = akap.make_drawing(image, vertices=60)
+    mesh, document = drawing.mesh, akap.new_document(drawing)
+    akap.write_png(folder / "picture.png", image)
+    akap.save(document, folder / "drawing.akap")
+    still = {"positions": mesh.vertices, "targets": np.zeros((0, 2))}
+    return {
+        "TriMesh": (akap.TriMesh, {"vertices": mesh.vertices, "faces": mesh.faces}),
+        "MeshPoints": (akap.MeshPoints, {"faces": [0], "weights": [[1.0, 0.0, 0.0]]}),
+        "TriMesh.locate": (mesh.locate, {"points": [[40.0, 30.0]]}),
+        "TriMesh.evaluate": (
+            mesh.evaluate,
+            {"points": mesh.locate([[40.0, 30.0]]), "values": mesh.vertices},
+        ),
+        "Drawing": (akap.Drawing, {"image": image, "mesh": mesh, "uv": drawing.uv}),
+        "Pin": (akap.Pin, {"weights": [1, 0, 0], "target": [1, 2], "id": 1, "face": 0}),
+        "EditState": (akap.EditState, {"positions": mesh.vertices, "pins": ()}),
+        "make_drawing": (
+            akap.make_drawing,
+            {
+                "image": image,
+                "mask": image[..., 3],
+                "vertices": 60,
+                "expand": 2.0,
+                "threshold": 0.5,
+                "background": None,
+            },
+        ),
+        "outlines": (
+            akap.outlines,
+            {"alpha": image[..., 3], "threshold": 0.5, "expand": 2.0, "tolerance": 0.5},
+        ),
+        "triangulate": (akap.triangulate, {"parts": akap.outlines(image[..., 3]), "vertices": 60}),
+        "distortion": (akap.distortion, {"mesh": mesh, "positions": mesh.vertices}),
+        "make_deformer": (
+            lambda method, mesh, **parameters: akap.make_deformer(method, mesh, **parameters),
+            {
+                "method": "akap",
+                "mesh": mesh,
+                "memory": 1.0,
+                "dirichlet": True,
+                "trajectory": "spiral",
+                "pin_weight": 100.0,
+                "max_step": 0.05,
+                "constraints": "soft",
+                "exact": False,
+                "stiffness": np.ones(len(mesh.faces)),
+            },
+        ),
+        **{
+            f"{method}.step": (akap.make_deformer(method, mesh).step, still) for method in akap.method_names()
+        },
+        "new_document": (akap.new_document, {"drawing": drawing, "settings": document.state.settings}),
+        "bake": (akap.bake, {"document": document}),
+        "read_image": (akap.read_image, {"path": folder / "picture.png"}),
+        "write_png": (akap.write_png, {"path": folder / "out.png", "image": image}),
+        "open_document": (akap.open_document, {"path": folder / "picture.png"}),
+        "load": (akap.load, {"path": folder / "drawing.akap"}),
+        "save": (akap.save, {"document": document, "path": folder / "out.akap"}),
+        "export": (
+            akap.export,
+            {"document": document, "path": folder / "out.obj", "options": akap.ExportOptions()},
+        ),
+    }
+
+
+@pytest.mark.parametrize("value", NONSENSE.values(), ids=NONSENSE)
+def test_nonsense_is_refused_in_one_sentence_by_every_public_function(tmp_path, monkeypatch, value):
+    """Or taken, where it makes sense after all; but never a TypeError from somewhere inside."""
+    monkeypatch.chdir(tmp_path)  # where files of the names "x" may appear
+    messages = []
+    for name, (function, arguments) in sensible_calls(tmp_path).items():
+        function(**arguments)
+        for argument in arguments:
+            try:
+                with np.errstate(all="ignore"):
+                    function(**{**arguments, argument: value})
+            except akap.AkapError as error:
+                messages.append(f"{name}({argument}): {error}")
+    assert len(messages) > 20
+    assert not [message for message in messages if len(message) > 400]

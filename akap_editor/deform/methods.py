@@ -5,6 +5,7 @@ comparisons and tests read the table.
 """
 
 import inspect
+import reprlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -12,6 +13,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..geometry.mesh import TriMesh
+from ..geometry.validation import as_instance
 from .akap.deformer import AkapDeformer
 from .deformer import Deformer
 from .islands import IslandDeformer
@@ -334,8 +336,8 @@ def method_names() -> list[str]:
 
 def get_method(name: str) -> Method:
     """The row of the table with this name. Raises InputError if there is none."""
-    if name not in method_names():
-        raise InputError(f"method: expected one of {', '.join(METHODS)}, got {name!r}")
+    if not isinstance(name, str) or name not in METHODS:
+        raise InputError(f"method: expected one of {', '.join(METHODS)}, got {reprlib.repr(name)}")
     return METHODS[name]
 
 
@@ -348,6 +350,7 @@ def make_deformer(method: str, mesh: TriMesh, /, **parameters: Any) -> Deformer:
     chosen, known = get_method(method), default_parameters(method)
     for name in parameters:
         _check_known(method, name, known)
+    as_instance(mesh, "mesh", TriMesh)
     constructor: Callable[..., Deformer] = chosen.deformer
     deformer = constructor(mesh, **parameters)
     return IslandDeformer(mesh, deformer) if mesh.tied and mesh.component.any() else deformer

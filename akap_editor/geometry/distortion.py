@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .mesh import TriMesh, signed_areas
-from .validation import Floats, as_points
+from .validation import Floats, as_instance, as_points
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +30,7 @@ class Distortion:
 
 def distortion(mesh: TriMesh, positions: ArrayLike) -> Distortion:
     """Measure the map from the rest pose to ``positions`` (n, 2). Raises InputError."""
+    as_instance(mesh, "mesh", TriMesh)
     pose = as_points(positions, "positions", len(mesh.vertices))
     determinant = signed_areas(pose, mesh.faces) / mesh.rest_areas
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
 
 from ..errors import InputError
-from .validation import Floats, Ints, as_indices, as_points, freeze
+from .validation import Floats, Ints, as_indices, as_instance, as_points, freeze
 
 _ROUNDING = 1e-12  # barycentric weight below zero that still counts as on the face
 
@@ -247,7 +247,11 @@ class TriMesh:
 
         Raises InputError for points with faces that the mesh does not have.
         """
+        as_instance(points, "points", MeshPoints)
         as_indices(points.faces, "points.faces", None, len(self.faces))
+        if not isinstance(values, np.ndarray) or values.shape != self.vertices.shape:
+            came = values.shape if isinstance(values, np.ndarray) else type(values).__name__
+            raise InputError(f"values: expected an array of shape {self.vertices.shape}, got {came}")
         return np.einsum("kc,kcd->kd", points.weights, values[self.faces[points.faces]])
 
 

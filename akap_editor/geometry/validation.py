@@ -4,12 +4,16 @@ A validator returns the argument as an array of its type, or raises InputError w
 was expected and what came.
 """
 
-from typing import Any
+import reprlib
+from collections.abc import Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+
+T = TypeVar("T")
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.signedinteger[Any]]  # int32 in public arrays, int64 where numpy made them
@@ -52,7 +56,7 @@ def as_numbers(
     expected = f"{name}: expected {count} numbers{bounds}{' or NaN' if allow_nan else ''}"
     try:
         array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError(f"{expected}, got {type(value).__name__}") from error
     if array.shape != (count,):
         raise InputError(f"{expected}, got shape {array.shape}")
@@ -66,9 +70,45 @@ def as_numbers(
 
 def as_number(value: Any, name: str, low: float, high: float) -> float:
     """Return ``value`` as a float from ``low`` to ``high``. Raises InputError."""
-    if not isinstance(value, (int, float, np.integer, np.floating)) or not low <= value <= high:
-        raise InputError(f"{name}: expected a number from {low:g} to {high:g}, got {value!r}")
-    return float(value)
+    try:
+        if isinstance(value, (int, float, np.integer, np.floating)) and low <= value <= high:
+            return float(value)
+    except OverflowError:  # an integer of hundreds of digits
+        pass
+    raise InputError(f"{name}: expected a number from {low:g} to {high:g}, got {reprlib.repr(value)}")
+
+
+def as_choice(value: Any, name: str, choices: Sequence[str]) -> str:
+    """Return ``value`` if it is one of the words ``choices``. Raises InputError."""
+    if not isinstance(value, str) or value not in choices:
+        raise InputError(f"{name}: expected {' or '.join(map(repr, choices))}, got {reprlib.repr(value)}")
+    return value
+
+
+def as_switch(value: Any, name: str) -> bool:
+    """Return ``value`` as true or false; 0 and 1 count. Raises InputError."""
+    if not isinstance(value, (bool, np.bool_)) and not (isinstance(value, int) and value in (0, 1)):
+        raise InputError(f"{name}: expected True or False, got {reprlib.repr(value)}")
+    return bool(value)
+
+
+def as_instance(value: Any, name: str, kind: type[T]) -> T:
+    """Return ``value`` if it is an instance of a class. Raises InputError."""
+    if not isinstance(value, kind):
+        raise InputError(f"{name}: expected a {kind.__name__}, got {reprlib.repr(value)}")
+    return value
+
+
+def as_floats(value: Any, name: str) -> Floats:
+    """Return ``value`` as a read-only float64 array of any shape; the same object if it is one.
+
+    Raises InputError if it holds anything but numbers.
+    """
+    try:
+        array = np.asarray(value, dtype=np.float64)
+        return freeze(array.copy() if array is value and array.flags.writeable else array)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{name}: expected an array of numbers, got {reprlib.repr(value)}") from error
 
 
 def as_indices(value: ArrayLike, name: str, columns: int | None, limit: int) -> Ints:
@@ -92,7 +132,7 @@ def as_indices(value: ArrayLike, name: str, columns: int | None, limit: int) -> 
 
 def as_picture(value: Any, name: str) -> NDArray[np.uint8]:
     """Return ``value`` as an RGBA picture (h, w, 4) uint8 with at least one pixel. Raises InputError."""
-    image = np.asarray(value)
+    image = _as_array(value, name)
     if image.ndim != 3 or image.shape[2] != 4 or image.dtype != np.uint8 or not image.size:
         raise InputError(f"{name}: expected shape (h, w, 4) uint8, got {image.shape} {image.dtype}")
     return image
@@ -100,7 +140,7 @@ def as_picture(value: Any, name: str) -> NDArray[np.uint8]:
 
 def as_channel(value: Any, name: str) -> NDArray[np.uint8]:
     """Return ``value`` as one channel (h, w) uint8 with at least one pixel. Raises InputError."""
-    channel = np.asarray(value)
+    channel = _as_array(value, name)
     if channel.ndim != 2 or channel.dtype != np.uint8 or not channel.size:
         raise InputError(f"{name}: expected shape (h, w) uint8, got {channel.shape} {channel.dtype}")
     return channel

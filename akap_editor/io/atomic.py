@@ -2,18 +2,27 @@
 
 import errno
 import os
+import reprlib
 import secrets
 import shutil
 import stat
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
-from ..errors import FileError
+from ..errors import FileError, InputError
 
 MAX_FILE_BYTES = 2**30
 
 Write = Callable[[str | Path, bytes], None]  # writes a file, as `write_atomic` does
+
+
+def as_path(value: Any) -> Path:
+    """Return ``value`` as a path. Raises InputError if it is neither text nor a path."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise InputError(f"path: expected a path or text, got {reprlib.repr(value)}")
+    return Path(value)
 
 
 def read_file(path: str | Path, expected: str) -> bytes:
@@ -21,7 +30,7 @@ def read_file(path: str | Path, expected: str) -> bytes:
 
     Raises FileError if there is no such file, it cannot be read, or has over `MAX_FILE_BYTES`.
     """
-    path = Path(path)
+    path = as_path(path)
     try:
         status = path.stat()
         if stat.S_ISREG(status.st_mode) and status.st_size <= MAX_FILE_BYTES:
@@ -45,8 +54,9 @@ def write_atomic(path: str | Path, data: bytes) -> None:
     system can promise it. A link is followed; the permission bits of the old file are kept, those of a new
     file follow the umask. Raises FileError.
     """
+    path = as_path(path)
     try:
-        target = Path(path).resolve()
+        target = path.resolve()
         exists = target.exists()
         if exists and not target.is_file():  # moving over a device would destroy it
             raise OSError(errno.EINVAL, "it is not a regular file")

@@ -8,6 +8,7 @@ from ..editor.session.replay import Replay
 from ..errors import FileError, InputError, file_errors
 from .akap.project import PROJECT_SUFFIX, load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
+from .atomic import as_path
 from .images import read_image, read_mask
 from .mesh_files.mesh_drawing import read_mesh
 from .mesh_files.obj_off import PARSERS
@@ -24,7 +25,7 @@ def open_document(path: str | Path, mask: str | Path | None = None) -> Document:
     mask: a picture that is bright, or opaque, where the picture is to be visible.
     Raises InputError, which names the file, or SolverError if a recording cannot be replayed.
     """
-    path = Path(path)
+    path = as_path(path)
     suffix = path.suffix.lower()
     if mask is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
         raise FileError("use", mask, f"a mask needs a picture, but {path.name} is none")

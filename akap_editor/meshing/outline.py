@@ -9,12 +9,13 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
-from ..geometry.validation import Floats, as_channel, as_points, freeze
+from ..geometry.validation import Floats, as_channel, as_number, as_points, freeze
 from .contours import contours
 
 MIN_PART_AREA = 10.0  # square pixels; a smaller part is a speck
 MIN_PART_SHARE = 2e-5  # of the area of all parts; a smaller part is a speck, too
 MIN_HOLE_AREA = 10.0  # square pixels; smaller holes are filled
+MAX_LENGTH = 1e5  # pixels that an outline can be moved or simplified by
 MIN_STROKE_WIDTH = 1.5  # pixels; thinner strokes grow by half of that on each side
 _MIN_PIECE_AREA = 1.0  # square pixels; smaller pieces, left by clipping and notches, are dropped
 _FIRST_SIMPLIFICATION = 0.2  # share of the tolerance spent first; all later steps take a tenth of the time
@@ -137,11 +138,10 @@ def _topology(cut: CutOut, max_points: float) -> tuple[int, int]:
 
 
 def _check_lengths(threshold: float, expand: float, tolerance: float) -> None:
-    if not 0 < threshold < 1:
+    if as_number(threshold, "threshold", 0, 1) in (0, 1):
         raise InputError(f"threshold: expected a share between 0 and 1, got {threshold:g}")
     for name, value in (("expand", expand), ("tolerance", tolerance)):
-        if not 0 <= value < np.inf:
-            raise InputError(f"{name}: expected a number of pixels, at least 0, got {value:g}")
+        as_number(value, name, 0, MAX_LENGTH)
 
 
 def visible_polygons(alpha: NDArray[np.uint8], threshold: float) -> Polygons:

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.mesh import TriMesh
+from ..geometry.validation import as_number
 from .outline import cut_out
 from .triangle_process import TRIANGLE
-from .triangulate import triangulate
+from .triangulate import MAX_VERTICES, MIN_VERTICES, triangulate
 
 OUTLINE_SHARE = 0.35  # of the requested vertices that may be corners of the outline
 EXCESS_TOLERANCE = 0.08  # share of vertices too many above which the outline is simplified further
@@ -40,6 +41,7 @@ def mesh_picture(
     vertices, it is simplified, outwards, as long as no parts join and no hole larger than a face closes.
     Raises InputError if nothing is visible, for arguments out of range, or if Triangle fails.
     """
+    as_number(vertices, "vertices", MIN_VERTICES, MAX_VERTICES)
     TRIANGLE.start()  # it starts while the outline is computed
     max_points, fewest = OUTLINE_SHARE * vertices, np.inf
     for _ in range(MAX_OUTLINES):

@@ -1,5 +1,6 @@
 """Quality triangulation of polygons by Triangle (Shewchuk 1996)."""
 
+import reprlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -106,6 +107,8 @@ class _EdgeLengthModel:
 
 def _union(parts: Sequence[Outline]) -> shapely.Geometry:
     """The parts as one shape. Raises InputError if a polygon is not simple, or if rings meet."""
+    if not isinstance(parts, Sequence) or not all(isinstance(part, Outline) for part in parts):
+        raise InputError(f"outlines: expected a sequence of outlines, got {reprlib.repr(parts)}")
     if not parts:
         raise InputError("outlines: expected at least one part, got none")
     polygons = [part.polygon for part in parts]

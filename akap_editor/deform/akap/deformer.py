@@ -8,11 +8,21 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import InputError, SolverError
+from ...errors import SolverError
 from ...geometry.jit import compiled
 from ...geometry.mesh import MeshPoints, TriMesh, signed_areas
 from ...geometry.operators import to_complex, to_points
-from ...geometry.validation import Complexes, Floats, Ints, as_indices, as_number, as_numbers, as_points
+from ...geometry.validation import (
+    Complexes,
+    Floats,
+    Ints,
+    as_choice,
+    as_indices,
+    as_number,
+    as_numbers,
+    as_points,
+    as_switch,
+)
 from ..cholesky import SparseCholesky
 from ..deformer import Deformer, StepReport, StepResult, as_targets
 from .killing_field import KillingSystem
@@ -102,10 +112,8 @@ class AkapDeformer(Deformer):
         stiffness: ArrayLike | None = None,
     ) -> None:
         self._memory = as_number(memory, "memory", 0, 1)
-        if trajectory not in ("spiral", "linear"):
-            raise InputError(f"trajectory: expected 'spiral' or 'linear', got {trajectory!r}")
-        if constraints not in ("soft", "hard"):
-            raise InputError(f"constraints: expected 'soft' or 'hard', got {constraints!r}")
+        as_choice(trajectory, "trajectory", ("spiral", "linear"))
+        as_choice(constraints, "constraints", ("soft", "hard"))
         as_number(pin_weight, "pin_weight", 1e-3, 1e6)
         if max_step is None:
             max_step = _MAX_STEP_WITH_MEMORY if memory else _MAX_STEP
@@ -114,7 +122,7 @@ class AkapDeformer(Deformer):
         if stiffness is not None:
             stiff = as_numbers(stiffness, "stiffness", len(mesh.faces), _SOFTEST, _STIFFEST)
         self._mesh = mesh
-        self._dirichlet = bool(dirichlet)
+        self._dirichlet = as_switch(dirichlet, "dirichlet")
         length = mesh.length
         self._max_length = max_step * length
         # The soft pins give way a little to the rest memory; a field that took them back each time would
@@ -124,7 +132,9 @@ class AkapDeformer(Deformer):
         self._pin_weight = pin_weight
         self._hard = constraints == "hard"
         tolerance = length * (_TOLERANCE_WITH_MEMORY if memory else _TOLERANCE)
-        self._system = KillingSystem(mesh, pin_weight, bool(exact), self._hard, tolerance, stiff)
+        self._system = KillingSystem(
+            mesh, pin_weight, as_switch(exact, "exact"), self._hard, tolerance, stiff
+        )
         self._newton: SparseCholesky | None = None
         self._stiffness = stiff
         self._exact_system: KillingSystem | None = None

@@ -22,10 +22,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_array, diags_array, vstack
 
-from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.operators import gradient_matrices, to_complex, to_points
-from ...geometry.validation import Complexes, as_number, as_points
+from ...geometry.validation import Complexes, as_choice, as_number, as_points, as_switch
 from ..cholesky import SparseCholesky, SummedPattern
 from .rest_based import RestBasedDeformer, product
 
@@ -57,9 +56,8 @@ class ArapDeformer(RestBasedDeformer):
         rotations: Rotations = "faces",
     ) -> None:
         wanted = int(as_number(iterations, "iterations", 1, _MOST))
-        self._iterations = _MOST_TO_CONVERGE if converge else wanted
-        if rotations not in ("faces", "spokes-and-rims"):
-            raise InputError(f"rotations: expected 'faces' or 'spokes-and-rims', got {rotations!r}")
+        self._iterations = _MOST_TO_CONVERGE if as_switch(converge, "converge") else wanted
+        as_choice(rotations, "rotations", ("faces", "spokes-and-rims"))
         self._tolerance = as_number(tolerance, "tolerance", 0, 1) * mesh.length
         self._gradient = vstack(gradient_matrices(mesh), format="csr")
         self._areas = mesh.rest_areas

@@ -16,9 +16,8 @@ from typing import Literal
 
 import numpy as np
 
-from ...errors import InputError
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import Complexes, Floats, as_number
+from ...geometry.validation import Complexes, Floats, as_choice, as_number
 from .rest_based import RestBasedDeformer, product
 
 Transform = Literal["rigid", "similarity", "affine"]
@@ -39,8 +38,7 @@ class MovingLeastSquaresDeformer(RestBasedDeformer):
     """
 
     def __init__(self, mesh: TriMesh, transform: Transform = "rigid", alpha: float = 1.0) -> None:
-        if transform not in ("rigid", "similarity", "affine"):
-            raise InputError(f"transform: expected 'rigid', 'similarity' or 'affine', got {transform!r}")
+        as_choice(transform, "transform", ("rigid", "similarity", "affine"))
         self._transform = transform
         self._alpha = as_number(alpha, "alpha", 0.1, 10)
         super().__init__(mesh)

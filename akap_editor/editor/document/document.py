@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry.mesh import MeshPoints, TriMesh
-from ...geometry.validation import Floats, Ints, freeze
+from ...geometry.validation import Floats, Ints, as_floats, as_instance
 from .depth import face_order
 from .drawing import Drawing
 from .keyframes import NO_ANIMATION, Animation
@@ -34,9 +34,9 @@ class EditState:
     animation: Animation = NO_ANIMATION
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "positions", freeze(np.asarray(self.positions, dtype=np.float64)))
+        object.__setattr__(self, "positions", as_floats(self.positions, "positions"))
         if self.stiffness is not None:
-            object.__setattr__(self, "stiffness", freeze(np.asarray(self.stiffness, dtype=np.float64)))
+            object.__setattr__(self, "stiffness", as_floats(self.stiffness, "stiffness"))
 
     @property
     def points(self) -> MeshPoints:
@@ -96,5 +96,8 @@ class Document:
 
 
 def new_document(drawing: Drawing, settings: Settings | None = None) -> Document:
-    """A document of a drawing in its rest pose, without pins."""
+    """A document of a drawing in its rest pose, without pins. Raises InputError on other types."""
+    as_instance(drawing, "drawing", Drawing)
+    if settings is not None:
+        as_instance(settings, "settings", Settings)
     return Document(drawing, EditState((), drawing.mesh.vertices, settings or Settings()))

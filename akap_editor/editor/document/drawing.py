@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import as_channel, as_picture, as_points, freeze
+from ...geometry.validation import as_channel, as_instance, as_picture, as_points, freeze
 from ...meshing.background import remove_background
 from ...meshing.picture_mesh import mesh_picture
 
@@ -48,6 +48,7 @@ class Drawing:
 
     def __post_init__(self) -> None:
         image = as_picture(self.image, "image")
+        as_instance(self.mesh, "mesh", TriMesh)
         uv = as_points(self.uv, "uv", len(self.mesh.vertices)).astype(np.float32)
         if image.flags.writeable or not image.flags.owndata:
             image = freeze(image.copy())

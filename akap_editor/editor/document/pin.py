@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...geometry.mesh import MeshPoints
-from ...geometry.validation import Floats, freeze
+from ...geometry.validation import Floats, as_floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,8 +28,8 @@ class Pin:
     angle: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "weights", freeze(np.array(self.weights, dtype=np.float64)))
-        object.__setattr__(self, "target", freeze(np.array(self.target, dtype=np.float64)))
+        object.__setattr__(self, "weights", as_floats(self.weights, "weights"))
+        object.__setattr__(self, "target", as_floats(self.target, "target"))
 
     def to_json(self) -> dict[str, Any]:
         """The pin as an object of a document or recording; docs/file-format.md describes it."""

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from ...errors import InputError
 from ...geometry.mesh import signed_areas
+from ...geometry.validation import as_instance
 from .document import Document, EditState
 from .drawing import Drawing
 from .pin_angles import pins_fixed_at_pose
@@ -28,6 +29,7 @@ def with_pose_as_rest(state: EditState, drawing: Drawing) -> EditState:
 
 def bake(document: Document) -> Document:
     """A document with its current pose as the rest pose, see `with_pose_as_rest`. Raises InputError."""
+    as_instance(document, "document", Document)
     state = with_pose_as_rest(document.state, document.drawing)
     assert state.drawing is not None
     return replace(document.with_state(state), drawing=state.drawing)

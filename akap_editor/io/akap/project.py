@@ -14,8 +14,8 @@ from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing, Meshing
 from ...errors import InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import Floats, as_number, freeze
-from ..atomic import read_file, write_atomic
+from ...geometry.validation import Floats, as_instance, as_number, freeze
+from ..atomic import as_path, read_file, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
 from .archive import Archive, Entry, pack
 from .json_records import (
@@ -52,6 +52,8 @@ def save(document: Document, path: str | Path) -> Document:
     Equal documents give equal bytes. Raises FileError if the file cannot be written, or could not be opened
     again, e.g. for two pins with one id; then the old file stays.
     """
+    as_instance(document, "document", Document)
+    path = as_path(path)
     with file_errors("save", path):
         data = encode_document(document)
     write_atomic(path, data)

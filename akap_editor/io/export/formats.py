@@ -8,7 +8,8 @@ from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
 from ...editor.framing import Color, crop_box
 from ...errors import InputError, file_errors
-from ..atomic import write_atomic
+from ...geometry.validation import as_instance
+from ..atomic import as_path, write_atomic
 from ..images import encode_png, join_with_or
 from ..painter import Painter
 from .gltf import encode_glb
@@ -133,8 +134,9 @@ def export(
     file is written whole or not at all. painter: draws pictures, needed for .png only. Raises InputError for
     an unknown ending, or if the drawing cannot be exported or written.
     """
-    options = options or ExportOptions()
-    path = Path(path)
+    as_instance(document, "document", Document)
+    options = ExportOptions() if options is None else as_instance(options, "options", ExportOptions)
+    path = as_path(path)
     chosen = format_of(path)
     if options.rest:
         state = replace(document.state, positions=document.drawing.mesh.vertices)
