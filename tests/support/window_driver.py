@@ -3,6 +3,7 @@
 # imgui_bundle first: its import makes pyGLFW load the libglfw that imgui's backend is linked to.
 from imgui_bundle import imgui  # isort: skip
 import ctypes
+import math
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -25,6 +26,7 @@ from akap_editor.editor.document.document import Document
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.session.session import Session
+from akap_editor.editor.tools.rotate import RING_RADIUS
 
 te = imgui.test_engine
 Point = tuple[float, float]
@@ -122,6 +124,12 @@ class WindowDriver:
         """(2,): where a pin is now, in the drawing."""
         ids = [each.id for each in self.pins]
         return self.session.pin_positions()[ids.index(pin)]
+
+    def ring_points(self, pin: int, *degrees: float) -> list[Point]:
+        """Points of the screen on the rotation ring of a pin, in directions clockwise from the right."""
+        x, y = self.screen(self.pin_place(pin))
+        angles = [math.radians(angle) for angle in degrees]
+        return [(x + RING_RADIUS * math.cos(angle), y + RING_RADIUS * math.sin(angle)) for angle in angles]
 
     # -- frames --------------------------------------------------------------------------------------------
 

@@ -9,7 +9,6 @@ import pytest
 
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor.camera import Camera
-from akap_editor.editor.editor import PICK_RADIUS
 from akap_editor.editor.session.stepper import PIN_TOLERANCE
 from akap_editor.errors import SolverError
 
@@ -317,30 +316,6 @@ def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkey
 
 
 # -- how it looks -------------------------------------------------------------------------------------------
-
-
-def marker_pixels(shot, at, radius):
-    """The part of a screenshot around a point."""
-    x, y = map(round, at)
-    return shot[y - radius : y + radius + 1, x - radius : x + radius + 1].astype(int)
-
-
-def test_pins_are_drawn_where_they_are_and_only_when_shown(pinned):
-    at = pinned.screen(pinned.pin_place(2))
-    shown = pinned.screenshot()
-    pinned.state.show_pins = False
-    hidden = pinned.screenshot()
-    on_canvas = slice(0, round(pinned.editor.canvas[2]))
-    changed = np.argwhere((shown != hidden).any(axis=2)[:, on_canvas])
-    around = [pinned.screen(pinned.pin_place(pin)) for pin in (1, 2, 3)]
-    distances = np.min([np.hypot(*(changed[:, ::-1] + 0.5 - place).T) for place in around], axis=0)
-    assert distances.max() < PICK_RADIUS
-    ring = marker_pixels(shown, (at[0] + 6, at[1]), 0)[0, 0]
-    assert ring.min() > 240, "a white ring around the dot"
-    disc = changed[np.hypot(*(changed[:, ::-1] + 0.5 - at).T) < 2 * PICK_RADIUS]
-    np.testing.assert_allclose(
-        disc.mean(axis=0)[::-1] + 0.5, pinned.editor.camera.to_screen(pinned.pin_place(2)), atol=0.5
-    )
 
 
 def test_the_drawing_is_shown_where_the_camera_says(ui, image):

@@ -1,10 +1,14 @@
 """Overlays of the View menu: their colors, and that the window shows them and an export does not."""
 
+from imgui_bundle import imgui  # isort: skip
 import numpy as np
 import pytest
 
 from akap_editor.app.canvas.view_options import distortion_colors
 from akap_editor.geometry.distortion import distortion
+from akap_editor.render.overlays import FaceColors
+
+Key = imgui.Key
 
 
 def canvas(ui, shot):
@@ -65,3 +69,24 @@ def test_an_overlay_is_seen_and_gone_again_and_never_exported(pinned, name):
     else:
         setattr(pinned.state.view, name, None if name == "distortion_measure" else False)
     assert (canvas(pinned, pinned.screenshot()) == plain).all()
+
+
+def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned):
+    plain = pinned.screenshot()
+    pinned.key(Key.s)
+    start, end = pinned.screen((120.0, 80.0)), pinned.screen((160.0, 80.0))
+    pinned.drag(start, end)
+    stiffness = pinned.session.state.stiffness
+    assert stiffness.max() == 100.0
+    assert len(pinned.pins) == 3
+    assert isinstance(pinned.state.overlays(1.0).face_colors, FaceColors)
+    tinted = pinned.screenshot()
+    x, y = map(round, pinned.screen((140.0, 70.0)))
+    assert (tinted[y, x] != plain[y, x]).any()
+    pinned.key(Key.p)
+    assert pinned.state.overlays(1.0).face_colors is None
+    assert (pinned.screenshot()[y, x] == plain[y, x]).all()
+    pinned.key(Key.s)
+    pinned.drag(start, end, button=1)
+    assert pinned.session.state.stiffness is None or pinned.session.state.stiffness.max() < 100.0
+    assert pinned.session.history.labels == ["Paint Stiffness", "Erase Stiffness"]
