@@ -23,6 +23,7 @@ from timing import FunctionTimer
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.akap.killing_field import KillingSystem
 from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
+from akap_editor.deform.akap.rest_memory import RestMemory
 from akap_editor.deform.cholesky import SparseCholesky
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.geometry.distortion import distortion
@@ -88,7 +89,7 @@ def run_ours(drag: Drag, timer: FunctionTimer, memory: float, exact: bool) -> fl
         held = (drag.path[0] == drag.path[-1]).all(axis=1)
         off = drag.mesh.evaluate(drag.points, pose) - targets
         creep = max(creep, float(np.linalg.norm(off[held], axis=1).max()))
-    solver = deformer._system._pinned
+    solver = deformer._system._pinned_system
     split = "  ".join(f"{np.median([1000 * row[part] for row in parts]):7.2f}" for part in PARTS)
     name = ("plain" if exact else "ours") + (" + memory" if memory else "")
     tail = f"{solver.factorizations:4d} {solver.iterations / FRAMES:5.1f}"
@@ -139,8 +140,8 @@ def instrument() -> FunctionTimer:
     timer.wrap(SparseCholesky, "factorize", "factor")
     timer.wrap(PreconditionedCholesky, "solve", "solve")
     timer.wrap(KillingSystem, "field", "solve")
-    timer.wrap(AkapDeformer, "_move", "spirals")
-    timer.wrap(AkapDeformer, "_remember", "memory")
+    timer.wrap(AkapDeformer, "_follow_field", "spirals")
+    timer.wrap(RestMemory, "descend", "memory")
     return timer
 
 

@@ -1,1 +1,1 @@
-"""Deformation methods behind one contract, one file each."""
+"""Deformation: the contract of all methods, the table of them, and what they share."""

@@ -12,17 +12,19 @@ from ..geometry.mesh import MeshPoints, TriMesh
 from ..geometry.operators import to_complex
 from ..geometry.validation import Complexes, Floats, as_number, as_points
 
-MAX_REACH = 1e9  # a target farther from the drawing leaves a pose no digits; as a multiple of √area
+MAX_REACH = 1e9  # times √area: a target farther from the drawing leaves a pose no digits
+
+Flow = Callable[[float], Floats]  # from time, 0 to 1, to a pose (n, 2)
 
 
 @dataclass(frozen=True)
 class StepReport:
-    """What one step cost and how good it is.
+    """Cost and quality of a step.
 
-    seconds; substeps; energy: Killing energy of the last field at the pose it was made for, square pixels, 0
-    without a field; flipped: faces with a negative area afterwards; pin_error: largest distance of a pin from
-    its target, pixels; blocked: whether the last move was cut short because it would have flipped a face;
-    unfinished: whether the step ended before the targets because they are too far for one step.
+    seconds: duration; substeps: their number; energy: Killing energy of the last field, square pixels, 0
+    without a field; flipped: number of faces without a positive area; pin_error: largest distance of a pin
+    from its target, pixels; blocked: whether the last move was cut short, because it would have
+    flipped a face; unfinished: whether the step ended early, because the targets are too far for one step.
     """
 
     seconds: float
@@ -36,21 +38,22 @@ class StepReport:
 
 @dataclass(frozen=True, eq=False)
 class StepResult:
-    """positions: (n, 2) new pose; field: (n, 2) the last vector field, or None for methods without one.
+    """The result of a step.
 
-    flow: the way there, for `at`; None for methods that know no way.
+    positions: (n, 2) the new pose; field: (n, 2) the vector field of the last substep, None for methods
+    without one; flow: γ of eq. 14 over the whole step, None for methods without trajectories.
     """
 
     positions: Floats
     field: Floats | None
     report: StepReport
-    flow: Callable[[float], Floats] | None = None
+    flow: Flow | None = None
 
     def at(self, t: float) -> Floats:
-        """The pose (n, 2) at time ``t`` of the step: 0 is where it began, 1 is `positions`.
+        """The pose (n, 2) at time ``t`` of the step, from 0, its start, to 1, `positions`.
 
-        Vertices move along the trajectories γ(t) of eq. 14, substep after substep, for in-betweens, slow
-        motion and motion blur. Raises InputError outside [0, 1], or where the method knows no way.
+        Vertices move along the trajectories of eq. 14, substep after substep. For slow motion and motion
+        blur. Raises InputError for a time out of range, or if the method has no trajectories.
         """
         if self.flow is None:
             raise InputError("at: expected the result of a method that moves along trajectories, got another")
@@ -83,19 +86,19 @@ class Deformer(Protocol):
     has_vector_fields: bool = False
 
     def set_pins(self, points: MeshPoints) -> None:
-        """Choose the pins, k points of the mesh; moves nothing."""
+        """Choose the pins, k points of the mesh; moves nothing. Raises InputError."""
 
     def step(self, positions: ArrayLike, targets: ArrayLike) -> StepResult:
-        """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2).
+        """Move the pose (n, 2) so that its pins reach ``targets`` (k, 2), as far as the method allows.
 
-        Raises InputError and SolverError.
+        Raises InputError for other shapes or numbers that are not finite, and SolverError.
         """
 
 
 def as_targets(value: ArrayLike, count: int, mesh: TriMesh, pose: Complexes) -> Complexes:
-    """Targets (count, 2) of pins as complex numbers (count,), for a step that starts from ``pose`` (n,).
+    """Targets (count, 2) of pins as complex numbers (count,), for a step from ``pose`` (n,).
 
-    Raises InputError on another shape, on numbers that are not finite, and on targets so far away that the
+    Raises InputError for another shape, numbers that are not finite, and targets so far away that the
     vertices around a pin could no longer be told apart.
     """
     targets = to_complex(as_points(value, "targets", count))

@@ -33,7 +33,7 @@ def dense(rows, columns, values, size):
 def test_pattern_sums_entries(entries):
     rows, columns, values, size = entries
     pattern = SummedPattern(rows, columns, size)
-    nonzeros = pattern.summed(values)
+    nonzeros = pattern.sum_entries(values)
     assert len(nonzeros) == pattern.count == len(set(zip(pattern.rows, pattern.columns, strict=True)))
     assert np.abs(dense(pattern.rows, pattern.columns, nonzeros, size) - dense(*entries)).max() < 1e-13
 
@@ -42,8 +42,8 @@ def test_restricted_pattern_is_the_submatrix(entries):
     rows, columns, values, size = entries
     kept = np.array([1, 2, 5, 7, 11])
     pattern = SummedPattern(rows, columns, size)
-    part, chosen = pattern.restricted(kept)
-    nonzeros = pattern.summed(values)[chosen]
+    part, chosen = pattern.restrict(kept)
+    nonzeros = pattern.sum_entries(values)[chosen]
     expected = dense(*entries)[np.ix_(kept, kept)]
     assert np.abs(dense(part.rows, part.columns, nonzeros, part.size) - expected).max() < 1e-13
 
@@ -54,7 +54,7 @@ def test_solution_is_that_of_the_dense_system(entries):
     solver = SparseCholesky(pattern)
     right = np.random.default_rng(1).normal(size=size)
     for scale in (1.0, 3.0):  # factorized again with other numbers
-        solver.factorize(scale * pattern.summed(values))
+        solver.factorize(scale * pattern.sum_entries(values))
         expected = np.linalg.solve(scale * dense(*entries), right)
         before = right.copy()
         assert np.abs(solver.solve(right) - expected).max() < 1e-13
@@ -66,7 +66,7 @@ def test_two_factorizations_of_one_pattern_do_not_mix(entries):
     pattern = SummedPattern(rows, columns, size)
     solvers = SparseCholesky(pattern), SparseCholesky(pattern)
     for scale, solver in zip((1.0, 3.0), solvers, strict=True):
-        solver.factorize(scale * pattern.summed(values))
+        solver.factorize(scale * pattern.sum_entries(values))
     right = np.ones(size)
     once, thrice = (solver.solve(right) for solver in solvers)
     assert np.abs(once - 3 * thrice).max() < 1e-13

@@ -98,23 +98,25 @@ def test_a_straight_mix_of_the_two_poses_would_shrink(mesh):
     assert spiral < 2.01
 
 
-def test_ways_are_prepared_once_and_are_those_of_in_betweens(mesh, monkeypatch):
+def test_pairs_are_prepared_once_and_interpolated_as_without_the_cache(mesh, monkeypatch):
     start, end, other = mesh.vertices, curled(mesh, 1.0), curled(mesh, -1.0)
-    ways, made = InterpolationCache(most=2), []
+    cache, prepared = InterpolationCache(max_pairs=2), []
     original = PoseInterpolation.between
     monkeypatch.setattr(
-        PoseInterpolation, "between", lambda self, a, b: made.append((id(a), id(b))) or original(self, a, b)
+        PoseInterpolation,
+        "between",
+        lambda self, a, b: prepared.append((id(a), id(b))) or original(self, a, b),
     )
     for t in (0.2, 0.5):
         np.testing.assert_array_equal(
-            ways.pose(mesh, start, end, t), original(PoseInterpolation(mesh), start, end)(t)
+            cache.pose(mesh, start, end, t), original(PoseInterpolation(mesh), start, end)(t)
         )
-    assert ways.pose(mesh, start, end, 0) is start
-    assert ways.pose(mesh, start, end, 1) is end
-    assert len(made) == 1
+    assert cache.pose(mesh, start, end, 0) is start
+    assert cache.pose(mesh, start, end, 1) is end
+    assert len(prepared) == 1
     for pair in ((end, other), (start, other), (start, end)):
-        ways.pose(mesh, *pair, 0.5)
-    assert len(made) == 4, "only the last two are kept"
+        cache.pose(mesh, *pair, 0.5)
+    assert len(prepared) == 4, "only the last two are kept"
 
 
 def test_parts_move_each_on_their_own():

@@ -1,1 +1,1 @@
-"""As-Killing-as-possible deformation: the method of the paper."""
+"""As-Killing-as-possible deformation: the method of the paper, and memory of the rest pose."""

@@ -1,4 +1,4 @@
-"""Logarithmic-spiral trajectories of a vector field (paper, section 2.3)."""
+"""Trajectories of a vector field along logarithmic spirals (paper, section 2.3)."""
 
 import numpy as np
 
@@ -6,15 +6,15 @@ from ...geometry.jit import compiled
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Complexes, Ints
 
-_SERIES_BELOW = 0.25
-_ROUNDING = 1e-17
+_SERIES_BELOW = 0.25  # |s| below which φ(s) is computed by its series
+_ROUNDING = 1e-17  # terms of the series below this are left out
 
 
 @compiled
 def spiral_factor(s: Complexes) -> Complexes:
-    """φ(s) = (eˢ − 1) / s with φ(0) = 1: a point with velocity u on a spiral of rate s moves by φ(s) u.
+    """φ(s) = (eˢ − 1) / s, φ(0) = 1, for rates s (e,): with velocity u, a spiral of rate s moves by φ(s) u.
 
-    s: (e,). Small rates, as they are in a substep, by as many terms of Σ sᵏ / (k + 1)! as the largest needs.
+    Small rates, the usual ones in a substep, use as many terms of Σ sᵏ / (k + 1)! as the largest one needs.
     """
     largest = 0.0
     for rate in s:
@@ -26,7 +26,7 @@ def spiral_factor(s: Complexes) -> Complexes:
     while term > _ROUNDING:
         terms += 1
         term *= largest / (terms + 1)
-    shares = 1.0 / np.arange(1.0, terms + 1.0)
+    inverses = 1.0 / np.arange(1.0, terms + 1.0)
     result = np.empty_like(s)
     for e in range(len(s)):
         x, y = s[e].real, s[e].imag
@@ -34,8 +34,8 @@ def spiral_factor(s: Complexes) -> Complexes:
             real, imaginary = 1.0, 0.0
             for k in range(terms - 1, 0, -1):  # Horner's rule
                 real, imaginary = (
-                    (real * x - imaginary * y) * shares[k] + 1.0,
-                    (real * y + imaginary * x) * shares[k],
+                    (real * x - imaginary * y) * inverses[k] + 1.0,
+                    (real * y + imaginary * x) * inverses[k],
                 )
             result[e] = complex(real, imaginary)
         else:
@@ -46,35 +46,38 @@ def spiral_factor(s: Complexes) -> Complexes:
 class LogSpirals:
     """Moves the vertices of a mesh along the averaged spirals of eq. 16.
 
-    Eqs. 14 and 15 in one formula that needs no center: with s = (u1 − u2) / (p1 − p2) for an edge, the flow
-    is γ(t) = p + t φ(t s) u, for spirals (s ≠ 0) and translations (s = 0) alike. Since p and u do not depend
-    on the neighbor, eq. 16 is p + t u · mean φ(t s).
+    Eqs. 14 and 15 are computed without a center: with s = (u₁ − u₂) / (p₁ − p₂) for an edge, the flow is
+    γ(t) = p + t φ(t s) u for spirals (s ≠ 0) and translations (s = 0) alike. Since p and u do not depend on
+    the neighbor, eq. 16 is p + t u · mean φ(t s), the mean over the edges of the vertex.
     """
 
     def __init__(self, mesh: TriMesh) -> None:
         self._edges = mesh.edges.copy()
-        self._shares = 1.0 / np.bincount(mesh.edges.ravel(), minlength=len(mesh.vertices))
+        self._inverse_degree = 1.0 / np.bincount(mesh.edges.ravel(), minlength=len(mesh.vertices))
 
     def flow(self, positions: Complexes, field: Complexes, t: float = 1.0) -> Complexes:
-        """Where the vertices (n,) are at time ``t`` (1: the whole step) if they start with ``field`` (n,)."""
-        moves = t * field
-        factors = spiral_factor(_rates(self._edges, positions, moves))
-        return positions + moves * (self._shares * _sums_at_ends(self._edges, factors, len(positions)))
+        """The pose (n,) at time ``t``, from ``positions`` (n,) at time 0 with velocities ``field`` (n,)."""
+        displacements = t * field
+        factors = spiral_factor(_rates(self._edges, positions, displacements))
+        sums = _sum_at_ends(self._edges, factors, len(positions))
+        return positions + displacements * (self._inverse_degree * sums)
 
 
 @compiled
-def _rates(edges: Ints, positions: Complexes, moves: Complexes) -> Complexes:
+def _rates(edges: Ints, positions: Complexes, displacements: Complexes) -> Complexes:
+    """The rate s of each edge, (e,)."""
     result = np.empty(len(edges), dtype=np.complex128)
     for e in range(len(edges)):
         i, j = edges[e, 0], edges[e, 1]
-        d, u = positions[i] - positions[j], moves[i] - moves[j]
-        size = d.real * d.real + d.imag * d.imag
-        result[e] = complex(u.real * d.real + u.imag * d.imag, u.imag * d.real - u.real * d.imag) / size
+        d, u = positions[i] - positions[j], displacements[i] - displacements[j]
+        square = d.real * d.real + d.imag * d.imag
+        result[e] = complex(u.real * d.real + u.imag * d.imag, u.imag * d.real - u.real * d.imag) / square
     return result
 
 
 @compiled
-def _sums_at_ends(edges: Ints, values: Complexes, count: int) -> Complexes:
+def _sum_at_ends(edges: Ints, values: Complexes, count: int) -> Complexes:
+    """The sum at each of ``count`` vertices of the values (e,) of its edges."""
     result = np.zeros(count, dtype=np.complex128)
     for e in range(len(edges)):
         result[edges[e, 0]] += values[e]
@@ -83,5 +86,5 @@ def _sums_at_ends(edges: Ints, values: Complexes, count: int) -> Complexes:
 
 
 def linear_flow(positions: Complexes, field: Complexes, t: float = 1.0) -> Complexes:
-    """The straight steps that spirals replace: γ(t) = p + t u (Fig. 5)."""
+    """Straight steps in place of spirals (Fig. 5): γ(t) = p + t u; arguments as in `LogSpirals.flow`."""
     return positions + t * field

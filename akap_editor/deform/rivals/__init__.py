@@ -1,1 +1,1 @@
-"""Other deformation methods under the same contract, for comparison."""
+"""Deformation methods of other papers under the same contract, for comparison."""

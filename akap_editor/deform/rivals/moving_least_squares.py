@@ -1,9 +1,9 @@
 """Moving least squares: Schaefer, McPhail and Warren 2006, "Image Deformation Using Moving Least Squares".
 
-Each vertex v goes where the transform takes it that fits the pins best in the sense of least squares: a pin p
-at rest and its target q with weight w = 1 / |p − v|^2α (eq. 1). Every such transform takes the weighted mean
-p* of the pins to that of their targets, q*. With points as complex numbers, u = v − p*, p̂ = p − p*,
-μ = Σ w |p̂|² and τ = Σ w p̂², v goes to q* plus
+Each vertex v is moved by the transform that fits the pins best in the sense of least squares: a pin p at rest
+with its target q has the weight w = 1 / |p − v|^2α (eq. 1). All such transforms take the weighted mean p* of
+the pins to that of their targets, q*. With points as complex numbers, u = v − p*, p̂ = p − p*, μ = Σ w |p̂|²
+and τ = Σ w p̂², v moves to q* plus
 
     f = u S / μ with S = Σ w conj(p̂) q          similarity (section 2.2)
     |u| f / |f|                                  rigid (section 2.3)
@@ -22,19 +22,19 @@ from .rest_based import RestBasedDeformer, product
 
 Transform = Literal["rigid", "similarity", "affine"]
 
-_COLLINEAR = 1e-6  # of 1 − |τ/μ|², nearly four times the square of width over length: less is a line
+_COLLINEAR = 1e-6  # 1 − |τ/μ|², nearly 4 (width / length)², below which pins are on a line
 
 
 class MovingLeastSquaresDeformer(RestBasedDeformer):
-    """Moving least squares (Schaefer, McPhail and Warren 2006), each component by its own pins.
+    """Moving least squares (Schaefer, McPhail and Warren 2006); each component has its own pins.
 
     mesh: the rest pose.
     transform: "rigid", "similarity" or "affine"; alpha: the exponent α of the weights.
-    The map takes every pin to its target but is evaluated at vertices: a pin at a vertex arrives exactly, one
-    inside a face as nearly as the map is linear there. Pins on a line get a similarity instead of an affine
-    map, pins at one place a translation. Only rest pose, pins and targets count, not the pose so far. Faces
-    may flip.
-    Raises InputError on settings out of range.
+    The map takes every pin to its target but is evaluated at the vertices: a pin at a vertex arrives exactly,
+    a pin inside a face up to the error of linear interpolation. Pins on a line get a similarity instead of an
+    affine map, pins at one place a translation. The result does not depend on the current pose. Faces may
+    flip.
+    Raises InputError for arguments out of range.
     """
 
     def __init__(self, mesh: TriMesh, transform: Transform = "rigid", alpha: float = 1.0) -> None:
@@ -44,26 +44,26 @@ class MovingLeastSquaresDeformer(RestBasedDeformer):
         super().__init__(mesh)
 
     def _prepare(self) -> None:
-        """Arms u (n,), and matrices (n, k) that make q* and f, or a u + b conj(u), from the targets."""
+        """Compute arms u (n,), and matrices (n, k) that take targets to q* and to f or a u + b conj(u)."""
         shape = len(self._rest), len(self._pins)
         self._mean = np.zeros(shape)
         self._linear = np.zeros(shape, dtype=np.complex128)
         self._arms = np.zeros(shape[0], dtype=np.complex128)
         self._origin = np.zeros(shape[1], dtype=np.int64)
-        for _, own, pins, together in self._parts():
+        for _, own, pins, at_one_place in self._pinned_components():
             block = np.ix_(own, pins)
             self._origin[pins] = pins[0]
             mean, arms, hats = self._weighted(self._rest[own], self._pins[pins])
             self._mean[block], self._arms[own] = mean, arms
-            if not together:
-                affine = self._transform == "affine" and not _on_a_line(self._pins[pins])
+            if not at_one_place:
+                affine = self._transform == "affine" and not _is_line(self._pins[pins])
                 self._linear[block] = _linear_part(mean, arms, hats, affine)
-        self._translated = ~self._linear.any(axis=1)
+        self._is_translated = ~self._linear.any(axis=1)
 
     def _weighted(self, vertices: Complexes, pins: Complexes) -> tuple[Floats, Complexes, Complexes]:
         """Weights w with sum 1 (n, k), arms u (n,) and offsets p̂ (n, k).
 
-        Taken from the nearest pin, whose weight may leave hardly anything to the others.
+        Computed relative to the nearest pin, next to which the weights of the others may vanish.
         """
         squares = np.abs(vertices[:, None] - pins) ** 2
         nearest = squares.argmin(axis=1)
@@ -74,29 +74,31 @@ class MovingLeastSquaresDeformer(RestBasedDeformer):
         mean = (weights * offsets).sum(axis=1)
         return weights, vertices - pins[nearest] - mean, offsets - mean[:, None]
 
-    def _moved(self, pose: Complexes, goals: Complexes) -> Complexes:
+    def _deform(self, pose: Complexes, goals: Complexes) -> Complexes:
         linear = product(self._linear, goals - goals[self._origin])
         if self._transform == "rigid":
             size = np.abs(linear)
             linear = np.where(size > 0, np.abs(self._arms) * linear / np.where(size > 0, size, 1), self._arms)
-        return product(self._mean, goals) + np.where(self._translated, self._arms, linear)
+        return product(self._mean, goals) + np.where(self._is_translated, self._arms, linear)
 
 
-def _on_a_line(pins: Complexes) -> bool:
+def _is_line(pins: Complexes) -> bool:
+    """Whether pins (k,) are on a line."""
     hats = pins - pins.mean()
     return bool(1 - np.abs((hats**2).sum() / (np.abs(hats) ** 2).sum()) ** 2 < _COLLINEAR)
 
 
 def _linear_part(weights: Floats, arms: Complexes, hats: Complexes, affine: bool) -> Complexes:
-    """What takes targets to f, or to a u + b conj(u): (n, k), rows with sum 0; all 0 where u or μ vanish."""
+    """The matrix (n, k) that takes targets to f or a u + b conj(u). Rows have sum 0, or are 0 with u or μ."""
     mu = (weights * np.abs(hats) ** 2).sum(axis=1, keepdims=True)
-    shares = np.divide(weights, mu, out=np.zeros_like(weights), where=mu > 0)
-    similar, mirrored = shares * hats.conj(), shares * hats
+    normalized = np.divide(weights, mu, out=np.zeros_like(weights), where=mu > 0)
+    similar, mirrored = normalized * hats.conj(), normalized * hats
     u = arms[:, None]
     if affine:
-        tau = (shares * hats**2).sum(axis=1, keepdims=True)
-        span = 1 - np.abs(tau) ** 2
-        a, b = (similar - tau.conj() * mirrored) / span, (mirrored - tau * similar) / span
+        tau = (normalized * hats**2).sum(axis=1, keepdims=True)
+        determinant = 1 - np.abs(tau) ** 2
+        a = (similar - tau.conj() * mirrored) / determinant
+        b = (mirrored - tau * similar) / determinant
         linear = a * u + b * u.conj()
     else:
         linear = similar * u

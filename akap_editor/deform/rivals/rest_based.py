@@ -1,4 +1,4 @@
-"""What methods have in common whose result is made from the rest pose."""
+"""The base of methods that compute their result from the rest pose."""
 
 import time
 from abc import ABC, abstractmethod
@@ -14,18 +14,19 @@ from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints, as_indices, as_points
 from ..deformer import Deformer, StepReport, StepResult, as_targets
 
-_SAME_PLACE = 1e-3  # share of √area: pins nearer than this are at one place
+_SAME_PLACE = 1e-3  # share of √area: pins that are closer count as at one place
 
 
 def product(matrix: Floats | Complexes, values: Complexes) -> Complexes:
-    """Matrix (n, k) times values (k,), not by BLAS: on a busy machine its threads wait for one another."""
+    """Matrix (n, k) times values (k,). Not by BLAS, whose threads wait for one another on a busy machine."""
     return np.asarray(np.einsum("nk,k->n", matrix, values))
 
 
 class RestBasedDeformer(Deformer, ABC):
-    """A `Deformer` that goes from the rest pose to the result at once, without a way there.
+    """A `Deformer` whose result follows from the rest pose, without a path of the vertices.
 
-    A component without a pin holds still. A method fills in `_prepare` and `_moved`.
+    mesh: the rest pose. Components without a pin stay where they are. Subclasses implement `_prepare` and
+    `_deform`.
     """
 
     def __init__(self, mesh: TriMesh) -> None:
@@ -35,7 +36,10 @@ class RestBasedDeformer(Deformer, ABC):
         self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
 
     def set_pins(self, points: MeshPoints) -> None:
-        """Choose the pins; moves nothing. Raises InputError where a face is not one of the mesh."""
+        """Choose the pins, k points of the mesh; moves nothing.
+
+        Raises InputError for points with faces that the mesh does not have.
+        """
         as_indices(points.faces, "points.faces", None, len(self._mesh.faces))
         corners = self._mesh.faces[points.faces]
         k, n = len(points), len(self._rest)
@@ -43,16 +47,19 @@ class RestBasedDeformer(Deformer, ABC):
         self._weights = csr_array((points.weights.ravel(), (rows, corners.ravel())), shape=(k, n))
         self._pins = self._weights @ self._rest
         self._pin_components = self._mesh.component[corners[:, 0]]
-        self._held = ~np.isin(self._mesh.component, self._pin_components)
+        self._is_unpinned = ~np.isin(self._mesh.component, self._pin_components)
         self._prepare()
 
     def step(self, positions: ArrayLike, targets: ArrayLike) -> StepResult:
-        """Move the pose (n, 2) so that its pins come to ``targets`` (k, 2); see `Deformer.step`."""
+        """Move the pose (n, 2) so that its pins reach ``targets`` (k, 2), see `Deformer.step`.
+
+        Raises InputError and SolverError.
+        """
         started = time.perf_counter()
         pose = to_complex(as_points(positions, "positions", len(self._rest)))
         goals = as_targets(targets, len(self._pins), self._mesh, pose)
-        moved = self._moved(pose, goals) if len(goals) else pose
-        moved = np.where(self._held, pose, moved)
+        moved = self._deform(pose, goals) if len(goals) else pose
+        moved = np.where(self._is_unpinned, pose, moved)
         if not np.isfinite(moved).all():
             raise SolverError("the step has no finite result")
         result = to_points(moved)
@@ -65,17 +72,20 @@ class RestBasedDeformer(Deformer, ABC):
         )
         return StepResult(result, None, report)
 
-    def _parts(self) -> Iterator[tuple[int, Ints, Ints, bool]]:
-        """Each component with pins: its number, vertices, pins, and whether those are at one place."""
-        for part in np.unique(self._pin_components):
-            pins = np.flatnonzero(self._pin_components == part)
-            together = np.abs(self._pins[pins] - self._pins[pins[0]]).max() <= self._same_place
-            yield int(part), np.flatnonzero(self._mesh.component == part), pins, bool(together)
+    def _pinned_components(self) -> Iterator[tuple[int, Ints, Ints, bool]]:
+        """For each component with pins: number, vertices, pins, and whether the pins are at one place."""
+        for component in np.unique(self._pin_components):
+            pins = np.flatnonzero(self._pin_components == component)
+            at_one_place = np.abs(self._pins[pins] - self._pins[pins[0]]).max() <= self._same_place
+            yield int(component), np.flatnonzero(self._mesh.component == component), pins, bool(at_one_place)
 
     @abstractmethod
     def _prepare(self) -> None:
-        """Compute what depends on where the pins are."""
+        """Compute what depends on the pins but not on their targets."""
 
     @abstractmethod
-    def _moved(self, pose: Complexes, goals: Complexes) -> Complexes:
-        """The new pose (n,) for at least one target (k,); where nothing is pinned it does not matter."""
+    def _deform(self, pose: Complexes, goals: Complexes) -> Complexes:
+        """The new pose (n,) for the targets ``goals`` (k,), at least one.
+
+        Values at vertices of components without a pin are ignored.
+        """

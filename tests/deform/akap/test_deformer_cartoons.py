@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from akap_editor.deform.akap import deformer as akap
+from akap_editor.deform.akap import deformer
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
 from akap_editor.geometry.distortion import distortion
@@ -126,7 +126,7 @@ def test_pins_that_hold_do_not_creep(cartoon_mesh, memory):
 
 def test_without_corrections_the_inner_pin_would_creep(cartoon_mesh, monkeypatch):
     """What the law above is worth."""
-    monkeypatch.setattr(akap, "_CORRECTIONS", 0)
+    monkeypatch.setattr(deformer, "MAX_CORRECTIONS", 0)
     drag = Drag(cartoon_mesh("gingerbread", 600))
     worst = 0.0
     for far in range(0, 150, 5):
@@ -189,13 +189,13 @@ def wave(drag, t):
 def factorizations(monkeypatch):
     """How often the matrix of a field was factorized."""
     count = [0]
-    original = PreconditionedCholesky._factorize
+    original = PreconditionedCholesky.factorize
 
     def counted(self):
         count[0] += 1
         original(self)
 
-    monkeypatch.setattr(PreconditionedCholesky, "_factorize", counted)
+    monkeypatch.setattr(PreconditionedCholesky, "factorize", counted)
     return count
 
 

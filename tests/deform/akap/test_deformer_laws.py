@@ -11,27 +11,16 @@ from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, signed_areas
 from akap_editor.geometry.operators import to_complex, to_points
 from tests.support import dense, shapes
+from tests.support.deformers import akap_with_pins, bent_pose
 from tests.support.dense import killing_energy
 
-WHOLE = float("inf")  # max_step: one field for the whole way
-
-
-def deformer_with(mesh, points, **settings):
-    deformer = AkapDeformer(mesh, **settings)
-    deformer.set_pins(points)
-    return deformer
-
-
-def bent(mesh):
-    """A pose without flips that is no rigid motion of the rest pose."""
-    x, y = mesh.vertices.T
-    return np.stack([x + 8 * np.sin(y / 40), 1.1 * y - 6 * np.cos(x / 50)], axis=1)
+WHOLE = float("inf")  # max_step: one field for the whole step
 
 
 def scene(mesh, seed=1, each=3):
     """A pose, pins and velocities."""
     points = shapes.random_pins(mesh, seed, each)
-    return bent(mesh), points, np.random.default_rng(seed).normal(scale=5.0, size=(len(points), 2))
+    return bent_pose(mesh), points, np.random.default_rng(seed).normal(scale=5.0, size=(len(points), 2))
 
 
 # -- hard constraints ----------------------------------------------------------------------------------------
@@ -41,7 +30,7 @@ def scene(mesh, seed=1, each=3):
 @pytest.mark.parametrize("seed", [1, 2])
 def test_hard_pins_have_exactly_their_velocities(mesh, seed, dirichlet):
     pose, points, velocities = scene(mesh, seed)
-    deformer = deformer_with(mesh, points, constraints="hard", dirichlet=dirichlet)
+    deformer = akap_with_pins(mesh, points, constraints="hard", dirichlet=dirichlet)
     _, smooth = deformer.vector_fields(pose, velocities)
     assert np.abs(mesh.evaluate(points, smooth) - velocities).max() < 1e-9 * np.abs(smooth).max()
 
@@ -60,7 +49,7 @@ def hard_field(mesh, pose, points, velocities):
 @pytest.mark.parametrize("dirichlet", [True, False])
 def test_hard_fields_are_those_of_the_dense_implementation(mesh, dirichlet):
     pose, points, velocities = scene(mesh)
-    deformer = deformer_with(mesh, points, constraints="hard", dirichlet=dirichlet)
+    deformer = akap_with_pins(mesh, points, constraints="hard", dirichlet=dirichlet)
     optimal, smooth = deformer.vector_fields(pose, velocities)
     expected, _ = hard_field(mesh, pose, points, velocities)
     size = np.abs(expected).max()
@@ -71,7 +60,7 @@ def test_hard_fields_are_those_of_the_dense_implementation(mesh, dirichlet):
 
 def test_hard_field_has_the_least_energy(mesh):
     pose, points, velocities = scene(mesh)
-    _, smooth = deformer_with(mesh, points, constraints="hard").vector_fields(pose, velocities)
+    _, smooth = akap_with_pins(mesh, points, constraints="hard").vector_fields(pose, velocities)
     least = killing_energy(pose, mesh.faces, smooth)
     _, free = hard_field(mesh, pose, points, velocities)
     rng = np.random.default_rng(3)
@@ -83,20 +72,20 @@ def test_hard_field_has_the_least_energy(mesh):
 
 def test_soft_pins_approach_hard_ones(mesh):
     pose, points, velocities = scene(mesh)
-    _, limit = deformer_with(mesh, points, constraints="hard").vector_fields(pose, velocities)
-    off = []
+    _, limit = akap_with_pins(mesh, points, constraints="hard").vector_fields(pose, velocities)
+    differences = []
     for weight in (10.0, 100.0, 1e3, 1e4):
-        _, smooth = deformer_with(mesh, points, pin_weight=weight).vector_fields(pose, velocities)
-        off.append(np.abs(smooth - limit).max() / np.abs(limit).max())
-    assert off == sorted(off, reverse=True)
-    assert off[-1] < 1e-4
+        _, smooth = akap_with_pins(mesh, points, pin_weight=weight).vector_fields(pose, velocities)
+        differences.append(np.abs(smooth - limit).max() / np.abs(limit).max())
+    assert differences == sorted(differences, reverse=True)
+    assert differences[-1] < 1e-4
 
 
 def test_hard_pins_may_say_the_same_twice_or_contradict_one_another(mesh):
     pose, points, velocities = scene(mesh, each=2)
     twice = MeshPoints(np.tile(points.faces, 2), np.tile(points.weights, (2, 1)))
-    _, once = deformer_with(mesh, points, constraints="hard").vector_fields(pose, velocities)
-    deformer = deformer_with(mesh, twice, constraints="hard")
+    _, once = akap_with_pins(mesh, points, constraints="hard").vector_fields(pose, velocities)
+    deformer = akap_with_pins(mesh, twice, constraints="hard")
     for spread in (np.zeros_like(velocities), velocities[:, ::-1]):  # the mean is what counts
         wanted = np.concatenate([velocities + spread, velocities - spread])
         _, smooth = deformer.vector_fields(pose, wanted)
@@ -106,8 +95,8 @@ def test_hard_pins_may_say_the_same_twice_or_contradict_one_another(mesh):
 @pytest.mark.parametrize("memory", [0.0, 1.0])
 def test_steps_with_hard_pins_arrive(mesh, memory):
     points = shapes.random_pins(mesh, 5)
-    goals = mesh.evaluate(points, bent(mesh)) + np.array([12.0, -20.0])
-    deformer, pose = deformer_with(mesh, points, constraints="hard", memory=memory), mesh.vertices
+    goals = mesh.evaluate(points, bent_pose(mesh)) + np.array([12.0, -20.0])
+    deformer, pose = akap_with_pins(mesh, points, constraints="hard", memory=memory), mesh.vertices
     for _ in range(20):
         result = deformer.step(pose, goals)
         pose = result.positions
@@ -116,9 +105,9 @@ def test_steps_with_hard_pins_arrive(mesh, memory):
 
 
 def test_fields_of_steps_with_hard_pins_have_exactly_their_velocities(mesh):
-    """Whatever steps came before: no factorization is used for two poses."""
+    """Whatever steps came before: every pose is factorized."""
     points = shapes.random_pins(mesh, 5)
-    deformer = deformer_with(mesh, points, constraints="hard", dirichlet=False, max_step=WHOLE)
+    deformer = akap_with_pins(mesh, points, constraints="hard", dirichlet=False, max_step=WHOLE)
     pose = mesh.vertices
     for way in ([0.2, 0.1], [-0.1, 0.3]):
         here = mesh.evaluate(points, pose)
@@ -133,7 +122,7 @@ def test_fields_of_steps_with_hard_pins_have_exactly_their_velocities(mesh):
 
 def drag(mesh, points, memory, between):
     """Poses of ten steps, with ``between`` called before each."""
-    deformer, pose, poses = deformer_with(mesh, points, memory=memory), mesh.vertices, []
+    deformer, pose, poses = akap_with_pins(mesh, points, memory=memory), mesh.vertices, []
     start = mesh.evaluate(points, pose)
     for index in range(1, 11):
         between(deformer, pose, start)
@@ -173,7 +162,7 @@ def test_fields_are_exact_whatever_steps_came_before(mesh):
     drag(mesh, points, 0.0, compare)
 
 
-# -- the way of a step ---------------------------------------------------------------------------------------
+# -- the path of a step --------------------------------------------------------------------------------------
 
 
 @pytest.fixture(params=[0.0, 1.0])
@@ -182,12 +171,12 @@ def long_step(request, mesh):
     points = shapes.random_pins(mesh, 2)
     goals = mesh.evaluate(points, mesh.vertices)
     goals[-1] += 0.12 * mesh.length * np.array([0.8, -0.6])
-    result = deformer_with(mesh, points, memory=request.param, max_step=0.05).step(mesh.vertices, goals)
+    result = akap_with_pins(mesh, points, memory=request.param, max_step=0.05).step(mesh.vertices, goals)
     assert result.report.substeps == 3
     return mesh.vertices, result
 
 
-def test_way_begins_and_ends_exactly(long_step):
+def test_path_begins_and_ends_exactly(long_step):
     start, result = long_step
     assert result.at(0).tolist() == start.tolist()
     assert result.at(1).tolist() == result.positions.tolist()
@@ -196,33 +185,33 @@ def test_way_begins_and_ends_exactly(long_step):
     assert result.at(1).tolist() == end.tolist()
 
 
-def test_way_is_continuous(long_step):
+def test_path_is_continuous(long_step):
     start, result = long_step
     size = np.abs(result.positions - start).max()
     for border in (1 / 3, 2 / 3, 0.5):
         assert np.abs(result.at(border + 1e-9) - result.at(border - 1e-9)).max() < 1e-6 * size
 
 
-def test_no_face_flips_on_the_way(mesh, long_step):
+def test_no_face_flips_on_the_path(mesh, long_step):
     _, result = long_step
     for t in np.linspace(0, 1, 21):
         assert (signed_areas(result.at(t), mesh.faces) > 0).all()
 
 
 @pytest.mark.parametrize("t", [0.0, 0.3, 0.5, 1.0])
-def test_way_of_a_rotation_is_the_rotation(mesh, t):
+def test_path_of_a_rotation_is_the_rotation(mesh, t):
     angle = 0.005  # so small that the ends of the velocities are as good as on the circle
     points = shapes.random_pins(mesh, 3)
     here, center = to_complex(mesh.evaluate(points, mesh.vertices)), to_complex(mesh.vertices).mean()
     goals = to_points(here + 1j * angle * (here - center))
-    result = deformer_with(mesh, points, max_step=WHOLE).step(mesh.vertices, goals)
+    result = akap_with_pins(mesh, points, max_step=WHOLE).step(mesh.vertices, goals)
     expected = center + np.exp(1j * angle * t) * (to_complex(mesh.vertices) - center)
     assert np.abs(result.at(t) - to_points(expected)).max() < 1e-9
 
 
-def test_way_without_pins_is_no_way(mesh):
+def test_without_pins_nothing_moves_at_any_time(mesh):
     none = MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
-    result = deformer_with(mesh, none).step(mesh.vertices, np.zeros((0, 2)))
+    result = akap_with_pins(mesh, none).step(mesh.vertices, np.zeros((0, 2)))
     assert result.at(0.5).tolist() == mesh.vertices.tolist()
 
 
@@ -230,12 +219,12 @@ def test_way_without_pins_is_no_way(mesh):
 def test_time_beyond_the_step_is_refused(t):
     mesh = shapes.SHAPES["square"]
     points = shapes.random_pins(mesh, 1)
-    result = deformer_with(mesh, points).step(mesh.vertices, mesh.evaluate(points, mesh.vertices))
+    result = akap_with_pins(mesh, points).step(mesh.vertices, mesh.evaluate(points, mesh.vertices))
     with pytest.raises(InputError, match=r"^t: expected a number from 0 to 1, got "):
         result.at(t)
 
 
-def test_result_of_a_method_without_a_way_says_so():
+def test_result_of_a_method_without_trajectories_says_so():
     result = StepResult(np.zeros((3, 2)), None, StepReport(0.0, 1, 0.0, 0, 0.0))
     with pytest.raises(InputError, match="expected the result of a method that moves along trajectories"):
         result.at(0.5)
@@ -288,7 +277,7 @@ def test_bar_tied_into_a_loop(memory):
     mesh = shapes.SHAPES["bar"]
     points = ends(mesh)
     start = mesh.evaluate(points, mesh.vertices)
-    deformer, pose = deformer_with(mesh, points, memory=memory), mesh.vertices
+    deformer, pose = akap_with_pins(mesh, points, memory=memory), mesh.vertices
     for turn in np.linspace(0, 3 * np.pi, 91)[1:]:
         radius = 150 * (1 - turn / (4 * np.pi))
         middle = start.mean(axis=0)
@@ -303,7 +292,7 @@ def pulled_away_and_back(mesh, memory, way, steps):
     home = mesh.evaluate(points, mesh.vertices)
     away = home.copy()
     away[-1] += way
-    deformer = deformer_with(mesh, points, memory=memory, max_step=0.5)
+    deformer = akap_with_pins(mesh, points, memory=memory, max_step=0.5)
     results = [deformer.step(mesh.vertices, away)]
     while len(results) == 1 or (results[-1].report.pin_error > 0.25 and len(results) <= steps):
         results.append(deformer.step(results[-1].positions, home))
@@ -340,7 +329,7 @@ def test_contradicting_pins_flip_nothing(mesh, memory):
     face = len(mesh.faces) // 2
     points = MeshPoints([face] * 3, 0.8 * np.eye(3) + 0.2 / 3)
     goals = mesh.evaluate(points, mesh.vertices)[[1, 0, 2]]
-    deformer, pose = deformer_with(mesh, points, memory=memory), mesh.vertices
+    deformer, pose = akap_with_pins(mesh, points, memory=memory), mesh.vertices
     for _ in range(3):
         result = deformer.step(pose, goals)
         check(mesh, result)
@@ -357,8 +346,8 @@ def test_deformer_works_after_a_solver_error(mesh, constraints, memory):
     pose, points, _ = scene(mesh)
     goals = mesh.evaluate(points, pose) + 1.0
     settings = {"memory": memory, "constraints": constraints}
-    expected = deformer_with(mesh, points, **settings).step(pose, goals).positions
-    deformer = deformer_with(mesh, points, **settings)
+    expected = akap_with_pins(mesh, points, **settings).step(pose, goals).positions
+    deformer = akap_with_pins(mesh, points, **settings)
     collapsed = np.zeros_like(pose)
     for before in (
         mesh.vertices,
@@ -383,7 +372,7 @@ def test_memory_of_nothing_is_the_method_without_memory(mesh):
     """Bit for bit, and in the limit."""
     pose, points, _ = scene(mesh)
     goals = mesh.evaluate(points, pose) + 0.5
-    plain = deformer_with(mesh, points).step(pose, goals).positions
-    assert deformer_with(mesh, points, memory=0).step(pose, goals).positions.tolist() == plain.tolist()
-    nearly = deformer_with(mesh, points, memory=1e-9).step(pose, goals).positions
+    plain = akap_with_pins(mesh, points).step(pose, goals).positions
+    assert akap_with_pins(mesh, points, memory=0).step(pose, goals).positions.tolist() == plain.tolist()
+    nearly = akap_with_pins(mesh, points, memory=1e-9).step(pose, goals).positions
     assert np.abs(nearly - plain).max() < 1e-3

@@ -1,9 +1,8 @@
-"""Pins that hold an angle, and parts that bend less."""
+"""Pins that hold an angle: the energies, and steps of `AkapDeformer` with angles."""
 
 import numpy as np
 import pytest
 
-from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.akap.pin_rotation import PinRotationConstraints
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
@@ -11,58 +10,56 @@ from akap_editor.geometry.killing_matrix import KillingMatrix
 from akap_editor.geometry.mesh import MeshPoints
 from akap_editor.geometry.operators import to_complex, to_points
 from tests.support import shapes
+from tests.support.deformers import akap_with_pins
 
 FREE = np.nan
 MEMORIES = pytest.mark.parametrize("memory", [0.0, 1.0])
 
 
-def deformer_with(mesh, points, **settings):
-    deformer = AkapDeformer(mesh, **settings)
-    deformer.set_pins(points)
-    return deformer
-
-
-def turning_of(mesh, points):
+def constraints_on(mesh, points):
     return PinRotationConstraints(mesh, points, np.ones(len(points), dtype=bool))
 
 
 # -- the terms -----------------------------------------------------------------------------------------------
 
 
-def test_turning_fields_cost_what_the_matrix_says(mesh):
-    turning = turning_of(mesh, shapes.random_pins(mesh, 1, 2))
+def test_energy_of_a_field_is_that_of_the_matrix(mesh):
+    rotation = constraints_on(mesh, shapes.random_pins(mesh, 1, 2))
     pose = mesh.vertices @ [[1.1, 0.2], [-0.1, 0.9]]
-    turning.place(pose)
+    rotation.set_pose(pose)
     killing = KillingMatrix(mesh)
-    there = to_complex(pose)
-    difference = killing.nonzeros(there, rotation_weights=turning.spin) - killing.nonzeros(there)
+    weights, z = rotation.rotation_weights, to_complex(pose)
+    difference = killing.nonzeros(z, rotation_weights=weights) - killing.nonzeros(z)
     matrix = np.zeros((2 * len(pose),) * 2)
     matrix[killing.blocks.rows, killing.blocks.columns] = difference
     matrix += np.tril(matrix, -1).T
     field = np.random.default_rng(1).normal(size=pose.shape)
-    assert turning.energy(to_complex(field)) == pytest.approx(
+    assert rotation.energy(to_complex(field)) == pytest.approx(
         field.ravel() @ matrix @ field.ravel(), rel=1e-9
     )
 
 
-def test_rates_of_a_rotation(mesh):
-    """A field that turns by ω costs c A ω², and pulls on what turns as it does."""
-    turning = turning_of(mesh, shapes.random_pins(mesh, 1, 2))
+def test_energy_and_force_of_a_rotation(mesh):
+    """A rotation at the rate ω costs c A ω², and the force for ω̃ does the work c A ω ω̃ on it."""
+    rotation = constraints_on(mesh, shapes.random_pins(mesh, 1, 2))
     field = 0.3j * (to_complex(mesh.vertices) - 7.0)
-    turning.place(mesh.vertices)
-    area = mesh.rest_areas[turning.faces].sum()
-    assert turning.energy(field) == pytest.approx(1e4 * area * 0.09, rel=1e-9)
-    pull = turning.pull(np.full(len(turning.faces), 0.5))
-    assert np.vdot(pull, field).real == pytest.approx(1e4 * area * 0.3 * 0.5, rel=1e-9)
+    rotation.set_pose(mesh.vertices)
+    area = mesh.rest_areas[rotation.faces].sum()
+    assert rotation.energy(field) == pytest.approx(1e4 * area * 0.09, rel=1e-9)
+    force = rotation.pin_force(np.full(len(rotation.faces), 0.5))
+    assert np.vdot(force, field).real == pytest.approx(1e4 * area * 0.3 * 0.5, rel=1e-9)
 
 
-def test_misfit_and_its_gradient(mesh):
-    turning = turning_of(mesh, shapes.random_pins(mesh, 2, 2))
+def test_residual_energy_and_its_gradient(mesh):
+    rotation = constraints_on(mesh, shapes.random_pins(mesh, 2, 2))
     pose = to_complex(mesh.vertices @ [[1.1, 0.2], [-0.1, 0.9]])
     goal = np.exp(0.4j)
-    gradient = 2 * turning.misfit_gradient(turning.turns(pose) - goal)
+    gradient = 2 * rotation.residual_gradient(rotation.face_rotations(pose) - goal)
     change = to_complex(np.random.default_rng(3).normal(size=mesh.vertices.shape))
-    ahead, behind = (turning.misfit(turning.turns(pose + s * change) - goal) for s in (1e-4, -1e-4))
+    ahead, behind = (
+        rotation.residual_energy(rotation.face_rotations(pose + step * change) - goal)
+        for step in (1e-4, -1e-4)
+    )
     assert np.vdot(gradient, change).real == pytest.approx((ahead - behind) / 2e-4, rel=1e-6)
 
 
@@ -70,7 +67,7 @@ def test_misfit_and_its_gradient(mesh):
 def test_angles_are_those_of_the_surroundings(mesh, angle):
     points = shapes.random_pins(mesh, 1, 2)
     pose = to_points(np.exp(1j * angle) * to_complex(mesh.vertices))
-    assert deformer_with(mesh, points).angles(pose) == pytest.approx(np.full(len(points), angle))
+    assert akap_with_pins(mesh, points).angles(pose) == pytest.approx(np.full(len(points), angle))
 
 
 # -- steps ---------------------------------------------------------------------------------------------------
@@ -78,10 +75,10 @@ def test_angles_are_those_of_the_surroundings(mesh, angle):
 
 @MEMORIES
 @pytest.mark.parametrize("dirichlet", [True, False])
-def test_part_with_one_pin_turns_with_it_as_a_whole(mesh, memory, dirichlet):
+def test_part_with_one_pin_rotates_with_it_as_a_whole(mesh, memory, dirichlet):
     points = MeshPoints([len(mesh.faces) // 2], [[0.2, 0.3, 0.5]])
     own = mesh.component == mesh.component[mesh.faces[points.faces[0], 0]]
-    deformer, pose = deformer_with(mesh, points, memory=memory, dirichlet=dirichlet), mesh.vertices
+    deformer, pose = akap_with_pins(mesh, points, memory=memory, dirichlet=dirichlet), mesh.vertices
     place = mesh.evaluate(points, pose)
     for angle in np.linspace(0, 4.0, 30)[1:]:
         pose = deformer.step(pose, place, [angle]).positions
@@ -92,11 +89,11 @@ def test_part_with_one_pin_turns_with_it_as_a_whole(mesh, memory, dirichlet):
 
 
 @MEMORIES
-def test_pin_turns_to_its_angle_and_others_hold_still(memory):
+def test_pin_rotates_to_its_angle_and_others_stay(memory):
     mesh = shapes.SHAPES["bar"]
     points = mesh.locate([[10.0, 30.0], [150.0, 30.0], [290.0, 30.0]])
     places = mesh.evaluate(points, mesh.vertices)
-    deformer, pose = deformer_with(mesh, points, memory=memory), mesh.vertices
+    deformer, pose = akap_with_pins(mesh, points, memory=memory), mesh.vertices
     for angle in np.linspace(0, 0.8, 20)[1:].tolist() + [0.8] * 10:
         result = deformer.step(pose, places, [FREE, angle, FREE])
         pose = result.positions
@@ -109,13 +106,13 @@ def test_pin_turns_to_its_angle_and_others_hold_still(memory):
 
 
 def test_pin_holds_its_angle_while_another_is_dragged():
-    """Without it the end of the bar would turn."""
+    """Without an angle, the end of the bar would rotate."""
     mesh = shapes.SHAPES["bar"]
     points = mesh.locate([[10.0, 30.0], [290.0, 30.0]])
     places = mesh.evaluate(points, mesh.vertices)
     ends = []
     for held in (FREE, 0.0):
-        deformer, pose = deformer_with(mesh, points, memory=1.0), mesh.vertices
+        deformer, pose = akap_with_pins(mesh, points, memory=1.0), mesh.vertices
         for y in np.linspace(0, 80, 30)[1:].tolist() + [80.0] * 20:
             pose = deformer.step(pose, places + np.array([[0.0, 0.0], [-y / 4, y]]), [held, FREE]).positions
         ends.append(abs(deformer.angles(pose)[0]))
@@ -127,23 +124,25 @@ def test_angle_where_a_pin_is_moves_nothing(mesh):
     points = shapes.random_pins(mesh, 3)
     places = mesh.evaluate(points, mesh.vertices)
     for memory in (0.0, 1.0):
-        result = deformer_with(mesh, points, memory=memory).step(mesh.vertices, places, np.zeros(len(points)))
+        result = akap_with_pins(mesh, points, memory=memory).step(
+            mesh.vertices, places, np.zeros(len(points))
+        )
         assert np.abs(result.positions - mesh.vertices).max() < 1e-6
 
 
-def test_large_turn_is_cut_into_substeps():
+def test_large_rotation_is_divided_into_substeps():
     mesh = shapes.SHAPES["square"]
     points = mesh.locate([mesh.vertices.mean(axis=0)])
-    result = deformer_with(mesh, points).step(mesh.vertices, mesh.evaluate(points, mesh.vertices), [1.0])
+    result = akap_with_pins(mesh, points).step(mesh.vertices, mesh.evaluate(points, mesh.vertices), [1.0])
     assert result.report.substeps == 10
-    assert deformer_with(mesh, points).angles(result.positions)[0] == pytest.approx(1.0, abs=1e-6)
+    assert akap_with_pins(mesh, points).angles(result.positions)[0] == pytest.approx(1.0, abs=1e-6)
 
 
 def test_all_free_is_no_angle_at_all(mesh):
     points = shapes.random_pins(mesh, 3)
     goals = mesh.evaluate(points, mesh.vertices) + 3.0
-    expected = deformer_with(mesh, points).step(mesh.vertices, goals).positions
-    used = deformer_with(mesh, points)
+    expected = akap_with_pins(mesh, points).step(mesh.vertices, goals).positions
+    used = akap_with_pins(mesh, points)
     used.step(mesh.vertices, goals, np.zeros(len(points)))  # angles of an earlier step leave no trace
     found = used.step(mesh.vertices, goals, np.full(len(points), FREE)).positions
     assert np.abs(found - expected).max() < 1e-5 * mesh.length
@@ -152,52 +151,6 @@ def test_all_free_is_no_angle_at_all(mesh):
 @pytest.mark.parametrize("angles", [[0.0, 1.0], [np.inf], ["left"], 1.0])
 def test_bad_angles_are_refused(angles):
     mesh = shapes.SHAPES["triangle"]
-    deformer = deformer_with(mesh, MeshPoints([0], [[1.0, 0.0, 0.0]]))
+    deformer = akap_with_pins(mesh, MeshPoints([0], [[1.0, 0.0, 0.0]]))
     with pytest.raises(InputError, match=r"^angles: expected 1 "):
         deformer.step(mesh.vertices, [[0.0, 0.0]], angles)
-
-
-# -- stiffness -----------------------------------------------------------------------------------------------
-
-
-@MEMORIES
-def test_stiff_parts_bend_less(memory):
-    mesh = shapes.SHAPES["bar"]
-    points = mesh.locate([[10.0, 30.0], [290.0, 30.0]])
-    places = mesh.evaluate(points, mesh.vertices)
-    stiff = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] < 150
-    goals = places + np.array([[100.0, 0.0], [-100.0, 60.0]])
-    worst = []
-    for factor in (1.0, 1000.0):
-        deformer = deformer_with(mesh, points, memory=memory, stiffness=np.where(stiff, factor, 1.0))
-        pose = mesh.vertices
-        for share in np.linspace(0, 1, 30)[1:]:
-            pose = deformer.step(pose, places + share * (goals - places)).positions
-        quality = distortion(mesh, pose)
-        worst.append((quality.face_area + quality.face_angle - 4)[stiff].max())
-        assert quality.flipped == 0
-    assert worst[1] < 0.05 * worst[0]
-
-
-@MEMORIES
-def test_equal_stiffness_everywhere_changes_little(mesh, memory):
-    """Only against the pins, which are stiff themselves."""
-    points = shapes.random_pins(mesh, 2)
-    goals = mesh.evaluate(points, mesh.vertices) + np.random.default_rng(2).normal(
-        scale=2, size=(len(points), 2)
-    )
-    one, two = (
-        deformer_with(mesh, points, memory=memory, stiffness=np.full(len(mesh.faces), factor))
-        .step(mesh.vertices, goals)
-        .positions
-        for factor in (1.0, 2.0)
-    )
-    none = deformer_with(mesh, points, memory=memory).step(mesh.vertices, goals).positions
-    assert np.abs(one - none).max() < 1e-9
-    assert np.abs(two - none).max() < 0.2
-
-
-@pytest.mark.parametrize("stiffness", [[1.0, 1.0], [0.0], [-1.0], [np.nan], [1e9], "hard"])
-def test_bad_stiffness_is_refused(stiffness):
-    with pytest.raises(InputError, match=r"^stiffness: expected 1 numbers"):
-        AkapDeformer(shapes.SHAPES["triangle"], stiffness=stiffness)

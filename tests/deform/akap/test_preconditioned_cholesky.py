@@ -88,7 +88,7 @@ def test_a_turned_drawing_costs_one_iteration(system):
 
 def test_solutions_like_earlier_ones_cost_fewer_iterations(system, monkeypatch):
     """Of a pull that turns with the drawing and changes its size, with the first factors throughout."""
-    monkeypatch.setattr(reuse, "_AFFORDED", 1000)
+    monkeypatch.setattr(reuse, "MAX_WASTED_ITERATIONS", 1000)
     counts = []
     for like in ("", "pull"):
         solver = prepared(system)
@@ -132,7 +132,7 @@ def test_many_iterations_call_for_a_factorization(system):
 
 def test_what_is_forgotten_is_factorized_again(system):
     solver = prepared(system)
-    solver.forget()
+    solver.invalidate()
     solver.prepare(system.nonzeros(system.mesh.vertices), np.ones(system.size // 2, dtype=complex))
     assert solver.factorizations == 2
 

@@ -1,10 +1,10 @@
-"""The energy that remembers the rest shape, and the descent on it."""
+"""The symmetric Dirichlet energy, its derivatives, and the line search."""
 
 import numpy as np
 import pytest
 from scipy.sparse import coo_array
 
-from akap_editor.deform.akap.rest_energy import SymmetricDirichlet, descend
+from akap_editor.deform.akap.rest_energy import SymmetricDirichlet, line_search
 from akap_editor.geometry.killing_matrix import KillingMatrix, VertexBlocks
 from akap_editor.geometry.mesh import signed_areas
 from akap_editor.geometry.operators import to_complex, to_points
@@ -110,31 +110,31 @@ def test_hessian_at_rest_is_twice_the_killing_matrix(mesh):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_longest_change_is_that_to_the_first_flip(mesh, seed):
+def test_step_to_first_flip_ends_where_a_face_flips(mesh, seed):
     energy, pose = SymmetricDirichlet(mesh), noisy(mesh, seed, 0.1)
     change = to_complex(np.random.default_rng(seed).normal(size=mesh.vertices.shape))
-    far = energy.longest(energy.columns(pose), energy.columns(change))
-    if far == np.inf:  # a single face may grow for ever
+    step = energy.step_to_first_flip(energy.columns(pose), energy.columns(change))
+    if step == np.inf:  # a single face may grow forever
         assert signed_areas(to_points(pose + 1e6 * change), mesh.faces).min() > 0
         return
-    areas = [signed_areas(to_points(pose + t * far * change), mesh.faces) for t in (0.2, 0.6, 0.999, 1.001)]
+    areas = [signed_areas(to_points(pose + t * step * change), mesh.faces) for t in (0.2, 0.6, 0.999, 1.001)]
     assert [bool((area > 0).all()) for area in areas] == [True, True, True, False]
 
 
-def test_change_that_flips_nothing_may_go_on_for_ever(mesh):
+def test_change_that_flips_nothing_may_be_as_long_as_it_likes(mesh):
     energy, rest = SymmetricDirichlet(mesh), to_complex(mesh.vertices)
     for change in (rest, 0 * rest, np.full_like(rest, 3 - 1j)):
-        assert energy.longest(energy.columns(rest), energy.columns(change)) > 1e12
+        assert energy.step_to_first_flip(energy.columns(rest), energy.columns(change)) > 1e12
 
 
 def parabola(start, least):
-    """A function of the distance from ``start`` towards 0, and its slope there."""
-    return lambda far: (start - far - least) ** 2, -2 * (start - least)
+    """A parabola of the step length, with its minimum at ``start`` minus ``least``, and its slope at 0."""
+    return lambda step: (start - step - least) ** 2, -2 * (start - least)
 
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("length", [1.0, 0.3])
-def test_descent_never_raises_the_energy(mesh, seed, length):
+def test_line_search_never_increases_the_energy(mesh, seed, length):
     energy = Energy(mesh)
     pose = noisy(mesh, seed, 0.1)
     before, gradient = energy.value(pose), energy.gradient(pose)
@@ -142,37 +142,36 @@ def test_descent_never_raises_the_energy(mesh, seed, length):
     random = to_complex(rng.normal(size=mesh.vertices.shape))
     for direction in (-gradient, -1e-9 * gradient, -1e9 * gradient, random, gradient, 0 * gradient):
         slope = float(np.vdot(gradient, direction).real)
-        far = descend(lambda t, along=direction: energy.value(pose + t * along), before, slope, length)
-        assert 0 <= far <= length
-        assert energy.value(pose + far * direction) <= before
-    step = -1e-3 * gradient
-    far = descend(
-        lambda t: energy.value(pose + t * step), before, float(np.vdot(gradient, step).real), length
-    )
-    assert far > 0
-    assert energy.value(pose + far * step) < before
+        step = line_search(lambda t, along=direction: energy.value(pose + t * along), before, slope, length)
+        assert 0 <= step <= length
+        assert energy.value(pose + step * direction) <= before
+    direction = -1e-3 * gradient
+    slope = float(np.vdot(gradient, direction).real)
+    step = line_search(lambda t: energy.value(pose + t * direction), before, slope, length)
+    assert step > 0
+    assert energy.value(pose + step * direction) < before
 
 
 @pytest.mark.parametrize("length", [2.5, 3.5, 15.0, 1e6])
-def test_descent_goes_to_the_minimum_of_a_parabola(length):
+def test_line_search_finds_the_minimum_of_a_parabola(length):
     value, slope = parabola(3.0, 0.5)
-    assert descend(value, value(0.0), slope, length) == pytest.approx(2.5, rel=1e-9)
+    assert line_search(value, value(0.0), slope, length) == pytest.approx(2.5, rel=1e-9)
 
 
-def test_descent_down_a_cliff_keeps_the_best_try():
-    """Next to a face that is nearly flipped, every parabola asks for half of the way."""
-    far = descend(lambda t: 1e7 / (1e-4 + t) ** 2 + t, 1e15, -2e19, 1.0)
-    assert far > 0.2
+def test_line_search_down_a_cliff_returns_the_best_try():
+    """Next to a face that is nearly flipped, every parabola asks for half of the step."""
+    step = line_search(lambda t: 1e7 / (1e-4 + t) ** 2 + t, 1e15, -2e19, 1.0)
+    assert step > 0.2
 
 
-def test_descent_goes_no_farther_than_it_may():
+def test_line_search_stays_within_its_limit():
     value, slope = parabola(3.0, 0.5)
-    assert descend(value, value(0.0), slope, 1.25) == 1.25
+    assert line_search(value, value(0.0), slope, 1.25) == 1.25
 
 
-def test_direction_upwards_goes_nowhere():
-    assert descend(lambda far: (3 + far) ** 2, 9.0, 6.0, 1.0) == 0.0
-    assert descend(lambda _: 9.0, 9.0, 0.0, 1.0) == 0.0
+def test_ascent_direction_gives_no_step():
+    assert line_search(lambda step: (3 + step) ** 2, 9.0, 6.0, 1.0) == 0.0
+    assert line_search(lambda _: 9.0, 9.0, 0.0, 1.0) == 0.0
 
 
 def test_result_has_one_point_for_each_vertex(mesh):

@@ -4,8 +4,13 @@ import numpy as np
 import pytest
 import shapely
 
-from akap_editor.deform.rivals import cauchy_green
-from akap_editor.deform.rivals.cauchy_green import CauchyGreenDeformer
+from akap_editor.deform.rivals.cauchy_green import (
+    CAGE_OFFSET,
+    CauchyGreenDeformer,
+    coordinates,
+    make_cage,
+    second_derivatives,
+)
 from akap_editor.errors import InputError
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
@@ -43,21 +48,20 @@ def cauchy_integral(cage, values, z, power=1):
 
 def test_coordinates_are_cauchys_integrals_of_linear_values():
     values = np.random.default_rng(1).normal(size=(6, 2)).view(complex)[:, 0]
-    found = cauchy_green._coordinates(CAGE, INSIDE) @ values
+    found = coordinates(CAGE, INSIDE) @ values
     expected = [cauchy_integral(CAGE, values, z) for z in INSIDE]
     assert np.abs(found - expected).max() < 1e-10
-    found = cauchy_green._second_derivatives(CAGE, INSIDE) @ values
+    found = second_derivatives(CAGE, INSIDE) @ values
     expected = [cauchy_integral(CAGE, values, z, power=3) for z in INSIDE]
     assert np.abs(found - expected).max() < 1e-8 * np.abs(expected).max()
 
 
 def test_coordinates_reproduce_similarities_and_nothing_outside():
     a, b = 1.5 - 0.7j, 20 + 3j
-    coordinates = cauchy_green._coordinates(CAGE, INSIDE)
-    assert np.abs(coordinates @ (a * CAGE + b) - a * INSIDE - b).max() < 1e-12
-    assert np.abs(cauchy_green._second_derivatives(CAGE, INSIDE) @ (a * CAGE + b)).max() < 1e-12
+    assert np.abs(coordinates(CAGE, INSIDE) @ (a * CAGE + b) - a * INSIDE - b).max() < 1e-12
+    assert np.abs(second_derivatives(CAGE, INSIDE) @ (a * CAGE + b)).max() < 1e-12
     outside = np.array([1.8 + 1.8j, -1.0, 4 + 4j])
-    assert np.abs(cauchy_green._coordinates(CAGE, outside) @ CAGE).max() < 1e-12
+    assert np.abs(coordinates(CAGE, outside) @ CAGE).max() < 1e-12
 
 
 # -- the cage ------------------------------------------------------------------------------------------------
@@ -83,13 +87,13 @@ def ragged(teeth):
     ids=["needle", "thorn", "slot", "gear", "file"],
 )
 def test_cage_is_a_simple_polygon_of_few_vertices_around_the_outline(outline, size):
-    cage = cauchy_green._cage(outline, size)
+    cage = make_cage(outline, size)
     around = shapely.Polygon(np.stack([cage.real, cage.imag], axis=1))
     assert len(cage) <= size
     assert around.is_valid
     assert around.exterior.is_ccw
     assert around.contains(outline)
-    assert around.exterior.distance(outline) > 0.4 * cauchy_green._OFFSET
+    assert around.exterior.distance(outline) > 0.4 * CAGE_OFFSET
 
 
 def test_what_is_left_out_does_not_depend_on_where_a_ring_begins():
@@ -97,7 +101,7 @@ def test_what_is_left_out_does_not_depend_on_where_a_ring_begins():
     outline = ragged(60)
     points = np.array(outline.exterior.coords)[:-1]
     other = shapely.Polygon(np.roll(points, 17, axis=0) @ [[0.6, 0.8], [-0.8, 0.6]])
-    first, second = (cauchy_green._cage(polygon, 60) for polygon in (outline, other))
+    first, second = (make_cage(polygon, 60) for polygon in (outline, other))
     turned = first * (0.6 + 0.8j)
     assert np.abs(turned[:, None] - second).min(axis=1).max() < 1e-9
 

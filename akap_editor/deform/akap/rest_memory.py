@@ -1,0 +1,105 @@
+"""Memory of the rest pose: descent on the rest energy, so that stretching does not accumulate."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import SolverError
+from ...geometry.mesh import MeshPoints, TriMesh
+from ...geometry.operators import to_complex, to_points
+from ...geometry.validation import Complexes, Floats
+from ..cholesky import SparseCholesky
+from .killing_field import KillingSystem
+from .pin_rotation import PinRotationConstraints
+from .preconditioned_cholesky import dot
+from .rest_energy import SymmetricDirichlet, line_search
+
+_TOLERANCE = 1e-5  # of a descent direction at every vertex, as a share of √area
+_FLIP_MARGIN = 0.9  # share of the step to the first flip that the line search may take
+_MIN_SHARE = 0.05  # if the line search accepts less than this share, retry with Newton's direction
+
+
+@dataclass(frozen=True, eq=False)
+class PinGoals:
+    """The goals of the pins in a substep: positions (k,), and angles (k,) in radians, NaN if free."""
+
+    positions: Complexes
+    angles: Floats
+
+
+class RestMemory:
+    """Moves poses towards the rest pose by descent on `SymmetricDirichlet`, with soft pins at their goals.
+
+    mesh: the rest pose; system: with the same pins, prepared at the pose while pins move; stiffness: (m,)
+    factors of the faces' energies.
+    """
+
+    def __init__(self, mesh: TriMesh, system: KillingSystem, stiffness: Floats | None) -> None:
+        self._mesh, self._system = mesh, system
+        self._energy = SymmetricDirichlet(mesh, stiffness)
+        self._hessian: SparseCholesky | None = None
+
+    def set_pins(self, points: MeshPoints, rotation: PinRotationConstraints | None) -> None:
+        """Choose the pins, k points of the mesh, and the faces that rotate with them."""
+        pinned = np.unique(self._mesh.component[self._mesh.faces[points.faces, :1]])
+        self._is_unpinned = ~np.isin(self._mesh.component, pinned)
+        self._rotation = rotation
+
+    def descend(self, pose: Complexes, goals: PinGoals, max_step: float, is_moving: bool) -> Complexes:
+        """One descent step from the pose (n,); returns the new pose (n,). Raises SolverError.
+
+        max_step: of the line search; 1 is the whole direction. is_moving: whether the system is prepared at
+        the pose. Near an isometry, the Hessian of the energy is 2 (K + λ² WᵀW), and the system has its
+        factors. If that is no good model, or if the drawing only settles, Newton's direction is taken.
+        """
+        energy, rotation = self._energy, self._rotation
+        columns, offsets = energy.columns(pose), self._system.at_pins(pose) - goals.positions
+        if energy.value(columns) == np.inf:  # another method has flipped faces
+            return pose
+        gradient = energy.gradient(columns) + 2 * self._system.pin_force(offsets)
+        if rotation is not None:
+            residuals = rotation.face_rotations(pose) - np.exp(1j * goals.angles[rotation.pins])
+            gradient += 2 * rotation.residual_gradient(residuals)
+        gradient[self._is_unpinned] = 0.0
+
+        def search(direction: Complexes) -> tuple[Complexes, float]:
+            """The pose (n,) after a line search along a direction (n,), and the step length."""
+            change, pin_change = energy.columns(direction), self._system.at_pins(direction)
+            rotation_change = rotation.face_rotations(direction) if rotation is not None else 0.0
+
+            def value(step_length: float) -> float:
+                total = energy.value(columns + step_length * change)
+                total += self._system.pin_energy(offsets + step_length * pin_change)
+                if rotation is not None:
+                    total += rotation.residual_energy(residuals + step_length * rotation_change)
+                return total
+
+            slope = dot(gradient, direction)
+            limit = min(max_step, _FLIP_MARGIN * energy.step_to_first_flip(columns, change))
+            step_length = line_search(value, value(0.0), slope, limit)
+            return pose + step_length * direction, step_length
+
+        if is_moving:
+            tolerance = _TOLERANCE * self._mesh.length
+            moved, step_length = search(-0.5 * self._system.solve(gradient, tolerance, "memory"))
+            if step_length >= _MIN_SHARE * max_step:
+                return moved
+        return search(self._newton_direction(pose, columns, gradient))[0]
+
+    def _newton_direction(self, pose: Complexes, columns: Complexes, gradient: Complexes) -> Complexes:
+        """Newton's direction (n,) for the gradient (n,) of rest energy and pin energies at a pose (n,)."""
+        if not gradient.any():
+            return gradient
+        if self._hessian is None:
+            self._hessian = SparseCholesky(self._system.pattern)
+        rotation_weights = None if self._rotation is None else self._rotation.rotation_weights
+        for convex in (False, True):  # far from a minimum the Hessian has negative eigenvalues
+            nonzeros = self._energy.half_hessian(columns, convex, self._system.blocks, rotation_weights)
+            self._system.add_pins(nonzeros, to_points(pose))
+            try:
+                self._hessian.factorize(nonzeros)
+                break
+            except SolverError:
+                if convex:
+                    raise
+        return -0.5 * to_complex(self._hessian.solve(gradient.view(np.float64)).reshape(-1, 2))
