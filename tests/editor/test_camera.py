@@ -28,9 +28,9 @@ def test_zoom_keeps_the_point_under_the_cursor(camera, at, factor):
 @given(cameras, points)
 def test_zoom_at_its_limits_moves_nothing(camera, at):
     for limit, factor in ((MIN_ZOOM, 0.5), (MAX_ZOOM, 2.0)):
-        there = Camera(limit, camera.offset)
-        assert there.zoomed(factor, at).zoom == limit
-        assert there.zoomed(factor, at).offset == pytest.approx(there.offset, rel=1e-9, abs=1e-6)
+        limited = Camera(limit, camera.offset)
+        assert limited.zoomed(factor, at).zoom == limit
+        assert limited.zoomed(factor, at).offset == pytest.approx(limited.offset, rel=1e-9, abs=1e-6)
 
 
 @given(cameras, points, points)

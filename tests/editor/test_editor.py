@@ -373,9 +373,9 @@ def test_the_drawing_under_the_pointer_is_looked_up_once_for_each_place_and_pose
     monkeypatch.setattr(TriMesh, "find", lambda mesh, *args: looked.append(args) or find(mesh, *args))
     editor = pinned.editor
     inside, outside = editor.camera.to_screen((84.0, 45.0)), editor.camera.to_screen((2.0, 2.0))
-    for place, there in ((inside, True), (outside, False), (inside, True)):
-        editor.handle_event(PointerEvent("move", place))
-        assert [pinned.would_add_pin, pinned.would_add_pin] == [there, there]
+    for position, is_on_drawing in ((inside, True), (outside, False), (inside, True)):
+        editor.handle_event(PointerEvent("move", position))
+        assert [pinned.would_add_pin, pinned.would_add_pin] == [is_on_drawing, is_on_drawing]
     assert len(looked) == 3
     pinned.session.begin("Away")
     pinned.session.apply(SetPose(pinned.state.positions + 1000.0))

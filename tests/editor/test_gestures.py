@@ -20,7 +20,7 @@ def pause(driver, seconds):
 
 
 @pytest.mark.parametrize(
-    ("key", "shift", "way"),
+    ("key", "shift", "direction"),
     [
         ("left", False, (-1, 0)),
         ("right", False, (1, 0)),
@@ -29,11 +29,11 @@ def pause(driver, seconds):
         ("left", True, (-10, 0)),
     ],
 )
-def test_arrows_nudge_the_selected_pins(pinned, key, shift, way):
+def test_arrows_nudge_the_selected_pins(pinned, key, shift, direction):
     before = pinned.state.targets
     pinned.editor.select({1, 3})
     pinned.handle(KeyEvent(key, shift=shift))
-    np.testing.assert_array_equal(pinned.state.targets, before + np.outer([1, 0, 1], way))
+    np.testing.assert_array_equal(pinned.state.targets, before + np.outer([1, 0, 1], direction))
     pinned.settle()
     assert pinned.session.pin_error() < 0.25
     assert pinned.session.history.undo_label == "Nudge 2 Pins"

@@ -107,7 +107,7 @@ class Driver:
         x, y = self.session.pin_positions()[self.ids.index(pin)].tolist()
         return x, y
 
-    # -- what a hand does ----------------------------------------------------------------------------------
+    # -- input -----------------------------------------------------------------------------------------------
 
     def press(self, at: Point, button: Button = "left", shift: bool = False) -> None:
         self._pointer("press", at, button, shift)
@@ -162,7 +162,7 @@ class Driver:
     def _pointer(self, kind: Any, at: Point, button: Button, shift: bool) -> None:
         self.handle(PointerEvent(kind, self.editor.camera.to_screen(at), button, shift))
 
-    # -- what always holds ---------------------------------------------------------------------------------
+    # -- invariants ------------------------------------------------------------------------------------------
 
     def check(self) -> None:
         """Check what holds after every event: a valid state, and tools, selection and popup that fit it."""

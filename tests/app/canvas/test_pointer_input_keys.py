@@ -49,7 +49,7 @@ def test_alt_click_cuts_a_pin_off_and_the_keyboard_stays_with_the_canvas(pinned)
     assert pinned.state.show_mesh
 
 
-def test_an_alt_drag_of_the_ring_turns_and_holds(pinned):
+def test_an_alt_drag_of_the_ring_rotates_and_holds(pinned):
     plain = pinned.screenshot()
     pinned.drag(*pinned.ring_points(2, 0, 20, 40), held=Key.mod_alt)
     assert math.degrees(pinned.session.state.pin(2).angle) == pytest.approx(40, abs=3)

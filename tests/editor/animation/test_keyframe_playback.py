@@ -25,54 +25,54 @@ END = (105.0, 40.0)
 
 
 @pytest.fixture
-def player(pinned, clock):
+def playback(pinned, clock):
     """Keyframes of the rest pose at 0, and of a bent one at 1 second."""
-    player = KeyframePlayback(pinned.editor, clock)
-    player.update()
-    player.set_keyframe(0.0)
+    playback = KeyframePlayback(pinned.editor, clock)
+    playback.update()
+    playback.set_keyframe(0.0)
     pinned.drag(END, (90.0, 60.0))
     pinned.settle()
-    player.update()
-    player.set_keyframe(1.0)
-    player.time = 0.0
-    return player
+    playback.update()
+    playback.set_keyframe(1.0)
+    playback.time = 0.0
+    return playback
 
 
 def times(pinned):
     return pinned.session.present.animation.times
 
 
-def test_the_pose_between_keyframes_is_the_eased_in_between(player, pinned, drawing):
+def test_the_pose_between_keyframes_is_the_eased_in_between(playback, pinned, drawing):
     start, end = pinned.session.present.animation.keyframes
     ways = InterpolationCache()
     for moment, share in ((0.0, 0.0), (0.25, 0.15625), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)):
         expected = ways.pose(drawing.mesh, start.positions, end.positions, share)
-        np.testing.assert_array_equal(player.pose(moment), expected)
-    player.set_default_easing("none")
+        np.testing.assert_array_equal(playback.pose(moment), expected)
+    playback.set_default_easing("none")
     np.testing.assert_array_equal(
-        player.pose(0.25), ways.pose(drawing.mesh, start.positions, end.positions, 0.25)
+        playback.pose(0.25), ways.pose(drawing.mesh, start.positions, end.positions, 0.25)
     )
-    player.selected = frozenset({0.0})
-    player.set_easing("hold")
-    assert player.pose(0.999) is start.positions
-    assert player.pose(1.0) is end.positions
+    playback.selected = frozenset({0.0})
+    playback.set_easing("hold")
+    assert playback.pose(0.999) is start.positions
+    assert playback.pose(1.0) is end.positions
     document = pinned.session.present_document
     assert animation_frame(document, ways, 1.0).pose is end.positions
     assert animation_pose(ways, drawing.mesh, document.state.animation, 0.5) is start.positions
 
 
-def test_every_edit_is_undone_redone_and_recorded(player, pinned, drawing):
+def test_every_edit_is_undone_redone_and_recorded(playback, pinned, drawing):
     session, states = pinned.session, []
-    player.selected = frozenset({1.0})
+    playback.selected = frozenset({1.0})
     for edit in (
-        lambda: player.set_keyframe(0.5),
-        lambda: player.shift_keyframes(0.05),
-        player.duplicate_keyframes,
-        lambda: player.set_easing("out"),
-        lambda: setattr(player, "loop", False),
-        lambda: player.set_default_easing("in"),
-        lambda: player.move_keyframe(1.0, 2.0),
-        player.delete_keyframes,
+        lambda: playback.set_keyframe(0.5),
+        lambda: playback.shift_keyframes(0.05),
+        playback.duplicate_keyframes,
+        lambda: playback.set_easing("out"),
+        lambda: setattr(playback, "loop", False),
+        lambda: playback.set_default_easing("in"),
+        lambda: playback.move_keyframe(1.0, 2.0),
+        playback.delete_keyframes,
     ):
         states.append(bits(session.present))
         edit()
@@ -87,59 +87,59 @@ def test_every_edit_is_undone_redone_and_recorded(player, pinned, drawing):
         assert bits(session.present) == state
 
 
-def test_a_pose_that_is_seen_between_becomes_a_keyframe_and_is_recorded(player, pinned, drawing):
-    player.scrub(0.5)
+def test_a_pose_that_is_seen_between_becomes_a_keyframe_and_is_recorded(playback, pinned, drawing):
+    playback.scrub(0.5)
     seen = pinned.session.state.positions
-    player.set_keyframe()
+    playback.set_keyframe()
     assert times(pinned) == (0.0, 0.5, 1.0)
     np.testing.assert_array_equal(pinned.session.present.animation.keyframes[1].positions, seen)
     assert bits(replayed_state(pinned.session.recording, drawing)) == bits(pinned.session.present)
 
 
-def test_looking_changes_nothing_and_edits_of_keyframes_leave_the_pose(player, pinned):
+def test_looking_changes_nothing_and_edits_of_keyframes_leave_the_pose(playback, pinned):
     session, before = pinned.session, bits(pinned.session.present)
     events = len(session.recording.events)
     for moment in (0.0, 0.3, 1.0, 5.0):
-        player.scrub(moment)
-        player.update()
+        playback.scrub(moment)
+        playback.update()
         assert session.is_previewing
     assert bits(session.present) == before
     assert bits(session.present_document.state) == before
     assert len(session.recording.events) == events
     positions = session.present.positions
-    player.shift_keyframes(0.1)
-    player.update()
+    playback.shift_keyframes(0.1)
+    playback.update()
     assert session.is_previewing, "it goes on being looked at"
     assert session.present.positions is positions
-    player.show_present()
+    playback.show_present()
     assert not session.is_previewing
 
 
-def test_undo_of_a_pose_shows_the_present(player, pinned):
-    player.scrub(0.5)
+def test_undo_of_a_pose_shows_the_present(playback, pinned):
+    playback.scrub(0.5)
     pinned.undo()  # the keyframe
-    player.update()
-    assert player.is_previewing
+    playback.update()
+    assert playback.is_previewing
     pinned.undo()  # the drag
-    player.update()
-    assert not player.is_previewing
+    playback.update()
+    assert not playback.is_previewing
     assert not pinned.session.is_previewing
 
 
-def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(player, pinned):
-    player.set_keyframe(0.5)
-    player.selected = frozenset({1.0})
+def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(playback, pinned):
+    playback.set_keyframe(0.5)
+    playback.selected = frozenset({1.0})
     depth = pinned.session.history.depth
     for to in (0.7, 0.5, 0.2):
-        player.drag_keyframes({1.0: to})
+        playback.drag_keyframes({1.0: to})
     assert times(pinned) == (0.0, 0.5, 1.0)
-    assert player.animation.times == (0.0, 0.2, 0.5)
-    player.drop_keyframes()
+    assert playback.animation.times == (0.0, 0.2, 0.5)
+    playback.drop_keyframes()
     assert times(pinned) == (0.0, 0.2, 0.5)
-    assert player.selected == {0.2}
+    assert playback.selected == {0.2}
     assert pinned.session.history.depth == depth + 1
-    player.drag_keyframes({0.2: 0.5})
-    player.drop_keyframes(keep=False)
+    playback.drag_keyframes({0.2: 0.5})
+    playback.drop_keyframes(keep=False)
     assert times(pinned) == (0.0, 0.2, 0.5)
 
 
@@ -151,22 +151,22 @@ def test_stretching_keeps_the_other_end(dragged, to, expected):
     assert tuple(stretch_times((0.0, 1.0, 2.0), dragged, to).values()) == pytest.approx(expected)
 
 
-def test_playing_goes_on_and_starts_over(player, pinned, clock):
-    player.toggle_playing()
+def test_playing_goes_on_and_starts_over(playback, pinned, clock):
+    playback.toggle_playing()
     clock.now += 0.5
-    player.advance()
-    assert player.time == pytest.approx(0.5)
+    playback.advance()
+    assert playback.time == pytest.approx(0.5)
     clock.now += 0.75
-    player.advance()
-    assert player.time == pytest.approx(0.25)
-    player.loop = False
+    playback.advance()
+    assert playback.time == pytest.approx(0.25)
+    playback.loop = False
     clock.now += 9
-    player.advance()
-    assert player.time == 1.0
-    assert not player.is_playing
+    playback.advance()
+    assert playback.time == 1.0
+    assert not playback.is_playing
 
 
-def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, drawing):
+def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(playback, pinned, drawing):
     session = pinned.session
     session.begin("Mesh")
     session.apply(
@@ -180,8 +180,8 @@ def test_another_mesh_and_a_new_rest_pose_keep_the_keyframes(player, pinned, dra
     assert with_pose_as_rest(session.state, session.drawing).animation is session.state.animation
 
 
-def test_a_document_with_poses_and_keyframes_is_recorded_from_its_start(player, pinned, drawing):
+def test_a_document_with_poses_and_keyframes_is_recorded_from_its_start(playback, pinned, drawing):
     gestures.add_pose(pinned.editor, "Bent")
-    player.set_default_easing("out")
+    playback.set_default_easing("out")
     opened = Session(new_document(drawing).with_state(pinned.session.present))
     assert bits(replayed_state(opened.recording, drawing)) == bits(opened.state)

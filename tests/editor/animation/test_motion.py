@@ -45,7 +45,7 @@ def test_at_recorded_times_the_pose_is_the_recorded_one_to_the_last_bit(slow, dr
 
 
 def test_twelve_recorded_steps_a_second_play_as_sixty_along_arcs(slow, drawing):
-    """No jumps: between recorded moments the way is divided evenly, and lengths are as at the moments."""
+    """Between recorded times the movement is divided evenly, and edges keep their lengths."""
     start = slow.duration - 1
     times = [start + frame / 60 for frame in range(61)]
     seen = np.array(poses(slow, drawing, times))
@@ -60,7 +60,7 @@ def test_twelve_recorded_steps_a_second_play_as_sixty_along_arcs(slow, drawing):
     assert (size[:-1] / shorter).min() > 0.999
 
 
-def test_a_method_without_a_way_is_filled_in_by_turning_edges(slow, drawing):
+def test_a_method_without_trajectories_is_filled_in_by_rotating_edges(slow, drawing):
     start = slow.duration - 1
     times = [start + frame / 24 for frame in range(25)]
     rigid = poses(slow, drawing, times, lambda _: Settings("arap", ()))

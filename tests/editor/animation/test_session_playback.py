@@ -1,4 +1,4 @@
-"""The session looked at again: nothing is edited by looking, and going on from there branches."""
+"""Playback of the session: scrubbing edits nothing, and an edit at an earlier time starts a branch."""
 
 import numpy as np
 import pytest
@@ -14,20 +14,20 @@ END = (105.0, 40.0)
 
 
 @pytest.fixture
-def player(pinned, clock):
-    """Has watched a drag, a shot every twentieth of a second after a long pause."""
-    player = SessionPlayback(clock)
-    player.follow(pinned.session)
+def playback(pinned, clock):
+    """The playback of a drag after a long pause, with a snapshot every twentieth of a second."""
+    playback = SessionPlayback(clock)
+    playback.follow(pinned.session)
     clock.now += 100
     pinned.press(END)
     pinned.move((90.0, 60.0))
     while pinned.editor.is_moving:
         pinned.advance()
-        player.follow(pinned.session)
+        playback.follow(pinned.session)
         clock.now += 0.05
     pinned.release((90.0, 60.0))
-    player.follow(pinned.session)
-    return player
+    playback.follow(pinned.session)
+    return playback
 
 
 def recorded(session, drawing):
@@ -35,26 +35,26 @@ def recorded(session, drawing):
     return last.state
 
 
-def test_pauses_are_shortened_and_every_state_is_there(player, pinned, drawing):
-    times = [shot.time for shot in player.snapshots]
+def test_pauses_are_shortened_and_every_state_is_there(playback, pinned, drawing):
+    times = [snapshot.time for snapshot in playback.snapshots]
     assert times == sorted(times)
     assert times[0] == 0
     assert times[1] == MAX_PAUSE_SECONDS
     assert len(times) > 5
     assert np.diff(times[1:]).max() <= 0.06
-    np.testing.assert_array_equal(player.snapshots[0].state.positions, drawing.mesh.vertices)
-    assert player.snapshots[-1].state is pinned.state
+    np.testing.assert_array_equal(playback.snapshots[0].state.positions, drawing.mesh.vertices)
+    assert playback.snapshots[-1].state is pinned.state
 
 
-def test_scrubbing_shows_every_moment_and_changes_nothing(player, pinned):
+def test_scrubbing_shows_every_moment_and_changes_nothing(playback, pinned):
     session, now = pinned.session, bits(pinned.state)
     lines, depth, modified = len(session.recording.events), session.history.depth, session.is_modified
-    for shot in [*player.snapshots[:-1], *reversed(player.snapshots[:-1])]:
-        player.scrub(shot.time)
-        assert bits(session.state) == bits(shot.state)
+    for snapshot in [*playback.snapshots[:-1], *reversed(playback.snapshots[:-1])]:
+        playback.scrub(snapshot.time)
+        assert bits(session.state) == bits(snapshot.state)
         assert session.is_previewing
-        player.follow(session)
-    player.scrub(player.duration)
+        playback.follow(session)
+    playback.scrub(playback.duration)
     assert not session.is_previewing
     assert bits(session.state) == now
     assert (len(session.recording.events), session.history.depth, session.is_modified) == (
@@ -64,19 +64,19 @@ def test_scrubbing_shows_every_moment_and_changes_nothing(player, pinned):
     )
 
 
-def test_dragging_from_an_earlier_moment_branches(player, pinned, drawing):
+def test_dragging_from_an_earlier_moment_branches(playback, pinned, drawing):
     session, old = pinned.session, bits(pinned.state)
-    before = player.snapshots[: len(player.snapshots) // 2 + 1]
+    before = playback.snapshots[: len(playback.snapshots) // 2 + 1]
     middle = before[-1]
-    player.scrub(middle.time)
+    playback.scrub(middle.time)
     start = pinned.where(3)
     pinned.drag(start, (start[0] - 5, start[1] - 30))
-    player.follow(session)
+    playback.follow(session)
     pinned.settle()
-    player.follow(session)
-    assert player.time is None
-    assert player.snapshots[: len(before)] == before
-    assert len(player.snapshots) > len(before)
+    playback.follow(session)
+    assert playback.time is None
+    assert playback.snapshots[: len(before)] == before
+    assert len(playback.snapshots) > len(before)
     assert bits(recorded(session, drawing)) == bits(session.state)
     session.undo()
     assert bits(session.state) == bits(middle.state)
@@ -85,119 +85,119 @@ def test_dragging_from_an_earlier_moment_branches(player, pinned, drawing):
     assert bits(recorded(session, drawing)) == old
 
 
-def test_looking_does_not_change_the_last_bits_of_what_comes_after(player, pinned, drawing):
+def test_looking_does_not_change_the_last_bits_of_what_comes_after(playback, pinned, drawing):
     session = pinned.session
     for number in range(4):
-        for shot in player.snapshots[:: 3 + number]:
-            player.scrub(shot.time)
-        player.show_present()
+        for snapshot in playback.snapshots[:: 3 + number]:
+            playback.scrub(snapshot.time)
+        playback.show_present()
         start = pinned.where(3)
         pinned.press(start)
         pinned.move((start[0] + (-8) ** (number % 2) * 2, start[1] - 9.0))
         for _ in range(3):
             pinned.advance()
-            player.follow(session)
+            playback.follow(session)
         pinned.release((start[0], start[1] - 9.0))
-        player.follow(session)
+        playback.follow(session)
         assert bits(recorded(session, drawing)) == bits(session.state)
 
 
-def test_a_pose_that_is_settling_goes_on_after_a_look_back(player, pinned, drawing):
+def test_a_pose_that_is_settling_goes_on_after_a_look_back(playback, pinned, drawing):
     session = pinned.session
     start = pinned.where(3)
     pinned.press(start)
     pinned.move((start[0] - 20.0, start[1] + 25.0))
     pinned.release((start[0] - 20.0, start[1] + 25.0))
-    player.follow(session)
+    playback.follow(session)
     assert session.is_moving
-    player.scrub(0.0)
+    playback.scrub(0.0)
     assert not session.is_moving
-    player.show_present()
+    playback.show_present()
     assert session.is_moving
     pinned.click((30.0, 40.0))
     assert bits(recorded(session, drawing)) == bits(session.state)
 
 
-def test_undo_while_looking_undoes_from_the_present(player, pinned, drawing):
-    player.scrub(player.duration / 2)
+def test_undo_while_looking_undoes_from_the_present(playback, pinned, drawing):
+    playback.scrub(playback.duration / 2)
     pinned.undo()
     assert not pinned.session.is_previewing
     assert bits(recorded(pinned.session, drawing)) == bits(pinned.state)
     np.testing.assert_array_equal(pinned.state.positions, drawing.mesh.vertices)
 
 
-def test_playing_goes_through_the_range_and_stops_or_starts_over(player, pinned, clock):
-    player.mark_range(1.0, 1.2)
-    player.loop = False
-    player.toggle_playing()
-    assert player.is_playing
-    assert player.time == 1.0
+def test_playing_goes_through_the_range_and_stops_or_starts_over(playback, pinned, clock):
+    playback.mark_range(1.0, 1.2)
+    playback.loop = False
+    playback.toggle_playing()
+    assert playback.is_playing
+    assert playback.time == 1.0
     clock.now += 0.1
-    player.advance()
-    assert player.time == pytest.approx(1.1)
+    playback.advance()
+    assert playback.time == pytest.approx(1.1)
     clock.now += 1
-    player.advance()
-    assert not player.is_playing
-    assert player.time == 1.2
-    player.loop = True
-    player.toggle_playing()
+    playback.advance()
+    assert not playback.is_playing
+    assert playback.time == 1.2
+    playback.loop = True
+    playback.toggle_playing()
     clock.now += 0.25
-    player.advance()
-    assert player.time == pytest.approx(1.05), "it starts over without losing time"
-    player.toggle_playing()
-    assert not player.is_playing
+    playback.advance()
+    assert playback.time == pytest.approx(1.05), "it starts over without losing time"
+    playback.toggle_playing()
+    assert not playback.is_playing
 
 
-def test_a_take_is_the_part_between_its_ends(player, pinned, clock):
-    before = player.duration
-    player.start_take()
+def test_a_take_is_the_part_between_its_ends(playback, pinned, clock):
+    before = playback.duration
+    playback.start_take()
     pinned.press((90.0, 60.0))
     pinned.move((95.0, 50.0))
     for _ in range(5):
         clock.now += 0.05
         pinned.advance()
-        player.follow(pinned.session)
+        playback.follow(pinned.session)
     pinned.release((95.0, 50.0))
-    player.end_take()
-    assert player.marked_range == (before, player.duration)
-    assert player.duration > before
+    playback.end_take()
+    assert playback.marked_range == (before, playback.duration)
+    assert playback.duration > before
 
 
 @pytest.mark.parametrize(("start", "end"), [(2.0, 1.0), (5.0, 5.0)])
-def test_an_empty_range_is_all_there_is(player, start, end):
-    player.mark_range(start, end)
-    assert player.played_range == (0.0, player.duration)
+def test_an_empty_range_is_all_there_is(playback, start, end):
+    playback.mark_range(start, end)
+    assert playback.played_range == (0.0, playback.duration)
 
 
-def test_frames_between_shots_are_in_betweens(player):
-    before, after = player.snapshots[2:4]
-    middle = player.frame(0.5 * (before.time + after.time)).pose
-    np.testing.assert_array_equal(player.frame(before.time).pose, before.state.positions)
-    np.testing.assert_array_equal(player.frame(after.time).pose, after.state.positions)
+def test_frames_between_shots_are_in_betweens(playback):
+    before, after = playback.snapshots[2:4]
+    middle = playback.frame(0.5 * (before.time + after.time)).pose
+    np.testing.assert_array_equal(playback.frame(before.time).pose, before.state.positions)
+    np.testing.assert_array_equal(playback.frame(after.time).pose, after.state.positions)
     moved = np.abs(after.state.positions - before.state.positions).max()
     mean = 0.5 * (before.state.positions + after.state.positions)
     assert moved > 1
     assert np.abs(middle - mean).max() < 0.1 * moved, "on an arc near the chord's middle"
 
 
-def test_another_session_starts_anew(player, new_driver):
+def test_another_session_starts_anew(playback, new_driver):
     other = new_driver()
-    player.follow(other.session)
-    assert [shot.state for shot in player.snapshots] == [other.state]
-    player.follow(None)
-    assert player.snapshots == []
+    playback.follow(other.session)
+    assert [snapshot.state for snapshot in playback.snapshots] == [other.state]
+    playback.follow(None)
+    assert playback.snapshots == []
 
 
-def test_long_sessions_keep_to_their_memory(player, pinned, clock, monkeypatch):
+def test_long_sessions_keep_to_their_memory(playback, pinned, clock, monkeypatch):
     size = pinned.state.positions.nbytes
     monkeypatch.setattr("akap_editor.editor.animation.session_playback.MAX_BYTES", 20 * size)
     for step in range(100):
         clock.now += 0.1
         gestures.set_pose(pinned.editor, pinned.state.positions + 0.01 * step)
-        player.follow(pinned.session)
-    assert len(player.snapshots) <= 20
-    assert player.snapshots[0].time == 0
-    assert player.snapshots[-1].state is pinned.state
+        playback.follow(pinned.session)
+    assert len(playback.snapshots) <= 20
+    assert playback.snapshots[0].time == 0
+    assert playback.snapshots[-1].state is pinned.state
 
 
 def test_the_pose_between_two_is_looked_at_and_taken(pinned, drawing):

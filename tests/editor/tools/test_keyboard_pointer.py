@@ -18,7 +18,7 @@ NECK, END = (62.0, 40.0), (105.0, 40.0)
 
 
 def at(driver, place):
-    """Enter the crosshair at a place of the drawing, as if the mouse had been there last."""
+    """Start the keyboard pointer at a point of the drawing, as if the mouse had left the canvas from it."""
     driver.move(place)
     driver.editor.pointer_left()
     driver.editor.toggle_keyboard_pointer()
@@ -72,7 +72,7 @@ def test_enter_adds_a_pin_exactly_there_in_one_gesture(driver):
     assert driver.editor.selection == {driver.ids[-1]}
     assert driver.depth == depth + 1
     enter(driver)
-    assert len(driver.ids) == 1, "the second one takes the pin that is there"
+    assert len(driver.ids) == 1, "the second one selects the pin"
     driver.undo()
     assert not driver.ids
 
@@ -122,8 +122,8 @@ def test_the_canvas_moves_to_keep_it_in_sight(driver):
         driver.handle(KeyEvent("right", shift=True))
         seen.append(driver.editor.camera.to_drawing(driver.editor.pointer)[0])
         assert driver.editor.pointer[0] <= right - MARGIN
-    way = BIG_STEP / driver.editor.camera.zoom
-    assert np.diff(seen) == pytest.approx(way), "it goes on over the drawing"
+    step = BIG_STEP / driver.editor.camera.zoom
+    assert np.diff(seen) == pytest.approx(step), "it moves on over the drawing"
     driver.editor.canvas = (left, top, right - 300, bottom)
     assert driver.editor.pointer[0] == right - 300
 
@@ -177,7 +177,7 @@ def test_it_ends_with_the_drawing(driver):
     driver.editor.close()
     assert driver.tool == "PinsIdle"
     driver.editor.toggle_keyboard_pointer()
-    assert driver.tool == "PinsIdle", "there is nothing to point at"
+    assert driver.tool == "PinsIdle", "without a document it does not start"
 
 
 def test_it_waits_for_the_end_of_a_gesture(pinned):

@@ -13,13 +13,13 @@ from tests.support.editor_driver import OUTSIDE, bits
 HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
 
 
-def far(driver, at):
-    """A point that is just far enough on the screen for a drag."""
+def drag_end(driver, at):
+    """A point at a distance that makes a movement a drag."""
     return at[0], at[1] + 2 * DRAG_DISTANCE / driver.editor.camera.zoom
 
 
-def near(driver, at):
-    """A point that is so near on the screen that a click may reach it."""
+def click_end(driver, at):
+    """A point at a distance that a click may have."""
     return at[0], at[1] + 0.5 * DRAG_DISTANCE / driver.editor.camera.zoom
 
 
@@ -75,12 +75,12 @@ def test_shift_click_adds_to_the_selection_and_takes_from_it(pinned):
 def test_a_trembling_click_on_a_pin_does_not_drag_it(pinned):
     before, depth = bits(pinned.state), pinned.depth
     pinned.press(NECK)
-    pinned.move(near(pinned, NECK))
+    pinned.move(click_end(pinned, NECK))
     assert pinned.tool == "PointingPin"
-    pinned.release(near(pinned, NECK))
+    pinned.release(click_end(pinned, NECK))
     assert (bits(pinned.state), pinned.depth) == (before, depth)
     pinned.press(NECK)
-    pinned.move(far(pinned, NECK))
+    pinned.move(drag_end(pinned, NECK))
     assert pinned.tool == "DraggingPin"
 
 

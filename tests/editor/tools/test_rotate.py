@@ -23,8 +23,8 @@ NEAR = 0.02  # radians: pins hold angles softly
 def on_ring(d: Driver, pin: int, degrees: float) -> tuple[float, float]:
     """A point of the screen on a pin's ring, in a direction from it."""
     x, y = d.editor.pins_on_screen()[pin]
-    turn = math.radians(degrees)
-    return x + RING_RADIUS * math.cos(turn), y + RING_RADIUS * math.sin(turn)
+    angle = math.radians(degrees)
+    return x + RING_RADIUS * math.cos(angle), y + RING_RADIUS * math.sin(angle)
 
 
 def point(d: Driver, kind: str, at: tuple[float, float], **more: bool) -> None:
@@ -43,7 +43,7 @@ def grab_ring(d: Driver, pin: int, start: float = 0.0) -> None:
     point(d, "press", on_ring(d, pin, start))
 
 
-def turn(d: Driver, pin: int, *directions: float) -> None:
+def rotate(d: Driver, pin: int, *directions: float) -> None:
     """Drag the ring from direction 0 through others, in degrees; release, and let it come to rest."""
     grab_ring(d, pin)
     for direction in directions:
@@ -54,37 +54,37 @@ def turn(d: Driver, pin: int, *directions: float) -> None:
     d.settle()
 
 
-def test_a_drag_of_the_ring_turns_the_drawing_which_then_holds_the_angle(pinned):
+def test_a_drag_of_the_ring_rotates_the_drawing_which_then_holds_the_angle(pinned):
     rest = bits(pinned.state)
-    turn(pinned, 2, 10, 20, 30, 40)
+    rotate(pinned, 2, 10, 20, 30, 40)
     assert pinned.state.pin(2).angle == pytest.approx(math.radians(40), abs=1e-9)
     assert pinned.session.pin_angle(2) == pytest.approx(math.radians(40), abs=NEAR)
     assert pinned.session.pin_error() < 0.25, "no pin leaves its place"
     assert pinned.session.history.undo_label == "Rotate Pin"
     assert pinned.editor.selection == {2}
-    turned = bits(pinned.state)
+    rotated = bits(pinned.state)
     pinned.undo()
     assert bits(pinned.state) == rest
     pinned.redo()
-    assert bits(pinned.state) == turned
+    assert bits(pinned.state) == rotated
 
 
 def test_a_held_angle_stays_when_another_pin_is_dragged(pinned):
-    turn(pinned, 3, 15, 30)
+    rotate(pinned, 3, 15, 30)
     pinned.drag(pinned.where(1), (24.0, 52.0))
     pinned.settle()
     assert pinned.session.pin_angle(3) == pytest.approx(math.radians(30), abs=NEAR)
     assert pinned.session.pin_error() < 0.25
 
 
-def test_turning_goes_on_beyond_half_a_turn_however_fast_the_hand_is(driver):
+def test_rotation_continues_beyond_180_degrees_however_fast_the_hand_is(driver):
     driver.click((62.0, 40.0))
     grab_ring(driver, 1)
     for direction in (90, 180, 250):
         point(driver, "move", on_ring(driver, 1, direction))
     assert driver.state.pin(1).angle == pytest.approx(math.radians(250))
     driver.advance()
-    assert 0 < driver.session.pin_angle(1) < math.pi / 2, "that way round"
+    assert 0 < driver.session.pin_angle(1) < math.pi / 2, "it rotates clockwise"
     point(driver, "release", on_ring(driver, 1, 250))
     driver.settle()
     assert driver.session.pin_angle(1) == pytest.approx(math.radians(250 - 360), abs=NEAR)
@@ -99,15 +99,15 @@ def test_shift_snaps_to_15_degrees(pinned, direction, angle):
     assert f"{angle:+.1f}°" in pinned.editor.hint
 
 
-@pytest.mark.parametrize("way", ["escape", "undo"])
-def test_escape_in_the_middle_restores_exactly(pinned, way):
+@pytest.mark.parametrize("how", ["escape", "undo"])
+def test_escape_in_the_middle_restores_exactly(pinned, how):
     before = pinned.everything
     grab_ring(pinned, 2)
     for direction in (20, 50):
         point(pinned, "move", on_ring(pinned, 2, direction))
         pinned.advance()
     assert pinned.tool == "RotatingPin"
-    pinned.key("escape") if way == "escape" else pinned.undo()
+    pinned.key("escape") if how == "escape" else pinned.undo()
     assert pinned.everything == before
     assert pinned.tool == "PinsIdle"
 
@@ -141,8 +141,8 @@ def test_the_ring_is_that_of_the_pin_nearby_or_of_the_only_selected_one(pinned):
     assert shown(on_ring(pinned, 2, 30)) is None
 
 
-def test_a_method_that_cannot_turn_pins_has_no_ring_and_keeps_the_angles(pinned):
-    turn(pinned, 2, 20)
+def test_a_method_that_cannot_rotate_pins_has_no_ring_and_keeps_the_angles(pinned):
+    rotate(pinned, 2, 20)
     gestures.set_settings(pinned.editor, Settings("arap", ()))
     pinned.key("alt")
     point(pinned, "move", on_ring(pinned, 2, 0))
@@ -184,7 +184,7 @@ def test_angles_by_number(pinned):
     assert pinned.state.pin(2).angle is None
 
 
-def test_a_pin_turns_a_little_in_each_step_and_the_rest_comes_later(pinned):
+def test_a_pin_rotates_a_little_in_each_step_and_the_rest_comes_later(pinned):
     gestures.set_pin_angle(pinned.editor, 2, 1.0)
     pinned.advance()
     assert 0.05 < pinned.session.pin_angle(2) < 0.3
@@ -193,7 +193,7 @@ def test_a_pin_turns_a_little_in_each_step_and_the_rest_comes_later(pinned):
 
 
 def test_a_reset_or_baked_drawing_holds_the_angles_that_it_has_then(pinned):
-    turn(pinned, 2, 25)
+    rotate(pinned, 2, 25)
     baked = with_pose_as_rest(pinned.state, pinned.session.drawing)
     assert baked.pin(2).angle == pytest.approx(0.0, abs=1e-12)
     assert baked.pin(1).angle is None
@@ -204,13 +204,13 @@ def test_a_reset_or_baked_drawing_holds_the_angles_that_it_has_then(pinned):
 
 
 def test_angles_are_carried_over_to_another_mesh(pinned, finer_drawing):
-    turn(pinned, 2, 25)
+    rotate(pinned, 2, 25)
     state = transfer_state(pinned.state, pinned.session.drawing.mesh, finer_drawing)
     assert [pin.angle for pin in state.pins] == [None, pinned.state.pin(2).angle, None]
 
 
 def test_a_replay_gives_the_same_poses_to_the_last_bit(pinned, drawing):
-    turn(pinned, 2, 30, 60)
+    rotate(pinned, 2, 30, 60)
     gestures.toggle_held_angles(pinned.editor)
     pinned.drag(pinned.where(1), (24.0, 48.0))
     pinned.settle()
@@ -218,10 +218,10 @@ def test_a_replay_gives_the_same_poses_to_the_last_bit(pinned, drawing):
     assert bits(last.state) == bits(pinned.state)
 
 
-def test_a_second_method_beside_turns_as_well(pinned):
+def test_a_second_method_beside_rotates_as_well(pinned):
     comparison = MethodComparison("akap:memory=1,no-dirichlet")
     comparison.follow(pinned.session)
-    turn(pinned, 2, 20, 40)
+    rotate(pinned, 2, 20, 40)
     comparison.follow(pinned.session)
     while comparison.is_moving:
         comparison.follow(pinned.session)
@@ -248,6 +248,6 @@ def test_held_angles_come_to_rest_soon_also_where_parts_are_stiff(pinned):
     assert pinned.session.pin_angle(3) == pytest.approx(-0.8, abs=2 * NEAR)
 
 
-def test_unknown_pins_cannot_be_turned(pinned):
+def test_unknown_pins_cannot_be_rotated(pinned):
     with pytest.raises(InputError, match=r"angles: expected ids of pins \[1, 2, 3\], got 7"):
         pinned.session.apply(SetAngles({7: 0.1}))
