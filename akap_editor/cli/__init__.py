@@ -1,4 +1,4 @@
-"""The command line: the same session, with or without a window. One module for each command."""
+"""The command line, with one module per command."""
 
 import sys
 
@@ -18,24 +18,24 @@ from .replay import replay_command
 
 
 class _Main(click.Group):
-    """A file in place of a command is opened in the editor."""
+    """A group of commands in which `edit` is the default: a file instead of a command is opened."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         options = {"-h", "--help", "--version"}
-        named = args and (args[0] in self.commands or args[0] in options)
-        if not named and not ctx.resilient_parsing:  # as which the shell asks how a line may go on
+        has_command = args and (args[0] in self.commands or args[0] in options)
+        if not has_command and not ctx.resilient_parsing:  # resilient: the shell asks for completions
             args = ["edit", *args]
         return super().parse_args(ctx, args)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        """Commands, and files, which need none."""
+        """Complete commands and files, which need no command."""
         return [*super().shell_complete(ctx, incomplete), CompletionItem(incomplete, type="file")]
 
 
 @click.group(cls=_Main, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="akap-editor")
 def cli() -> None:
-    """Bend cartoons. `akap-editor FILE` opens a picture with a transparent background, or a saved drawing."""
+    """Deform cartoons. `akap-editor FILE` opens a picture with a transparent background, or a drawing."""
 
 
 for command in (edit, render, replay_command, compare_command, export_command, info, bench, mesh):
@@ -43,7 +43,7 @@ for command in (edit, render, replay_command, compare_command, export_command, i
 
 
 def main() -> None:
-    """Run the command line; what goes wrong on purpose is one line on stderr and exit code 2."""
+    """Run the command line. An error of the package is one line on stderr and exit code 2."""
     try:
         cli(prog_name="akap-editor", standalone_mode=False)
     except (AkapError, click.ClickException) as error:
@@ -51,4 +51,4 @@ def main() -> None:
         click.echo(f"akap-editor: {message}", err=True)
         sys.exit(2)
     except click.Abort:
-        sys.exit(130)  # as shells say of a program that Ctrl+C ended
+        sys.exit(130)  # the shells' code for Ctrl+C

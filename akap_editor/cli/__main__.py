@@ -1,4 +1,4 @@
-"""`python -m akap_editor.cli`."""
+"""Runs the command line: `python -m akap_editor.cli`."""
 
 from . import main
 

@@ -1,4 +1,4 @@
-"""Opens the window."""
+"""Opens the editor's window."""
 
 import os
 import sys
@@ -19,33 +19,32 @@ FIRST_DRAWING = "elephant"
 OUTPUT_FOLDER = Path("out")
 
 
-def _complete(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
-    """The names of bundled drawings, for the shell."""
-    return [path.stem for path in bundled_drawings() if path.stem.startswith(begun)]
+def _complete(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the name of a bundled drawing in the shell."""
+    return [path.stem for path in bundled_drawings() if path.stem.startswith(incomplete)]
 
 
 @click.command(epilog="Example: akap-editor edit cat.png")
 @click.argument("file", type=FILE, required=False)
-@click.option("--mask", type=FILE, help="A picture that is bright, or opaque, where FILE is to be visible.")
+@click.option("--mask", type=FILE, help="Picture that is bright, or opaque, where FILE is to be visible.")
 @click.option(
     "--bundled",
     "name",
     metavar="NAME",
     shell_complete=_complete,
-    help=f"A drawing that comes with the program, in place of FILE, e.g. {FIRST_DRAWING}.",
+    help=f"Open a drawing that comes with the program instead of FILE, e.g. {FIRST_DRAWING}.",
 )
 def edit(file: Path | None, mask: Path | None, name: str | None = None) -> None:
-    """Open FILE in the window: a picture, a flat OBJ or OFF mesh, a drawing saved as .akap, or a recording,
+    """Open FILE in a window: a picture, a flat OBJ or OFF mesh, a drawing saved as .akap, or a recording,
     which is then on the timeline.
 
-    Without FILE, the start page: bundled drawings, recent files, and room to drop a picture on.
+    Without FILE, the start page shows bundled drawings and recent files, and accepts dropped files.
 
-    Where there is no display, and no FILE, a bundled recording is replayed without a window instead.
+    Without a display and without FILE, a bundled recording is replayed offscreen instead.
     """
-    _check(file, mask, name)
-    document, problem = None, None
+    _check_arguments(file, mask, name)
+    document, problem, recording = None, None, None
     source = bundled(name) if name is not None else file
-    recording = None
     try:
         if source is not None and source.suffix.lower() == RECORDING_SUFFIX and mask is None:
             recording = source
@@ -54,7 +53,8 @@ def edit(file: Path | None, mask: Path | None, name: str | None = None) -> None:
     except InputError as error:
         problem = error
     try:
-        _edit(document, "" if problem is None else str(problem), recording, file if document else None)
+        message = "" if problem is None else str(problem)
+        open_window(document, message, recording, file if document else None)
     except DisplayError as error:
         if problem is not None:
             raise problem from None
@@ -66,28 +66,29 @@ def edit(file: Path | None, mask: Path | None, name: str | None = None) -> None:
         replay.replay_recording(recording, None, animation, animation.with_suffix(".png"), fps=24.0, size=480)
 
 
-def _check(file: Path | None, mask: Path | None, name: str | None) -> None:
-    """Raise InputError where the arguments do not go together."""
+def _check_arguments(file: Path | None, mask: Path | None, name: str | None) -> None:
+    """Raise InputError if the arguments exclude or miss each other."""
     if file is not None and name is not None:
         raise InputError(f"expected a FILE or --bundled, got both: {file} and {name}")
     if mask is not None and file is None:
         raise InputError(f"--mask: expected a FILE that is to be cut out, got only the mask {mask}")
 
 
-def _edit(document: Document | None, problem: str, recording: Path | None, file: Path | None) -> None:
-    """Open the window; where a file could not be opened, it shows its start page and says why.
+def open_window(document: Document | None, problem: str, recording: Path | None, file: Path | None) -> None:
+    """Open the window and stay until it is closed. Raises DisplayError if that is not possible.
 
-    recording: is done again there, where one sees how far it is; file: of the document, if any.
+    problem: shown as an error, e.g. that a file could not be opened; recording: replayed in the window, which
+    shows the progress; file: of the document, if it has one.
     """
-    x11 = sys.platform.startswith("linux")
-    if x11 and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    needs_display = sys.platform.startswith("linux")
+    if needs_display and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise DisplayError("there is no display")
     try:
         from ..app import files
         from ..app.preferences import Preferences, preferences_path
         from ..app.window import Window
     except ImportError as error:
-        raise DisplayError(f"a library that windows need is missing ({error})") from error
+        raise DisplayError(f"a package that the window needs is missing ({error})") from error
     with Window(preferences=Preferences(preferences_path()), autosave=Autosave()) as window:
         window.state.error = problem
         if recording is not None:

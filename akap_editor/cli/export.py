@@ -1,4 +1,4 @@
-"""Writes drawings for other programs."""
+"""Exports drawings for other programs."""
 
 import json
 from dataclasses import dataclass
@@ -14,8 +14,11 @@ from .options import FILE, append_formats, export_options, framing_options, make
 
 
 @dataclass(frozen=True)
-class Exported:
-    """What was written: the format's label, all files, the one named last; size in pixels of a picture."""
+class ExportResult:
+    """The files of an export.
+
+    label: of the format; files: all that were written, the named one last; size: of a picture, in pixels.
+    """
 
     label: str
     files: list[Path]
@@ -23,20 +26,20 @@ class Exported:
 
     @property
     def text(self) -> str:
-        """In words."""
-        comparison = ", ".join(path.name for path in self.files[:-1])
+        """A line for people."""
+        companions = ", ".join(path.name for path in self.files[:-1])
         size = f": {self.size[0]} × {self.size[1]} pixels" if self.size else f": {self.label}"
-        return f"{self.files[-1]}{size}" + (f", with {comparison}" if comparison else "")
+        return f"{self.files[-1]}{size}" + (f", with {companions}" if companions else "")
 
     @property
     def facts(self) -> dict[str, object]:
-        """For --json."""
+        """The record for --json."""
         size = dict(zip(("width", "height"), self.size, strict=True)) if self.size else {}
         return {"format": self.label, "files": [str(path) for path in self.files], **size}
 
 
-def export_file(file: Path, output: Path, options: ExportOptions) -> Exported:
-    """Export what is in ``file``. Raises InputError."""
+def export_file(file: Path, output: Path, options: ExportOptions) -> ExportResult:
+    """Export a drawing or picture. Raises InputError."""
     from ..render.offscreen import OffscreenRenderer
 
     chosen = format_of(output)
@@ -45,10 +48,10 @@ def export_file(file: Path, output: Path, options: ExportOptions) -> Exported:
     with OffscreenRenderer() as renderer:
         files = export(document, output, options, renderer)
     if not chosen.uses_framing:
-        return Exported(chosen.label, files, None)
+        return ExportResult(chosen.label, files, None)
     pose = document.drawing.mesh.vertices if options.rest else document.state.positions
     size = output_size(crop_box(document.drawing, pose, options.crop), options.scale)
-    return Exported(chosen.label, files, size)
+    return ExportResult(chosen.label, files, size)
 
 
 @click.command(
@@ -57,12 +60,10 @@ def export_file(file: Path, output: Path, options: ExportOptions) -> Exported:
     "Example: akap-editor export posed.akap -o cat.png --scale 2 --crop pose",
 )
 @click.argument("file", type=FILE)
-@click.option(
-    "-o", "--output", type=FILE, required=True, help="File to write; its ending decides on the format."
-)
+@click.option("-o", "--output", type=FILE, required=True, help="File to write; its ending sets the format.")
 @framing_options
-@click.option("--rest", is_flag=True, help="The drawing at rest in place of its pose.")
-@click.option("--json", "as_json", is_flag=True, help="Print what was written as JSON.")
+@click.option("--rest", is_flag=True, help="Export the rest pose.")
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def export_command(
     file: Path,
     output: Path,
@@ -72,14 +73,14 @@ def export_command(
     rest: bool,
     as_json: bool,
 ) -> None:
-    """Write FILE, a saved drawing or a picture, for other programs."""
+    """Export FILE, a saved drawing or a picture, for other programs."""
     chosen = format_of(output)
     given = {"--scale": scale, "--background": background, "--crop": crop}
     for name, value in given.items():
         if value is not None and not chosen.uses_framing:
-            raise InputError(f"{name}: expected a picture or an outline to write, got {chosen.suffix}")
-    exported = export_file(file, output, export_options(scale, background, crop, rest))
-    click.echo(json.dumps(exported.facts, indent=2) if as_json else exported.text)
+            raise InputError(f"{name}: expected a picture or an outline as output, got {chosen.suffix}")
+    result = export_file(file, output, export_options(scale, background, crop, rest))
+    click.echo(json.dumps(result.facts, indent=2) if as_json else result.text)
 
 
 append_formats(export_command, [(each.suffix, each.label) for each in EXPORT_FORMATS])

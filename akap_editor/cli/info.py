@@ -1,4 +1,4 @@
-"""Says what a file is."""
+"""Tells what a file contains."""
 
 import json
 from pathlib import Path
@@ -14,29 +14,35 @@ from .options import FILE
 @click.argument("file", type=FILE)
 @click.option("--json", "as_json", is_flag=True, help="Print the facts as JSON.")
 def info(file: Path, as_json: bool) -> None:
-    """Say what FILE is: a picture, a drawing, a pose, a recording or a mesh; and whether it is sound.
+    """Tell what FILE contains, a picture, drawing, pose, recording or mesh, and whether it is sound.
 
-    The exit code is 1 where it is not.
+    The exit code is 1 if it is not sound.
     """
-    found = inspect(file)
+    inspection = inspect(file)
     if as_json:
-        record = {"file": str(file), "kind": found.kind, "sound": found.sound}
-        click.echo(json.dumps({**record, "problems": found.problems, "facts": found.facts}, indent=2))
+        record = {
+            "file": str(file),
+            "kind": inspection.kind,
+            "sound": inspection.sound,
+            "problems": inspection.problems,
+            "facts": inspection.facts,
+        }
+        click.echo(json.dumps(record, indent=2))
     else:
-        verdict = "sound" if found.sound else "not sound"
-        click.echo("\n".join([f"{file}: {found.kind}, {verdict}", *_lines(found.facts)]))
-        for problem in found.problems:
+        verdict = "sound" if inspection.sound else "not sound"
+        click.echo("\n".join([f"{file}: {inspection.kind}, {verdict}", *_fact_lines(inspection.facts)]))
+        for problem in inspection.problems:
             click.echo(f"  {problem}")
-    if not found.sound:
+    if not inspection.sound:
         raise SystemExit(1)
 
 
-def _lines(facts: dict[str, Any]) -> list[str]:
+def _fact_lines(facts: dict[str, Any]) -> list[str]:
     width = max(map(len, facts), default=0)
-    return [f"  {name:<{width}}  {_words(value)}" for name, value in facts.items()]
+    return [f"  {name:<{width}}  {_format_value(value)}" for name, value in facts.items()]
 
 
-def _words(value: Any) -> str:
+def _format_value(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list):

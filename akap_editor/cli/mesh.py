@@ -1,4 +1,4 @@
-"""Makes meshes of pictures and says how good they are."""
+"""Makes meshes of pictures and reports their quality."""
 
 import json
 import sys
@@ -12,7 +12,7 @@ import click
 import numpy as np
 
 from ..editor.document.drawing import Meshing, apply_mask
-from ..errors import InputError, file_errors
+from ..errors import FileError, InputError, file_errors
 from ..geometry.validation import as_number
 from ..io.images import has_transparency, read_image, read_mask
 from ..io.mesh_files.obj_off import write_obj
@@ -23,15 +23,15 @@ from ..meshing.triangle_process import TRIANGLE
 from ..meshing.triangulate import MAX_VERTICES, MIN_VERTICES
 from .options import FILE, make_folder_of
 
-MOST_EXPANSION = 1000.0  # pixels
+MAX_EXPANSION = 1000.0  # pixels
 
 
 @dataclass(frozen=True)
 class MeshRow:
-    """What became of one picture: see `MeshQuality`; seconds from the file to the mesh, without measuring.
+    """The mesh of one picture; see `MeshQuality` for its measures.
 
-    specks: islands left out as too small; speck_share: their share of the visible area; cut_out: whether the
-    picture has transparency; mesh: the file written.
+    specks: number of islands that are too small and left out; speck_share: their share of the visible area;
+    cut_out: whether the picture has transparency; seconds: from the file to the mesh; mesh: the written file.
     """
 
     picture: str
@@ -52,27 +52,25 @@ class MeshRow:
 
 @click.command(epilog="Example: akap-editor mesh drawings/*.png -o meshes --vertices 3000")
 @click.argument("pictures", type=FILE, nargs=-1, required=True, metavar="PICTURE...")
-@click.option(
-    "-o", "--output", type=FILE, help="OBJ file to write; of several pictures, the folder for them."
-)
-@click.option("--vertices", default=Meshing.vertices, show_default=True, help="Wanted number of vertices.")
+@click.option("-o", "--output", type=FILE, help="OBJ file to write; for several pictures, a folder.")
+@click.option("--vertices", default=Meshing.vertices, show_default=True, help="Number of vertices.")
 @click.option(
     "--expand",
     default=Meshing.expand,
     show_default=True,
     metavar="PX",
-    help="Pixels by which the outline moves out.",
+    help="Margin in pixels by which the outline moves outwards.",
 )
 @click.option(
     "--threshold",
     default=Meshing.threshold,
     show_default=True,
     metavar="SHARE",
-    help="Share of full opacity at which the picture ends.",
+    help="Alpha threshold: share of full opacity at which the drawing ends.",
 )
 @click.option("--mask", type=FILE, help="Picture that is bright, or opaque, where PICTURE is to be visible.")
 @click.option(
-    "--json", "as_json", is_flag=True, help="Print the figures as JSON, a list with one object each."
+    "--json", "as_json", is_flag=True, help="Print the measures as JSON, a list with one object per picture."
 )
 def mesh(
     pictures: tuple[Path, ...],
@@ -83,19 +81,19 @@ def mesh(
     mask: Path | None,
     as_json: bool,
 ) -> None:
-    """Make a mesh of each PICTURE, or of all pictures in a folder, and say how good it is.
+    """Make a mesh of each PICTURE, or of all pictures in a folder, and report its quality.
 
-    Of several pictures, bad ones are named and left out; the exit code is then 1.
+    Of several pictures, those that fail are reported and skipped; the exit code is then 1.
     """
     meshing = _meshing(vertices, expand, threshold)
     if len(pictures) == 1 and not pictures[0].is_dir():
         TRIANGLE.start()
         row = measure(pictures[0], output, meshing, mask)
-        click.echo(json.dumps([asdict(row)], indent=2) if as_json else _words(row))
+        click.echo(json.dumps([asdict(row)], indent=2) if as_json else _describe(row))
         return
     if mask is not None:
-        raise InputError("--mask: expected one picture that it belongs to, got several")
-    paths = _listed(pictures)
+        raise InputError("--mask: expected one picture, got several")
+    paths = _expand_folders(pictures)
     rows, errors = _measure_all(paths, _outputs(paths, output), meshing)
     if as_json:
         click.echo(json.dumps([asdict(row) for row in rows] + errors, indent=2))
@@ -108,9 +106,9 @@ def mesh(
 
 
 def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | None = None) -> MeshRow:
-    """Make the mesh of one picture, write it where wanted, and measure it. Raises InputError."""
+    """Make and measure the mesh of one picture; write it if ``output`` is given. Raises InputError."""
     if output is not None and output.suffix.lower() != ".obj":
-        raise InputError(f"{output}: expected a name that ends in .obj, got {output.suffix or 'none'}")
+        raise FileError("save", output, f"expected a name that ends in .obj, got {output.suffix or 'none'}")
     started = time.perf_counter()
     image = read_image(picture)
     shown = read_mask(mask) if mask is not None else None
@@ -118,17 +116,17 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
         if shown is not None:
             image = apply_mask(image, shown)
         alpha = np.ascontiguousarray(image[..., 3])
-        made = mesh_picture(alpha, meshing.vertices, meshing.expand, meshing.threshold)
+        meshed = mesh_picture(alpha, meshing.vertices, meshing.expand, meshing.threshold)
     seconds = time.perf_counter() - started
     if output is not None:
         make_folder_of(output)
-        write_obj(output, made.mesh, (image.shape[1], image.shape[0]))
-    quality = mesh_quality(made.mesh, alpha, meshing.threshold)
-    visible = made.mesh.rest_areas.sum() * (1 - quality.outside) / quality.covered
+        write_obj(output, meshed.mesh, (image.shape[1], image.shape[0]))
+    quality = mesh_quality(meshed.mesh, alpha, meshing.threshold)
+    visible = meshed.mesh.rest_areas.sum() * (1 - quality.outside) / quality.covered
     return MeshRow(
         picture=str(picture),
-        specks=made.specks,
-        speck_share=made.speck_area / visible,
+        specks=meshed.specks,
+        speck_share=meshed.speck_area / visible,
         cut_out=has_transparency(image),
         seconds=round(seconds, 4),
         mesh=None if output is None else str(output),
@@ -138,32 +136,33 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
 
 def _meshing(vertices: int, expand: float, threshold: float) -> Meshing:
     as_number(vertices, "--vertices", MIN_VERTICES, MAX_VERTICES)
-    as_number(expand, "--expand", 0, MOST_EXPANSION)
+    as_number(expand, "--expand", 0, MAX_EXPANSION)
     if not 0 < threshold < 1:
         raise InputError(f"--threshold: expected a share between 0 and 1, got {threshold:g}")
     return Meshing(vertices, expand, threshold)
 
 
-def _listed(pictures: tuple[Path, ...]) -> list[Path]:
-    """The pictures, those in folders by name. Raises InputError where a folder has none."""
+def _expand_folders(pictures: tuple[Path, ...]) -> list[Path]:
+    """The pictures, with folders replaced by their pictures in alphabetical order. Raises InputError."""
     paths: list[Path] = []
     for path in pictures:
         if path.is_dir():
-            found = sorted(child for child in path.iterdir() if child.suffix.lower() in PICTURE_SUFFIXES)
-            if not found:
-                raise InputError(f"{path}: expected a folder with pictures, got one without")
-            paths += found
+            children = sorted(child for child in path.iterdir() if child.suffix.lower() in PICTURE_SUFFIXES)
+            if not children:
+                raise FileError("open", path, "the folder contains no pictures")
+            paths += children
         else:
             paths.append(path)
     return paths
 
 
 def _outputs(paths: list[Path], folder: Path | None) -> list[Path | None]:
-    """Where each mesh goes; pictures of one name would overwrite each other's. Raises InputError."""
+    """The output file of each picture. Raises InputError if two would have the same name."""
     if folder is None:
         return [None] * len(paths)
     if (folder.exists() and not folder.is_dir()) or folder.suffix.lower() == ".obj":
-        raise InputError(f"{folder}: expected a folder for the meshes of {len(paths)} pictures, got a file")
+        reason = f"expected a folder for the meshes of {len(paths)} pictures, got a file"
+        raise FileError("save", folder, reason)
     name, count = Counter(path.stem for path in paths).most_common(1)[0]
     if count > 1:
         raise InputError(f"expected pictures of different names, got {count} whose mesh would be {name}.obj")
@@ -184,31 +183,32 @@ def _measure_all(
     return rows, errors
 
 
-def _words(row: MeshRow) -> str:
+def _describe(row: MeshRow) -> str:
     lines = [
-        f"{row.picture}: {_counted(row.parts, 'part')}, {_counted(row.holes, 'hole')}, "
+        f"{row.picture}: {_count_noun(row.parts, 'part')}, {_count_noun(row.holes, 'hole')}, "
         f"{row.vertices} vertices, {row.faces} faces",
         f"  smallest angle  {row.worst_angle:.1f}°, 1st percentile {row.low_angle:.1f}°",
-        f"  covered         {row.covered:.2%} of what is visible; {row.outside:.1%} of the mesh is beyond it",
+        f"  covered         {row.covered:.2%} of the visible area; {row.outside:.1%} of the mesh is outside",
         f"  time            {row.seconds:.3f} s",
     ]
     if row.specks:
         lines.append(
-            f"  left out        {_counted(row.specks, 'speck')}, {row.speck_share:.2%} of what is visible"
+            f"  left out        {_count_noun(row.specks, 'speck')}, {row.speck_share:.2%} of the visible area"
         )
     if not row.cut_out:
-        lines.append("  The picture has no transparency, so the mesh is its frame: give it a mask.")
+        lines.append("  The picture has no transparency, so the mesh is a rectangle; use --mask.")
     if row.mesh is not None:
         lines.append(f"Wrote {row.mesh}")
     return "\n".join(lines)
 
 
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+def _count_noun(count: int, noun: str, plural: str = "") -> str:
+    """E.g. "1 part" or "2 parts"; plural: of the noun if it is irregular."""
+    return f"{count} {noun if count == 1 else plural or f'{noun}s'}"
 
 
 def _table(rows: list[MeshRow], failed: int) -> list[str]:
-    """One line for each picture, and how good they are together."""
+    """One line per picture, and a summary."""
     width = max([len("picture"), *(len(row.picture) for row in rows)])
     lines = [
         f"{'picture':<{width}} {'parts':>6} {'holes':>6} {'specks':>7} {'vertices':>9} {'faces':>7}"
@@ -224,7 +224,7 @@ def _table(rows: list[MeshRow], failed: int) -> list[str]:
         seconds = [row.seconds for row in rows]
         worst, least = min(row.worst_angle for row in rows), min(row.covered for row in rows)
         lines.append(
-            f"{_counted(len(rows), 'mesh') if len(rows) == 1 else f'{len(rows)} meshes'}, {failed} failed; "
+            f"{_count_noun(len(rows), 'mesh', 'meshes')}, {failed} failed; "
             f"median {np.median(seconds):.3f} s, slowest {max(seconds):.3f} s; "
             f"worst angle {worst:.1f}°, least covered {least:.2%}"
         )

@@ -1,4 +1,4 @@
-"""What the commands share: files that are named, colors, checks of what is to be written."""
+"""Options that several commands share, and checks of their values."""
 
 from collections.abc import Callable, Sequence
 from inspect import cleandoc
@@ -16,22 +16,21 @@ from ..resources import bundled_drawings
 
 FILE = click.Path(path_type=Path)
 
-
 _FRAMING = (
     click.option(
-        "--scale", type=float, metavar="FACTOR", help="Pixels of the output per pixel of the picture."
+        "--scale", type=float, metavar="FACTOR", help="Pixels of the output per pixel of the drawing."
     ),
-    click.option("--background", metavar="#RRGGBB", help="Color behind the drawing; transparent without it."),
+    click.option("--background", metavar="#RRGGBB", help="Background color; transparent by default."),
     click.option(
         "--crop",
         type=click.Choice(CROPS),
-        help="Show the picture's frame and all of the pose (none), the frame alone, or the pose alone.",
+        help="none: picture frame and whole pose; frame: picture frame only; pose: pose only.",
     ),
 )
 
 
 def framing_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options that say how large a picture is and what it shows, see `export_options`."""
+    """Add the options for scale, background and crop to a command; see `export_options`."""
     for option in reversed(_FRAMING):
         command = option(command)
     return command
@@ -40,9 +39,27 @@ def framing_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def export_options(
     scale: float | None, background: str | None, crop: str | None, rest: bool = False
 ) -> ExportOptions:
-    """What the options of `framing_options` mean; None where one was not given. Raises InputError."""
-    plain = ExportOptions()
-    return ExportOptions(plain.scale if scale is None else scale, color(background), crop or plain.crop, rest)
+    """The options of `framing_options`, of which None is the default, as `export` takes them.
+
+    Raises InputError.
+    """
+    defaults = ExportOptions()
+    scale = defaults.scale if scale is None else scale
+    return ExportOptions(scale, parse_color(background), crop or defaults.crop, rest)
+
+
+def parse_numbers(option: str, text: str, low: int, high: int) -> list[int]:
+    """The integers from ``low`` to ``high`` of a list separated by commas. Raises InputError."""
+    try:
+        numbers = [int(part) for part in text.split(",") if part.strip()]
+    except ValueError:
+        numbers = []
+    if not numbers:
+        raise InputError(f"{option}: expected numbers separated by commas, got {text!r}")
+    for number in numbers:
+        if not low <= number <= high:
+            raise InputError(f"{option}: expected numbers from {low} to {high}, got {number}")
+    return numbers
 
 
 def append_formats(command: click.Command, formats: Sequence[tuple[str, str]]) -> None:
@@ -53,15 +70,15 @@ def append_formats(command: click.Command, formats: Sequence[tuple[str, str]]) -
 
 
 def bundled(name: str) -> Path:
-    """The picture of a bundled drawing. Raises InputError with the names that there are."""
+    """The picture file of a bundled drawing. Raises InputError, which lists their names."""
     names = {path.stem: path for path in bundled_drawings()}
     if name not in names:
         raise InputError(f"expected the name of a bundled drawing ({', '.join(names)}), got {name!r}")
     return names[name]
 
 
-def color(text: str | None) -> Color | None:
-    """Red, green and blue from 0 to 1 of a color written as #RRGGBB. Raises InputError."""
+def parse_color(text: str | None) -> Color | None:
+    """The color written as #RRGGBB; None for None. Raises InputError."""
     if text is None:
         return None
     digits = text.removeprefix("#")
@@ -73,13 +90,13 @@ def color(text: str | None) -> Color | None:
 
 
 def check_png(path: Path) -> None:
-    """Raise InputError where a name does not end in .png."""
+    """Raise FileError if a name does not end in .png."""
     if path.suffix.lower() != ".png":
-        raise InputError(f"{path}: expected a name that ends in .png, got {path.suffix or 'none'}")
+        raise FileError("save", path, f"expected a name that ends in .png, got {path.suffix or 'none'}")
 
 
 def make_folder_of(path: Path) -> None:
-    """Make the folder that a file is to be written to. Raises InputError."""
+    """Make the folder for a file that will be written. Raises FileError."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -87,6 +104,6 @@ def make_folder_of(path: Path) -> None:
 
 
 def write_picture(path: Path, picture: Any) -> None:
-    """Write a picture (h, w, 4) as PNG, in a new folder if need be. Raises InputError."""
+    """Write a picture (h, w, 4) as PNG; make its folder if necessary. Raises FileError."""
     make_folder_of(path)
     write_png(path, picture)

@@ -1,4 +1,4 @@
-"""Draws one pose."""
+"""Writes the pose of a drawing as a picture."""
 
 from pathlib import Path
 
@@ -13,6 +13,6 @@ from .options import FILE, check_png, export_options, framing_options
 @click.option("-o", "--output", type=FILE, required=True, help="PNG file to write.")
 @framing_options
 def render(file: Path, output: Path, scale: float | None, background: str | None, crop: str | None) -> None:
-    """Write the pose of FILE, a saved drawing or a picture, as a PNG."""
+    """Write the pose of FILE, a saved drawing or a picture, as a PNG picture."""
     check_png(output)
     click.echo(export_file(file, output, export_options(scale, background, crop)).text)

@@ -19,7 +19,7 @@ from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.animation.formats import ANIMATION_FORMATS, MAX_PLAYS, animation_format, write_animation
 from ..io.open_document import open_document
 from ..io.painter import paint_frames
-from .options import FILE, append_formats, check_png, color, make_folder_of, write_picture
+from .options import FILE, append_formats, check_png, make_folder_of, parse_color, write_picture
 
 # The parameter that each word of --variant sets.
 VARIANT_WORDS: dict[str, tuple[str, object]] = {
@@ -117,7 +117,7 @@ def replay_recording(
     _check_number("--size", size, 16, 8192)
     _check_number("--speed", speed, 0.01, 100)
     _check_number("--plays", plays, 0, MAX_PLAYS)
-    background_color = color(background)
+    background_color = parse_color(background)
     chosen = animation_format(output, sheet)
     if pose is not None:
         check_png(pose)

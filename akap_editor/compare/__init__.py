@@ -1,1 +1,1 @@
-"""Methods side by side over the same drags: runs them, measures them and reports."""
+"""Compares deformation methods on recordings: replays, measures, and reports."""

@@ -1,4 +1,4 @@
-"""A comparison as one HTML page with everything in it, and as JSON."""
+"""Writes a comparison as one self-contained HTML page, and as JSON."""
 
 import base64
 import html
@@ -19,7 +19,7 @@ from ..resources import resource
 from . import plots
 from .run import Run
 
-# Table 1 of the paper, E_area and E_angle by model and method, and its figure for moving least squares.
+# E_area and E_angle by model and method: Table 1 of the paper, and section 3.3 for moving least squares.
 PAPER: dict[str, dict[str, tuple[float, float]]] = {
     "bar": {
         "cauchy-green": (2.356, 2.001),
@@ -30,24 +30,24 @@ PAPER: dict[str, dict[str, tuple[float, float]]] = {
     "elephant": {"cauchy-green": (4.605, 2.151), "arap": (2.019, 2.033), "akap": (2.030, 2.054)},
     "alien": {"cauchy-green": (2.596, 2.004), "arap": (2.012, 2.013), "akap": (2.016, 2.017)},
 }
-_PIXELS = 440  # longest side of a picture
-_MARGIN = 0.03  # of a picture around the poses
-_WILD = 3.0  # times its picture: a pose that is larger does not choose the frame
-_HUGE = 1000.0  # a measure above this says no more than that
+_MAX_PIXELS = 440  # longest side of a picture
+_MARGIN = 0.03  # around the poses, as a share of their size
+_MAX_SPREAD = 3.0  # times the drawing's size: larger poses are cut off
+_MAX_MEASURE = 1000.0  # larger measures are shown as “> 1000”
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """One recording bent by all methods.
+    """A recording replayed with all methods.
 
-    name: of the drawing; title: of the recording; runs: in the order of the methods; finer: for each method
-    the number of vertices, E_area and E_angle of the same drags on other meshes, coarse to fine, (q, 3).
+    name: of the drawing; title: of the recording; runs: in the order of the methods; refinements: for each
+    method (q, 3): number of vertices, E_area and E_angle on meshes of other sizes, from coarse to fine.
     """
 
     name: str
     title: str
     runs: Sequence[Run]
-    finer: Sequence[np.ndarray[Any, Any]]
+    refinements: Sequence[np.ndarray[Any, Any]]
 
 
 def to_json(models: Sequence[Model]) -> str:
@@ -68,8 +68,8 @@ def to_json(models: Sequence[Model]) -> str:
                     for method, (area, angle) in PAPER.get(model.name, {}).items()
                 },
                 "methods": [
-                    _numbers(run) | {"finer": _listed(finer)}
-                    for run, finer in zip(model.runs, model.finer, strict=True)
+                    _numbers(run) | {"finer": _finite_list(refinement)}
+                    for run, refinement in zip(model.runs, model.refinements, strict=True)
                 ],
             }
             for model in models
@@ -79,17 +79,17 @@ def to_json(models: Sequence[Model]) -> str:
 
 
 def _numbers(run: Run) -> dict[str, Any]:
-    """What the tables show of one run, and its curves."""
-    method, settings = parse_method(run.spec)
+    """The measures and curves of one run."""
+    method, parameters = parse_method(run.spec)
     return {
         "spec": run.spec,
         "method": method,
-        "settings": settings,
-        "E_area": _finite(run.after.area),
-        "E_angle": _finite(run.after.angle),
-        "worst_area": _finite(run.after.face_area.max()),
-        "worst_angle": _finite(run.after.face_angle.max()),
-        "flipped": run.after.flipped,
+        "settings": parameters,
+        "E_area": _finite(run.final_distortion.area),
+        "E_angle": _finite(run.final_distortion.angle),
+        "worst_area": _finite(run.final_distortion.face_area.max()),
+        "worst_angle": _finite(run.final_distortion.face_angle.max()),
+        "flipped": run.final_distortion.flipped,
         "most_flipped": int(run.trace.flipped.max()),
         "pin_error_pixels": run.pin_error,
         "pin_error": run.pin_error / run.drawing.mesh.length,
@@ -97,113 +97,122 @@ def _numbers(run: Run) -> dict[str, Any]:
         "slowest_frame_ms": 1e3 * float(run.step_seconds.max()),
         "setup_ms": 1e3 * run.setup_seconds,
         "pins_ms": 1e3 * run.pins_seconds,
-        "there_and_back": run.back,
-        "there_and_back_E_area": _finite(run.back_after.area),
-        "there_and_back_E_angle": _finite(run.back_after.angle),
-        "times": _listed(run.times),
+        "there_and_back": run.return_error,
+        "there_and_back_E_area": _finite(run.return_distortion.area),
+        "there_and_back_E_angle": _finite(run.return_distortion.angle),
+        "times": _finite_list(run.times),
         "frames": _trace(run.trace),
         "jump": _trace(run.jump),
     }
 
 
 def _trace(trace: Any) -> dict[str, Any]:
-    return {name: _listed(getattr(trace, name)) for name in ("area", "angle", "flipped", "pin_error")}
+    return {name: _finite_list(getattr(trace, name)) for name in ("area", "angle", "flipped", "pin_error")}
 
 
 def _finite(value: float) -> float | None:
+    """The value; None if it is not finite, as JSON has no such numbers."""
     return float(value) if np.isfinite(value) else None
 
 
-def _listed(values: np.ndarray[Any, Any]) -> list[Any]:
+def _finite_list(values: np.ndarray[Any, Any]) -> list[Any]:
+    """The values as nested lists, rounded; None for those that are not finite."""
     rounded: list[Any] = np.where(np.isfinite(values), np.round(values, 6), np.array(None)).tolist()
     return rounded
 
 
 def to_html(models: Sequence[Model], renderer: OffscreenRenderer) -> str:
-    """The page; ``renderer`` draws the pictures. Raises GraphicsError without OpenGL 3.3."""
+    """The HTML page; ``renderer`` draws the pictures. Raises GraphicsError without OpenGL 3.3."""
     runs = models[0].runs
     page = Template(resource("assets", "report.html").read_text("utf-8"))
     return page.substitute(
         program=f"akap-editor {__version__}",
         table=_table(models),
         models="\n".join(_section(model, renderer) for model in models),
-        methods="\n".join(_method(run) for run in runs),
+        methods="\n".join(_method_entry(run) for run in runs),
     )
 
 
 def _label(run: Run) -> str:
     """The name of a run's preset, with the parameters that the preset does not set."""
-    method, settings = parse_method(run.spec)
-    preset = nearest_preset(method, settings)
-    rest = [f"{key} {_word(value)}" for key, value in settings.items() if key not in preset.parameters]
+    method, parameters = parse_method(run.spec)
+    preset = nearest_preset(method, parameters)
+    rest = [
+        f"{key} {_format_value(value)}" for key, value in parameters.items() if key not in preset.parameters
+    ]
     return ", ".join([preset.short, *rest])
 
 
-def _word(value: Any) -> str:
+def _format_value(value: Any) -> str:
+    """The value of a parameter."""
     if isinstance(value, bool):
         return "on" if value else "off"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _method(run: Run) -> str:
-    method, settings = parse_method(run.spec)
-    preset = nearest_preset(method, settings)
+def _method_entry(run: Run) -> str:
+    """The entry of a method in the list at the end of the page."""
+    method, parameters = parse_method(run.spec)
+    preset = nearest_preset(method, parameters)
     escape = html.escape
     source = f" <cite>{escape(preset.source)}.</cite>" if preset.source else ""
     return (
         f"<dt>{escape(_label(run))} <code>{escape(run.spec)}</code></dt>"
         f"<dd>{escape(f'{preset.label}. {preset.note}'.strip())}{source}"
-        f"<br><span>{escape(_parameters(method, settings))}</span></dd>"
+        f"<br><span>{escape(_parameter_list(method, parameters))}</span></dd>"
     )
 
 
-def _parameters(method: str, settings: dict[str, Any]) -> str:
-    values = {**default_parameters(method), **settings}
-    return ", ".join(f"{key} {_word(value)}" for key, value in values.items())
+def _parameter_list(method: str, parameters: dict[str, Any]) -> str:
+    values = {**default_parameters(method), **parameters}
+    return ", ".join(f"{key} {_format_value(value)}" for key, value in values.items())
 
 
-def _number(value: float, digits: int = 3) -> str:
-    if not np.isfinite(value) or value > _HUGE:
-        return f"&gt; {_HUGE:g}"
+def _format_measure(value: float, digits: int = 3) -> str:
+    """A measure as HTML."""
+    if not np.isfinite(value) or value > _MAX_MEASURE:
+        return f"&gt; {_MAX_MEASURE:g}"
     return f"{value:.{digits}f}"
 
 
 def _row(head: str, cells: Sequence[str], kind: str = "") -> str:
+    """A row of a table; kind: its CSS class."""
     opening = f'<tr class="{kind}">' if kind else "<tr>"
     return f"{opening}<th>{head}</th>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>"
 
 
 def _table(models: Sequence[Model]) -> str:
-    """Table 1: both measures by model and method, the paper's own below ours."""
+    """Table 1: both measures by model and method; those of the paper below ours."""
     runs = models[0].runs
     heads = "".join(f"<th>{html.escape(_label(run))}</th>" for run in runs)
     rows = []
     for column, symbol in enumerate(("E<sub>area</sub>", "E<sub>angle</sub>")):
         rows.append(f"<tr><th>{symbol}</th>{heads}</tr>")
         for model in models:
-            ours = [(run.after.area, run.after.angle)[column] for run in model.runs]
-            best = min(ours)
-            cells = [f"<b>{_number(value)}</b>" if value == best else _number(value) for value in ours]
+            ours = [(run.final_distortion.area, run.final_distortion.angle)[column] for run in model.runs]
+            best, cells = min(ours), [_format_measure(value) for value in ours]
+            cells = [f"<b>{cell}</b>" if ours[i] == best else cell for i, cell in enumerate(cells)]
             rows.append(_row(html.escape(model.title), cells))
-            printed = _printed(model)
-            if any(printed):
-                cells = [_number(pair[column]) if pair else "" for pair in printed]
+            theirs = _paper_measures(model)
+            if any(theirs):
+                cells = [_format_measure(pair[column]) if pair else "" for pair in theirs]
                 rows.append(_row("in the paper", cells, "paper"))
     return f'<table class="fixed">{"".join(rows)}</table>'
 
 
-def _printed(model: Model) -> list[tuple[float, float] | None]:
-    """The paper's figures for each run: of each of its methods once, the first that is near to it."""
-    left = dict(PAPER.get(model.name, {}))
-    found = []
+def _paper_measures(model: Model) -> list[tuple[float, float] | None]:
+    """The paper's measures for each run. Each is used once, for the first run with its method's defaults."""
+    unused = dict(PAPER.get(model.name, {}))
+    measures = []
     for run in model.runs:
-        method, settings = parse_method(run.spec)
-        plain = nearest_preset(method, settings).spec == method and not settings.get("memory")
-        found.append(left.pop(method, None) if plain else None)
-    return found
+        method, parameters = parse_method(run.spec)
+        is_default = nearest_preset(method, parameters).spec == method and not parameters.get("memory")
+        measures.append(unused.pop(method, None) if is_default else None)
+    return measures
 
 
 def _section(model: Model, renderer: OffscreenRenderer) -> str:
+    """The pictures, measures and plots of one recording."""
     first = model.runs[0]
     facts = (
         f"{len(first.drawing.mesh.vertices):,} vertices, {len(first.drawing.mesh.faces):,} faces, "
@@ -216,20 +225,22 @@ def _section(model: Model, renderer: OffscreenRenderer) -> str:
 
 
 def _pictures(model: Model, renderer: OffscreenRenderer) -> str:
-    """Texture and both maps of all methods in one frame and on one scale."""
+    """Pictures and maps of all methods, all with one frame and scale."""
     drawing = model.runs[0].drawing
-    sane = [run.pose for run in model.runs if np.ptp(run.pose, axis=0).max() < _WILD * max(drawing.size)]
-    box = _box(np.concatenate(sane or [drawing.mesh.vertices]))
-    scale = _PIXELS / max(box[2] - box[0], box[3] - box[1])
+    most = _MAX_SPREAD * max(drawing.size)
+    framed = [run.pose for run in model.runs if np.ptp(run.pose, axis=0).max() < most]
+    box = _box(np.concatenate(framed or [drawing.mesh.vertices]))
+    scale = _MAX_PIXELS / max(box[2] - box[0], box[3] - box[1])
     cards = []
     for run in model.runs:
         picture = renderer.render(drawing, run.pose, box, scale)
         images = (
-            _image(plots.texture_png(run, picture, box), "bent drawing with its pins"),
+            _image(plots.texture_png(run, picture, box), "deformed drawing with its pins"),
             _image(plots.map_png(run, plots.AREA, box), "map of area distortion"),
             _image(plots.map_png(run, plots.ANGLE, box), "map of angle distortion"),
         )
-        numbers = f"{_number(run.after.area)} / {_number(run.after.angle)}"
+        area, angle = run.final_distortion.area, run.final_distortion.angle
+        numbers = f"{_format_measure(area)} / {_format_measure(angle)}"
         caption = f"<figcaption>{html.escape(_label(run))}<br><span>{numbers}</span></figcaption>"
         cards.append(f"<figure>{caption}{''.join(images)}</figure>")
     scales = plots.scale_svg(plots.AREA) + plots.scale_svg(plots.ANGLE)
@@ -254,6 +265,7 @@ def _image(data: bytes, text: str) -> str:
 
 
 def _measures(model: Model) -> str:
+    """The table with the measures of all methods."""
     heads = (
         "method",
         "E<sub>area</sub>",
@@ -261,28 +273,28 @@ def _measures(model: Model) -> str:
         "worst face, area",
         "worst face, angle",
         "flipped faces",
-        "pins off, px",
-        "ms a step",
-        "slowest",
-        "set-up, ms",
+        "pin error, px",
+        "ms per step",
+        "slowest step",
+        "setup, ms",
         "new pins, ms",
-        "there and back",
+        "return error",
     )
     rows = [
         _row(
             html.escape(_label(run)),
             [
-                _number(run.after.area),
-                _number(run.after.angle),
-                _number(run.after.face_area.max(), 2),
-                _number(run.after.face_angle.max(), 2),
-                str(run.after.flipped),
-                _number(run.pin_error, 2),
-                _number(1e3 * float(np.median(run.step_seconds)), 1),
-                _number(1e3 * float(run.step_seconds.max()), 1),
-                _number(1e3 * run.setup_seconds, 1),
-                _number(1e3 * run.pins_seconds, 1),
-                f"{100 * run.back:.2f} %",
+                _format_measure(run.final_distortion.area),
+                _format_measure(run.final_distortion.angle),
+                _format_measure(run.final_distortion.face_area.max(), 2),
+                _format_measure(run.final_distortion.face_angle.max(), 2),
+                str(run.final_distortion.flipped),
+                _format_measure(run.pin_error, 2),
+                _format_measure(1e3 * float(np.median(run.step_seconds)), 1),
+                _format_measure(1e3 * float(run.step_seconds.max()), 1),
+                _format_measure(1e3 * run.setup_seconds, 1),
+                _format_measure(1e3 * run.pins_seconds, 1),
+                f"{100 * run.return_error:.2f} %",
             ],
         )
         for run in model.runs
@@ -292,7 +304,7 @@ def _measures(model: Model) -> str:
 
 
 def _plots(model: Model) -> str:
-    """Over the drags, from a jump, and on finer meshes."""
+    """Plots of distortion during the drags, after a jump of the targets, and on finer meshes."""
     labels, runs = [_label(run) for run in model.runs], model.runs
     excess, steps = "E − 4, both measures", np.arange(len(runs[0].jump.area), dtype=np.float64)
 
@@ -304,18 +316,18 @@ def _plots(model: Model) -> str:
     figures = [
         (
             plots.lines_svg(drags, "seconds of the recording", excess),
-            "Distortion in the course of the drags.",
+            "Distortion during the drags.",
         ),
         (
             plots.lines_svg(jumps, "steps", excess),
-            "Convergence: distortion after each step from the rest pose with the last targets given at once.",
+            "Convergence: distortion after each step from the rest pose with the last targets set at once.",
         ),
     ]
-    if len(model.finer[0]) > 1:
+    if len(model.refinements[0]) > 1:
         for column, name in ((1, "area"), (2, "angle")):
             curves = [
-                (label, finer[:, 0], finer[:, column] - 2)
-                for label, finer in zip(labels, model.finer, strict=True)
+                (label, refinement[:, 0], refinement[:, column] - 2)
+                for label, refinement in zip(labels, model.refinements, strict=True)
             ]
             caption = f"Convergence of the {name} distortion as the mesh is refined."
             figures.append((plots.lines_svg(curves, "vertices", f"E_{name} − 2"), caption))

@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from akap_editor.compare.run import bend
+from akap_editor.compare.run import replay_method
 from akap_editor.deform.methods import compared_methods, method_names
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
@@ -90,7 +90,7 @@ def test_report_and_json_say_the_same(call, file, recording, drawing, tmp_path):
     page = Page(text)
     assert page.open == []
     for method in model["methods"]:
-        after = distortion(drawing.mesh, bend(recording, drawing, method["spec"]).pose)
+        after = distortion(drawing.mesh, replay_method(recording, drawing, method["spec"]).pose)
         assert method["E_area"] == pytest.approx(after.area, abs=1e-9)
         assert method["E_angle"] == pytest.approx(after.angle, abs=1e-9)
         assert any(f"{after.area:.3f}" in row and f"{after.angle:.3f}" in row for row in page.rows)

@@ -49,7 +49,7 @@ def test_a_picture_without_display_is_an_error(run, picture, tmp_path):
 def test_a_mask_is_put_on_the_picture_that_is_opened(run, picture, tmp_path, monkeypatch):
     opened = []
     module = importlib.import_module("akap_editor.cli.edit")  # the name in the package is the command
-    monkeypatch.setattr(module, "_edit", lambda document, *_: opened.append(document))
+    monkeypatch.setattr(module, "open_window", lambda document, *_: opened.append(document))
     mask = np.zeros((60, 90), np.uint8)
     mask[20:40, 20:60] = 255
     write_png(tmp_path / "mask.png", np.dstack([mask, mask, mask, np.full_like(mask, 255)]))

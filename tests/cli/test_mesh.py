@@ -143,10 +143,13 @@ REFUSED = {
     "few vertices": (("ring.png", "--vertices", 3), "--vertices: expected a number from 20 to 200000, got 3"),
     "expansion": (("ring.png", "--expand", -1), "--expand: expected a number from 0 to 1000, got -1.0"),
     "threshold": (("ring.png", "--threshold", 1), "--threshold: expected a share between 0 and 1, got 1"),
-    "name": (("ring.png", "-o", "mesh.stl"), "mesh.stl: expected a name that ends in .obj, got .stl"),
+    "name": (
+        ("ring.png", "-o", "mesh.stl"),
+        "Couldn't save “mesh.stl”. Expected a name that ends in .obj, got .stl.",
+    ),
     "one file for many": (
         ("ring.png", "ring.png", "-o", "mesh.obj"),
-        "mesh.obj: expected a folder for the meshes of 2 pictures, got a file",
+        "Couldn't save “mesh.obj”. Expected a folder for the meshes of 2 pictures, got a file.",
     ),
     "same names": (
         ("ring.png", "./ring.png", "-o", "meshes"),
@@ -154,9 +157,9 @@ REFUSED = {
     ),
     "mask for many": (
         ("ring.png", "ring.png", "--mask", "ring.png"),
-        "--mask: expected one picture that it belongs to, got several",
+        "--mask: expected one picture, got several",
     ),
-    "empty folder": ((".", "--vertices", 100), ".: expected a folder with pictures, got one without"),
+    "empty folder": ((".", "--vertices", 100), "Couldn't open “.”. The folder contains no pictures."),
     "mask of another size": (("ring.png", "--mask", "small.png"), "mask: expected the size of the picture"),
 }
 

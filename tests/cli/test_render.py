@@ -69,5 +69,5 @@ def test_a_picture_is_written_as_png_only(run, picture, tmp_path):
     code, output, errors = run("render", picture, "-o", tmp_path / "pose.jpg")
     assert (code, output) == (2, "")
     assert errors.count("\n") == 1
-    assert "expected a name that ends in .png, got .jpg" in errors
+    assert "pose.jpg”. Expected a name that ends in .png, got .jpg" in errors
     assert sorted(tmp_path.iterdir()) == before

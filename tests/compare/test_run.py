@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from akap_editor.compare.report import PAPER
-from akap_editor.compare.run import bend, run
+from akap_editor.compare.run import replay_method, run
 from akap_editor.deform.methods import make_deformer
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.geometry.distortion import distortion
@@ -39,7 +39,7 @@ def test_a_run_ends_at_rest_under_its_pins(ran, drawing, spec):
     found = ran(spec)
     assert found.pin_error < (3.0 if spec == "mls" else 0.25)  # whose map is evaluated at vertices only
     measured = distortion(drawing.mesh, found.pose)
-    assert (found.after.area, found.after.angle) == (measured.area, measured.angle)
+    assert (found.final_distortion.area, found.final_distortion.angle) == (measured.area, measured.angle)
     assert len(found.times) == len(found.trace.area) == len(found.step_seconds) == 12
     assert (np.diff(found.times) > 0).all()
     assert found.trace.area[-1] > found.trace.area[0] >= 2
@@ -56,18 +56,18 @@ def test_methods_without_iterations_are_one_step_away(ran, drawing, spec):
     deformer = make_deformer(name, drawing.mesh)
     deformer.set_pins(found.points)
     assert np.abs(deformer.step(drawing.mesh.vertices, found.targets).positions - found.pose).max() < 1e-9
-    assert found.back < 1e-9
+    assert found.return_error < 1e-9
 
 
 def test_the_way_back_shows_who_remembers(ran):
-    back = {spec: ran(spec).back for spec in ("akap", "akap:memory=1", "arap")}
+    back = {spec: ran(spec).return_error for spec in ("akap", "akap:memory=1", "arap")}
     assert back["akap:memory=1"] < 1e-3
     assert back["arap"] < 1e-3
     assert back["akap"] > 10 * back["akap:memory=1"]
 
 
 def test_iterations_converge(ran):
-    curve, end = ran("arap").jump, ran("arap").after.area
+    curve, end = ran("arap").jump, ran("arap").final_distortion.area
     assert abs(curve.area[-1] - end) < 0.01 * abs(curve.area[1] - end)
     assert (curve.pin_error[1:] < 1e-9).all()
 
@@ -76,7 +76,7 @@ def test_bar_of_the_paper_gives_its_figures():
     """Table 1, first row: the bundled recording is the bend at which conformal maps and ARAP agree."""
     recording = read_recording(resource("assets", "recordings", "bar.akaprec"))
     drawing = recorded_drawing(recording)
-    found = {spec: bend(recording, drawing, spec).pose for spec in ("cauchy-green", "arap", "mls")}
+    found = {spec: replay_method(recording, drawing, spec).pose for spec in ("cauchy-green", "arap", "mls")}
     after = {spec: distortion(drawing.mesh, pose) for spec, pose in found.items()}
     area, angle = PAPER["bar"]["cauchy-green"]
     assert after["cauchy-green"].area == pytest.approx(area, abs=0.01)
@@ -102,7 +102,7 @@ def test_real_cartoons(shared_data, name):
     offsets = size * np.array([[0.2, 0.1], [0.0, 0.0], [0.1, -0.25], [-0.1, 0.2]])
     recording = record_drag(drawing, [tuple(point) for point in points.tolist()], 0.5 * offsets, moves=6)
     after = {
-        spec: distortion(mesh, bend(recording, drawing, spec).pose)
+        spec: distortion(mesh, replay_method(recording, drawing, spec).pose)
         for spec in ("akap:memory=1", "arap", "cauchy-green")
     }
     assert after["cauchy-green"].area > max(after["arap"].area, after["akap:memory=1"].area)

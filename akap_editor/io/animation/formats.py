@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...errors import InputError
+from ...errors import FileError, InputError
 from ..atomic import Write, write_atomic
 from ..images import Picture, join_with_or, write_png
 from .animated_images import write_apng, write_gif, write_webp
@@ -92,7 +92,7 @@ def animation_format(path: str | Path, sheet: bool = False) -> AnimationFormat:
     path = Path(path)
     suffix = path.suffix.lower()
     if sheet and suffix != ".png":
-        raise InputError(f"{path}: expected a sheet's name to end in .png, got {suffix or 'none'}")
+        raise FileError("export", path, f"expected a sheet's name to end in .png, got {suffix or 'none'}")
     if path.is_dir() and not sheet:
         suffix = ""
     for each in ANIMATION_FORMATS:
@@ -101,7 +101,7 @@ def animation_format(path: str | Path, sheet: bool = False) -> AnimationFormat:
                 require_av()
             return each
     endings = join_with_or(sorted({each.suffix for each in ANIMATION_FORMATS if each.suffix}))
-    raise InputError(f"{path}: expected a name that ends in {endings}, got {suffix or 'none'}")
+    raise FileError("export", path, f"expected a name that ends in {endings}, got {suffix or 'none'}")
 
 
 def write_animation(

@@ -7,7 +7,7 @@ from pathlib import Path
 from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
 from ...editor.framing import Color, crop_box
-from ...errors import InputError, file_errors
+from ...errors import FileError, InputError, file_errors
 from ...geometry.validation import as_instance
 from ..atomic import as_path, write_atomic
 from ..images import encode_png, join_with_or
@@ -119,7 +119,8 @@ def format_of(path: str | Path) -> ExportFormat:
         if name.endswith(each.suffix):
             return each
     endings = join_with_or([each.suffix for each in EXPORT_FORMATS])
-    raise InputError(f"{path}: expected a name that ends in {endings}, got {Path(path).suffix or 'none'}")
+    came = Path(path).suffix or "none"
+    raise FileError("export", path, f"expected a name that ends in {endings}, got {came}")
 
 
 def export(

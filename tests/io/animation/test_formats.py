@@ -51,7 +51,8 @@ def test_a_sheet_is_a_png():
 
 @pytest.mark.parametrize("name", ["a.avi", "a.jpg"])
 def test_another_ending_is_refused_with_those_that_there_are(name):
-    with pytest.raises(InputError, match=rf"{name}: expected a name that ends in \.apng, .* got .{name[2:]}"):
+    message = rf"“{name}”\. Expected a name that ends in \.apng, .* got .{name[2:]}"
+    with pytest.raises(InputError, match=message):
         animation_format(name)
 
 

@@ -65,7 +65,7 @@ def test_the_format_of_a_name(name, suffix):
 
 @pytest.mark.parametrize("name", ["a", "a.jpg", "png", "a.json.txt", "spine"])
 def test_a_name_that_says_no_format(name, bent, painter, tmp_path):
-    with pytest.raises(InputError, match=r"expected a name that ends in \.png, \.svg, .* or \.json, got "):
+    with pytest.raises(InputError, match=r"Expected a name that ends in \.png, \.svg, .* or \.json, got "):
         export(bent, tmp_path / name, ExportOptions(), painter)
     assert list(tmp_path.iterdir()) == []
 
