@@ -90,7 +90,7 @@ def apply_pose_file(state: AppState, path: Path) -> None:
     def apply() -> None:
         assert state.document is not None
         pose = load_pose(path, state.document.drawing)
-        gestures.apply_pose(state.editor, pose.pins, pose.positions)
+        gestures.apply_pose(state.editor, pose.pins, pose.positions, pose.crossings)
         state.notice = f"Applied {path.name}"
 
     state.run_reporting_errors(apply)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from typing import Protocol, TypeVar
 
-from ..geometry.validation import Floats
+from ..geometry.validation import Floats, Ints
 from .camera import Point
 from .document.named_poses import unused_pose_name
 from .document.pin import Pin
@@ -183,14 +183,24 @@ def delete_pose(editor: EditContext, name: str) -> None:
     editor.apply("Delete Pose", DeletePose(name))
 
 
-def set_pose(editor: EditContext, positions: Floats, label: str = "Apply Pose") -> None:
-    """Set the pose (n, 2); the pins stay on the drawing and move with it. Raises InputError."""
-    editor.apply(label, SetPose(positions))
+def set_pose(
+    editor: EditContext, positions: Floats, label: str = "Apply Pose", crossings: Ints | None = None
+) -> None:
+    """Set the pose (n, 2); the pins stay on the drawing and move with it. Raises InputError.
+
+    crossings: which part passes in front, (s, 2), see `EditState`; by default the one that does now.
+    """
+    editor.apply(label, SetPose(positions, crossings))
 
 
-def apply_pose(editor: EditContext, pins: tuple[Pin, ...], positions: Floats) -> None:
-    """Replace the pins and the pose (n, 2), as saved from the same mesh. Raises InputError."""
-    editor.apply("Apply Pose", SetPins(pins), SetPose(positions))
+def apply_pose(
+    editor: EditContext, pins: tuple[Pin, ...], positions: Floats, crossings: Ints | None = None
+) -> None:
+    """Replace the pins and the pose (n, 2) with its crossings (s, 2), as saved from the same mesh.
+
+    Raises InputError.
+    """
+    editor.apply("Apply Pose", SetPins(pins), SetPose(positions, crossings))
 
 
 def set_settings(editor: EditContext, settings: Settings) -> None:

@@ -22,7 +22,7 @@ _SEAM_TRAVEL = 2e-4  # share of the mesh's area that seams may pass over in one 
 _PULL = 50.0  # a pair turned over costs its area over this part of the mesh's length
 _GUESS = 0.3  # firmness of a sign that was inferred from a neighbor
 _WEAK = 0.1  # firmness of signs beside a limb that is brought to the front
-NO_ABOVE: Ints = freeze(np.zeros((0, 2), dtype=np.int32))
+NO_CROSSINGS: Ints = freeze(np.zeros((0, 2), dtype=np.int32))
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +31,15 @@ class Overlaps:
 
     pairs: see `FacePairs`; signs: (p,) int8, 1 where the first face is in front, else −1; ages: (r,) rank of
     each region, the oldest 0; levels: (m,) int32, faces of a higher level are drawn later, None without
-    overlaps; above: (s, 2) int32 upper and lower faces, from which `restored_overlaps` finds all signs again:
-    one pair of each region, the oldest first, and of a region with a seam all pairs along it.
+    overlaps; crossings: (s, 2) int32 upper and lower faces, from which `restored_overlaps` finds all signs
+    again: one pair of each region, the oldest first, and of a region with a seam all pairs along it.
     """
 
     pairs: FacePairs
     signs: Ints
     ages: Ints
     levels: Ints | None
-    above: Ints
+    crossings: Ints
 
     def __len__(self) -> int:
         return len(self.pairs)
@@ -51,10 +51,10 @@ class Overlaps:
         return low, high
 
 
-def no_overlaps(mesh: TriMesh, above: Ints = NO_ABOVE) -> Overlaps:
+def no_overlaps(mesh: TriMesh, crossings: Ints = NO_CROSSINGS) -> Overlaps:
     """The overlaps of a pose that does not overlap, or that is crumpled beyond any order."""
     none = np.zeros(0, dtype=np.int8)
-    return Overlaps(no_face_pairs(len(mesh.faces)), none, none.astype(np.int64), None, above)
+    return Overlaps(no_face_pairs(len(mesh.faces)), none, none.astype(np.int64), None, crossings)
 
 
 RulesSource = Callable[[], Rules]
@@ -75,29 +75,48 @@ def next_overlaps(
     if not len(pairs):
         return no_overlaps(mesh)
     if not pairs.is_complete:
-        return no_overlaps(mesh, before.above)
+        return no_overlaps(mesh, before.crossings)
     decision = _Decision(mesh, topology, pose, pairs)
-    decision.carry_over(before)
+    decision.carry_over(before, mesh)
     if other is not None:
-        decision.carry_over(other)
+        decision.carry_over(other, mesh)
     decision.decide_new(before, rules)
     decision.part_contradictions()
     return decision.result(before)
 
 
-def restored_overlaps(mesh: TriMesh, pose: Floats, above: Ints, rules: RulesSource = Rules) -> Overlaps:
-    """The overlaps of a pose (n, 2) with the decisions ``above`` (s, 2) of `Overlaps`.
+def transferred_overlaps(
+    mesh: TriMesh, pose: Floats, old: Overlaps, old_mesh: TriMesh, faces: Ints, rules: RulesSource = Rules
+) -> Overlaps:
+    """The overlaps of a pose (n, 2) with the decisions of a like pose of another mesh of the drawing.
 
-    ``rules`` decide on regions of which ``above`` has no pair.
+    faces: (m,) int32 the face of ``old_mesh`` at the center of each face of ``mesh``.
+    """
+    topology = mesh_topology(mesh)
+    pairs = overlapping_faces(topology, pose, len(old))
+    if not len(pairs) or not pairs.is_complete:
+        return no_overlaps(mesh)
+    decision = _Decision(mesh, topology, pose, pairs)
+    decision.carry_over(old, old_mesh, faces)
+    decision.decide_new(no_overlaps(mesh), rules)
+    decision.part_contradictions()
+    return decision.result(no_overlaps(mesh))
+
+
+def restored_overlaps(mesh: TriMesh, pose: Floats, crossings: Ints, rules: RulesSource = Rules) -> Overlaps:
+    """The overlaps of a pose (n, 2) with the decisions ``crossings`` (s, 2) of `Overlaps`.
+
+    ``rules`` decide on regions of which ``crossings`` has no pair.
     """
     topology = mesh_topology(mesh)
     pairs = overlapping_faces(topology, pose)
+    crossings = crossings[((crossings >= 0) & (crossings < len(mesh.faces))).all(axis=1)]
     if not len(pairs) or not pairs.is_complete:
-        return no_overlaps(mesh, NO_ABOVE if not len(pairs) else above)
+        return no_overlaps(mesh, crossings if len(pairs) else NO_CROSSINGS)
     decision = _Decision(mesh, topology, pose, pairs)
-    decision.take_over(np.asarray(above, dtype=np.int32).reshape(-1, 2))
+    decision.take_over(crossings)
     decision.decide_new(no_overlaps(mesh), rules)
-    return decision.result(no_overlaps(mesh, above))
+    return decision.result(no_overlaps(mesh, crossings))
 
 
 def asked_overlaps(mesh: TriMesh, pose: Floats, overlaps: Overlaps, limb: Ints, to_front: bool) -> Overlaps:
@@ -183,14 +202,20 @@ class _Decision:
         first, second = self.pairs.first[members], self.pairs.second[members]
         return common_areas(self.pose, self.topology.faces, first, second)
 
-    def carry_over(self, before: Overlaps) -> None:
-        """Give each region the sign of its pairs in the pose before."""
-        old, mesh = before.pairs, self.mesh
+    def carry_over(self, before: Overlaps, mesh: TriMesh, faces: Ints | None = None) -> None:
+        """Give each region without a sign that of its pairs in another pose, of this mesh or another one.
+
+        faces: (m,) the face of the other mesh at each face of this one.
+        """
+        old = before.pairs
         if not len(before):
             return
+        first, second = self.pairs.first, self.pairs.second
+        if faces is not None:
+            first, second = faces[first], faces[second]
         signs, sources, known = carried_signs(
-            self.pairs.first,
-            self.pairs.second,
+            first,
+            second,
             old.first,
             old.second,
             old.regions,
@@ -216,21 +241,20 @@ class _Decision:
             minority = 1 if counts[0] < counts[1] else -1
             members = begin + np.flatnonzero(mine == minority)
             is_unanimous = votes[region].any() and not votes[region].min()
-            if is_unanimous or self.areas(members).sum() <= _NEGLIGIBLE * mesh.length**2:
+            if is_unanimous or self.areas(members).sum() <= _NEGLIGIBLE * self.mesh.length**2:
                 self.signs[begin:end] = -minority
             else:
                 self.signs[begin:end] = mine
                 self.contradictory.append(region)
 
-    def take_over(self, above: Ints) -> None:
-        """Give each pair the sign of the rows of ``above`` that are nearest to it within its region."""
-        self.ages[:] = len(above)
-        pairs, m = self.pairs, len(self.topology.faces)
-        above = above[((above >= 0) & (above < m)).all(axis=1)]
+    def take_over(self, crossings: Ints) -> None:
+        """Give each pair the sign of the rows of ``crossings`` that are nearest to it within its region."""
+        self.ages[:] = len(crossings)
+        pairs = self.pairs
         indices, signs = find_pairs(
-            above[:, 0], above[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
+            crossings[:, 0], crossings[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
         )
-        for row in range(len(above) - 1, -1, -1):
+        for row in range(len(crossings) - 1, -1, -1):
             if indices[row] >= 0:
                 self.signs[indices[row]] = signs[row]
                 self.ages[pairs.regions[indices[row]]] = row
@@ -302,10 +326,10 @@ class _Decision:
                 self.signs, levels = without_circles(
                     m, pairs.first, pairs.second, pairs.regions, self.signs, ages, self.known
                 )
-        above = self._above(order, before.above)
-        return Overlaps(pairs, freeze(self.signs), ages, levels, above)
+        crossings = self._crossings(order, before.crossings)
+        return Overlaps(pairs, freeze(self.signs), ages, levels, crossings)
 
-    def _above(self, order: Ints, before: Ints) -> Ints:
+    def _crossings(self, order: Ints, before: Ints) -> Ints:
         """The pairs that restore all signs, by regions in ``order``; old ones where they still do."""
         pairs = self.pairs
         indices, signs = find_pairs(
@@ -326,8 +350,8 @@ class _Decision:
             chosen.append(candidates[np.argmax(self.areas(candidates))][None])
         low, high = low_and_high(pairs.first, pairs.second, self.signs)
         kept = np.concatenate(chosen)
-        above = np.stack([high[kept], low[kept]], axis=1).astype(np.int32)
-        return before if np.array_equal(above, before) else freeze(above)
+        crossings = np.stack([high[kept], low[kept]], axis=1).astype(np.int32)
+        return before if np.array_equal(crossings, before) else freeze(crossings)
 
 
 @compiled

@@ -65,7 +65,7 @@ def test_decisions_hold_and_last_in_random_drags(name: str, seed: int) -> None:
         following = next_overlaps(mesh, pose, overlaps)
         if len(following):
             assert satisfies(following.levels, *following.low_and_high), "a circle is left"
-            restored = restored_overlaps(mesh, pose, following.above)
+            restored = restored_overlaps(mesh, pose, following.crossings)
             assert np.array_equal(restored.signs, following.signs)
             assert np.array_equal(restored.ages, following.ages)
             turned = turned_area(mesh, pose, overlaps, following)
@@ -99,7 +99,7 @@ def test_a_rope_keeps_its_crossings_and_each_can_be_asked_for() -> None:
         assert satisfies(asked.levels, *asked.low_and_high)
         back = asked_overlaps(ROPE, pose, asked, limb, to_front=False)
         assert decided(back) == decided(overlaps)
-        again = restored_overlaps(ROPE, pose, asked.above)
+        again = restored_overlaps(ROPE, pose, asked.crossings)
         assert decided(again) == decided(asked)
 
 

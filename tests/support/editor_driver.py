@@ -39,10 +39,14 @@ def bits(state: EditState) -> tuple[Any, ...]:
     mesh = None if state.drawing is None else state.drawing.mesh
     mesh_bits = None if mesh is None else (mesh.vertices.tobytes(), mesh.faces.tobytes())
     stiffness = None if state.stiffness is None else state.stiffness.tobytes()
-    poses = tuple((pose.name, pose.positions.tobytes()) for pose in state.poses)
-    keyframes = tuple((key.time, key.positions.tobytes(), key.ease) for key in state.animation.keyframes)
+    poses = tuple((pose.name, pose.positions.tobytes(), pose.crossings.tobytes()) for pose in state.poses)
+    keyframes = tuple(
+        (key.time, key.positions.tobytes(), key.ease, key.crossings.tobytes())
+        for key in state.animation.keyframes
+    )
     animation = keyframes, state.animation.ease, state.animation.loop
-    return state.positions.tobytes(), pins, state.settings, mesh_bits, stiffness, poses, animation
+    pose = state.positions.tobytes(), state.crossings.tobytes()
+    return pose, pins, state.settings, mesh_bits, stiffness, poses, animation
 
 
 def replayed_state(recording: Recording, drawing: Drawing) -> EditState:

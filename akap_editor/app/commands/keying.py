@@ -20,12 +20,15 @@ def has_chosen(state: AppState) -> bool:
 def keyframe_here(state: AppState) -> None:
     """Keep what is seen as a keyframe; the timeline opens where it is not seen."""
     session, playback = state.editor.session, state.timeline.keyframe_playback
-    seen = session.state.positions if session is not None and session.is_previewing else None
+    shown = session.state if session is not None and session.is_previewing else None
     playback.update()
     if not (state.timeline.is_shown and state.timeline.mode == "keyframes"):
         state.timeline.set_mode("keyframes")
         state.timeline.is_shown = True
-    playback.set_keyframe(positions=seen)
+    if shown is None:
+        playback.set_keyframe()
+    else:
+        playback.set_keyframe(None, shown.positions, shown.crossings)
 
 
 def toggle_onion(state: AppState) -> None:

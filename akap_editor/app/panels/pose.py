@@ -87,7 +87,7 @@ def _pose(state: AppState, pose: NamedPose, scale: float) -> None:
     if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side), imgui.ButtonFlags_.enable_nav):
         state.notice = ""
         state.run_reporting_errors(
-            lambda: gestures.set_pose(state.editor, pose.positions, f"Apply {pose.name}")
+            lambda: gestures.set_pose(state.editor, pose.positions, f"Apply {pose.name}", pose.crossings)
         )
     hovered = imgui.is_item_hovered() or imgui.is_item_focused()
     widgets.show_tooltip(
@@ -132,7 +132,7 @@ def _menu(state: AppState, pose: NamedPose) -> None:
         state.timeline.set_mode("keyframes")
         state.timeline.is_shown = True
         state.run_reporting_errors(
-            lambda: state.timeline.keyframe_playback.set_keyframe(positions=pose.positions)
+            lambda: state.timeline.keyframe_playback.set_keyframe(None, pose.positions, pose.crossings)
         )
     imgui.separator()
     assert state.document is not None
@@ -215,6 +215,8 @@ def _mixer(state: AppState, scale: float) -> None:
         pose_blend.preview(session)
     if released:
         session.end_preview()
-        pose = pose_blend.pose(session)
-        if pose is not None:
-            state.run_reporting_errors(lambda: gestures.set_pose(state.editor, pose, "Apply Blend"))
+        blended = pose_blend.blend(session)
+        if blended is not None:
+            state.run_reporting_errors(
+                lambda: gestures.set_pose(state.editor, blended[0], "Apply Blend", blended[1])
+            )

@@ -1,21 +1,23 @@
 """Playback and editing of the keyframes: scrub, play, select, drag, ease; and the onion skin."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from time import monotonic
 from typing import Literal
 
 from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import Floats
-from ..document.depth import face_order
+from ...geometry.validation import Floats, Ints
+from ..document.crossings import face_order
 from ..document.document import Document
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
+from ..document.pin import Pin
 from ..document.pin_angles import pins_fixed_at_pose
 from ..gestures import EditContext
 from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
 from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
+from .crossing_blend import CrossingBlend
 from .frames import Frame
 from .playback import Playback, VisibleRange
 
@@ -52,6 +54,7 @@ class KeyframePlayback(Playback):
         self.onion_skin = OnionSkin()
         self._editor = editor
         self._interpolation = InterpolationCache()
+        self._crossings = CrossingBlend()
         self._session: Session | None = None
         self._reset()
 
@@ -115,12 +118,21 @@ class KeyframePlayback(Playback):
             return None
         return animation_pose(self._interpolation, session.drawing.mesh, animation, time)
 
+    def _pose_and_crossings(self, time: float) -> tuple[Floats, Ints] | None:
+        """The pose (n, 2) at a time and its crossings (s, 2); None without keyframes."""
+        session, animation = self._editor.session, self.animation
+        if session is None or not animation.keyframes:
+            return None
+        mesh, pins = session.drawing.mesh, session.present.pins
+        return animation_crossings(self._interpolation, self._crossings, mesh, pins, animation, time)
+
     def frame(self, time: float) -> Frame:
         """The frame at a time; there must be keyframes."""
-        session, pose = self._editor.session, self.pose(time)
+        session, pose = self._editor.session, self._pose_and_crossings(time)
         assert session is not None
         assert pose is not None, "expected keyframes"
-        return Frame(session.drawing, pose, face_order(session.drawing.mesh, session.present.pins))
+        order = face_order(session.drawing.mesh, session.present.pins, *pose)
+        return Frame(session.drawing, pose[0], order)
 
     def onion_poses(self) -> tuple[list[Floats], list[Floats]]:
         """The poses of the onion skin before and after the playhead, the nearest ones first."""
@@ -165,7 +177,7 @@ class KeyframePlayback(Playback):
         self._show()
 
     def _show(self) -> None:
-        session, pose = self._editor.session, self.pose(self.time)
+        session, pose = self._editor.session, self._pose_and_crossings(self.time)
         if session is None or session.history.is_open:
             return
         if pose is None:
@@ -173,8 +185,9 @@ class KeyframePlayback(Playback):
             return
         present = session.present
         self._present_pose = present.positions
-        pins = pins_fixed_at_pose(session.drawing.mesh, present.pins, pose)
-        session.preview(replace(present, positions=pose, pins=pins), takes_pose=True)
+        pins = pins_fixed_at_pose(session.drawing.mesh, present.pins, pose[0])
+        shown = replace(present, positions=pose[0], crossings=pose[1], pins=pins)
+        session.preview(shown, takes_pose=True)
 
     def show_present(self) -> None:
         """Show the present pose."""
@@ -196,19 +209,22 @@ class KeyframePlayback(Playback):
 
     # -- edits ---------------------------------------------------------------------------------------------
 
-    def set_keyframe(self, time: float | None = None, positions: Floats | None = None) -> None:
+    def set_keyframe(
+        self, time: float | None = None, positions: Floats | None = None, crossings: Ints | None = None
+    ) -> None:
         """Set a keyframe and select it; replaces a keyframe at the same time.
 
-        time: that of the playhead by default; positions: a pose (n, 2), by default the one that is shown.
+        time: that of the playhead by default; positions: a pose (n, 2), by default the one that is shown;
+        crossings: its crossings (s, 2).
         """
         session = self._editor.session
         if session is None or self._editor.is_busy:
             return
         time = as_keyframe_time(self.time if time is None else time)
         if positions is None and self.is_previewing:
-            positions = session.state.positions
+            positions, crossings = session.state.positions, session.state.crossings
         label = "Update Keyframe" if time in self.animation.times else "Add Keyframe"
-        self._edit(label, SetKeyframe(time, positions))
+        self._edit(label, SetKeyframe(time, positions, None, crossings))
         self.selected, self.time = frozenset({time}), time
 
     def delete_keyframes(self) -> None:
@@ -297,10 +313,32 @@ def animation_pose(
     return interpolation.pose(mesh, start.positions, end.positions, share)
 
 
-def animation_frame(document: Document, interpolation: InterpolationCache, time: float) -> Frame:
+def animation_crossings(
+    interpolation: InterpolationCache,
+    blend: CrossingBlend,
+    mesh: TriMesh,
+    pins: Sequence[Pin],
+    animation: Animation,
+    time: float,
+) -> tuple[Floats, Ints]:
+    """The pose (n, 2) of an animation at a time and its crossings (s, 2); there must be keyframes."""
+    start, end, share = animation.keyframes_around(time)
+
+    def pose_at(share: float) -> Floats:
+        return interpolation.pose(mesh, start.positions, end.positions, share)
+
+    return blend.crossings(mesh, pins, start, end, share, pose_at)
+
+
+def animation_frame(
+    document: Document, interpolation: InterpolationCache, time: float, blend: CrossingBlend | None = None
+) -> Frame:
     """The frame of a document's animation at a time; there must be keyframes."""
-    pose = animation_pose(interpolation, document.drawing.mesh, document.state.animation, time)
-    return Frame(document.drawing, pose, document.face_order)
+    mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
+    pose, crossings = animation_crossings(
+        interpolation, blend or CrossingBlend(), mesh, pins, animation, time
+    )
+    return Frame(document.drawing, pose, face_order(mesh, pins, pose, crossings))
 
 
 def stretch_times(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:

@@ -11,7 +11,8 @@ import numpy as np
 from ...deform.deformer import StepResult
 from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.validation import Floats, as_number
-from ..document.depth import face_order
+from ..document.crossings import crossings_in_pose, face_order
+from ..document.document import EditState
 from ..document.drawing import Drawing
 from ..session.recording import MAX_TIME, Recording
 from ..session.replay import ReplayedEvent
@@ -44,7 +45,7 @@ class _Segment:
     """The motion between two recorded times.
 
     Until ``start`` the frame is ``before``, then ``steps`` lead to ``after`` at ``end``. A step takes a share
-    of the time that is proportional to how far it moves.
+    of the time that is proportional to how far it moves. state: the one at ``end``.
     """
 
     start: float
@@ -52,6 +53,15 @@ class _Segment:
     before: Frame
     steps: tuple[_TimedStep, ...]
     after: Frame
+    state: EditState | None
+
+
+def _state_frame(drawing: Drawing, state: EditState, pose: Floats) -> Frame:
+    """The frame of a pose (n, 2) near that of a state, with the parts in front that are so in the state."""
+    mesh, crossings = drawing.mesh, state.crossings
+    if pose is not state.positions:
+        crossings = crossings_in_pose(mesh, state.pins, state.positions, crossings, pose)
+    return Frame(drawing, pose, face_order(mesh, state.pins, pose, crossings))
 
 
 class Motion:
@@ -67,7 +77,7 @@ class Motion:
         self._drawing = drawing
         self._groups = (list(group) for _, group in groupby(events, key=attrgetter("time")))
         rest = Frame(drawing, drawing.mesh.vertices)
-        self._segment = _Segment(0.0, 0.0, rest, (), rest)
+        self._segment = _Segment(0.0, 0.0, rest, (), rest, None)
         self._interpolation = InterpolationCache()
 
     def frames(self, times: Iterable[float]) -> Iterator[Frame]:
@@ -81,9 +91,9 @@ class Motion:
         """The segment to a group of events that have the same time."""
         before, last = self._segment.after, group[-1]
         drawing = last.state.drawing or self._drawing
-        after = Frame(drawing, last.state.positions, face_order(drawing.mesh, last.state.pins))
+        after = _state_frame(drawing, last.state, last.state.positions)
         if drawing is not before.drawing or any(event.is_jump for event in group):
-            return _Segment(last.time, last.time, before, (), after)
+            return _Segment(last.time, last.time, before, (), after, last.state)
         pose = before.pose
         moves: list[tuple[Floats, StepResult, float]] = []
         for event in group:
@@ -93,7 +103,7 @@ class Motion:
         total = sum(length for *_, length in moves)
         steps = tuple(_TimedStep(pose, step, length / total) for pose, step, length in moves if length)
         start = max(self._segment.end, last.time - MAX_MOVE_SECONDS) if steps else last.time
-        return _Segment(start, last.time, before, steps, after)
+        return _Segment(start, last.time, before, steps, after, last.state)
 
     def _frame(self, time: float) -> Frame:
         segment = self._segment
@@ -101,7 +111,8 @@ class Motion:
             return segment.after
         if time <= segment.start:
             return segment.before
-        drawing, _, order = segment.after
+        drawing, state = segment.after.drawing, segment.state
+        assert state is not None
         share = (time - segment.start) / (segment.end - segment.start)
         for step in segment.steps:
             if share <= step.share:
@@ -109,6 +120,6 @@ class Motion:
             share -= step.share
         progress = min(share / step.share, 1.0)
         if step.result.flow is not None:
-            return Frame(drawing, step.result.at(progress), order)
+            return _state_frame(drawing, state, step.result.at(progress))
         pose = self._interpolation.pose(drawing.mesh, step.pose, step.result.positions, progress)
-        return Frame(drawing, pose, order)
+        return _state_frame(drawing, state, pose)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from time import monotonic
 
 from ...deform.pose_interpolation import InterpolationCache
-from ..document.depth import face_order
+from ..document.crossings import crossings_in_pose, face_order
 from ..document.document import EditState
 from ..document.drawing import Drawing
 from ..session.session import Session
@@ -147,4 +147,7 @@ class SessionPlayback(Playback):
         if time > start and is_continuous:
             share = min((time - start) / (following.time - start), 1.0)
             pose = self._interpolation.pose(mesh, pose, following.state.positions, share)
-        return Frame(snapshot.drawing, pose, face_order(mesh, snapshot.state.pins))
+        state, crossings = snapshot.state, snapshot.state.crossings
+        if pose is not state.positions:
+            crossings = crossings_in_pose(mesh, state.pins, state.positions, crossings, pose)
+        return Frame(snapshot.drawing, pose, face_order(mesh, state.pins, pose, crossings))

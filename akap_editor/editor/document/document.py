@@ -7,7 +7,7 @@ import numpy as np
 
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.validation import Floats, Ints, as_floats, as_instance
-from .depth import face_order
+from .crossings import as_crossings, face_order, no_crossings
 from .drawing import Drawing
 from .keyframes import NO_ANIMATION, Animation
 from .named_poses import NamedPose
@@ -22,7 +22,8 @@ class EditState:
     pins: in the order in which they were added; positions: the pose, (n, 2) float64 pixels; settings: the
     deformation method; drawing: the drawing since it was last given another mesh in this session, None if it
     never was; poses: the named ones; stiffness: factors of the faces, (m,) float64 (see `stiffness`), None
-    is 1 everywhere; animation: the keyframes.
+    is 1 everywhere; animation: the keyframes; crossings: which part passes in front where the pose overlaps
+    itself, (s, 2) int32 upper and lower faces (see `overlap.overlaps.Overlaps`).
     """
 
     pins: tuple[Pin, ...]
@@ -32,11 +33,13 @@ class EditState:
     poses: tuple[NamedPose, ...] = ()
     stiffness: Floats | None = None
     animation: Animation = NO_ANIMATION
+    crossings: Ints = field(default_factory=no_crossings)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positions", as_floats(self.positions, "positions"))
         if self.stiffness is not None:
             object.__setattr__(self, "stiffness", as_floats(self.stiffness, "stiffness"))
+        object.__setattr__(self, "crossings", as_crossings(self.crossings))
 
     @property
     def points(self) -> MeshPoints:
@@ -88,7 +91,8 @@ class Document:
     @property
     def face_order(self) -> Ints | None:
         """Indices of the faces from back to front, (m,) int; None stands for the order of the mesh."""
-        return face_order(self.drawing.mesh, self.state.pins)
+        state = self.state
+        return face_order(self.drawing.mesh, state.pins, state.positions, state.crossings)
 
     def with_state(self, state: EditState) -> "Document":
         """This document with another state and the next revision."""

@@ -1,11 +1,12 @@
 """Keyframes: poses at times, with the easing between them."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ...errors import InputError
-from ...geometry.validation import Floats, as_number
+from ...geometry.validation import Floats, Ints, as_number
+from .crossings import as_crossings, no_crossings
 from .easing import check_keyframe_easing, keyframe_easing_function
 from .named_poses import as_pose
 
@@ -18,16 +19,19 @@ class Keyframe:
     """A pose (n, 2) float64, in pixels, at a time in seconds.
 
     ease: the easing from here to the next keyframe, a name of `easing.KEYFRAME_EASINGS`; None for that of
-    the animation. Raises InputError on a time or easing out of range.
+    the animation. crossings: which part passes in front, (s, 2), see `EditState`. Raises InputError on a time
+    or easing out of range.
     """
 
     time: float
     positions: Floats
     ease: str | None = None
+    crossings: Ints = field(default_factory=no_crossings)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", as_keyframe_time(self.time))
         object.__setattr__(self, "positions", as_pose(self.positions, "keyframe"))
+        object.__setattr__(self, "crossings", as_crossings(self.crossings))
         if self.ease is not None:
             check_keyframe_easing(self.ease)
 

@@ -1,13 +1,14 @@
 """Named poses: poses that a document stores under a name."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import InputError
-from ...geometry.validation import Floats, as_points, freeze
+from ...geometry.validation import Floats, Ints, as_points, freeze
+from .crossings import as_crossings, no_crossings
 
 MAX_POSE_NAME = 80  # characters
 
@@ -28,17 +29,20 @@ def as_pose(value: ArrayLike, name: str, count: int | None = None) -> Floats:
 class NamedPose:
     """A pose (n, 2) float64, in pixels, with a name that is not empty and unique in its document.
 
+    crossings: which part passes in front, (s, 2), see `EditState`.
     Raises InputError on an empty or too long name, or a bad pose.
     """
 
     name: str
     positions: Floats
+    crossings: Ints = field(default_factory=no_crossings)
 
     def __post_init__(self) -> None:
         if not self.name.strip() or len(self.name) > MAX_POSE_NAME:
             expected = f"a name of 1 to {MAX_POSE_NAME} characters"
             raise InputError(f"pose: expected {expected}, got {self.name[:99]!r}")
         object.__setattr__(self, "positions", as_pose(self.positions, "pose"))
+        object.__setattr__(self, "crossings", as_crossings(self.crossings))
 
 
 def with_pose(poses: Sequence[NamedPose], pose: NamedPose) -> tuple[NamedPose, ...]:

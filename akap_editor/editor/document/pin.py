@@ -16,8 +16,8 @@ class Pin:
 
     id: unique in its document; face, weights: its place on the mesh, weights (3,) float64 barycentric;
     target: (2,) float64, where it is to go, pixels; depth: higher is nearer to the viewer, see
-    `depth.face_order`; angle: to which the drawing around the pin is to rotate, radians from the rest pose,
-    clockwise on the screen; None lets it rotate freely.
+    `crossings.face_order`; angle: to which the drawing around the pin is to rotate, radians from the rest
+    pose, clockwise on the screen; None lets it rotate freely.
     """
 
     id: int

@@ -10,8 +10,12 @@ from ...geometry.area_bounds import grow_faces
 from ...geometry.mesh import TriMesh, barycentric, signed_areas
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints
+from ...overlap.overlaps import transferred_overlaps
+from .crossings import overlaps_of
 from .document import EditState
 from .drawing import Drawing, Meshing, mesh_drawing, remove_background_and_mesh
+from .keyframes import Keyframe
+from .named_poses import NamedPose
 from .pin import Pin
 
 _MAX_UV_OFFSET = 0.5  # pixels of a vertex from its texture coordinates on the picture
@@ -43,9 +47,10 @@ def remesh_drawing(drawing: Drawing, meshing: Meshing) -> Drawing:
 def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditState:
     """Transfer a state of ``mesh`` to the mesh of ``drawing``, which shows the same picture.
 
-    Poses are transferred by `map_points`; if no face of the current pose is flipped, none will be. Pins stay
-    at their places on the picture; those on parts that are gone are removed. Each face gets the stiffness of
-    the nearest old one. Raises InputError if faces flip that cannot be unflipped.
+    Poses are transferred by `map_points`, and what passes in front in them stays; if no face of the current
+    pose is flipped, none will be. Pins stay at their places on the picture; those on parts that are gone are
+    removed. Each face gets the stiffness of the nearest old one. Raises InputError if faces flip that cannot
+    be unflipped.
     """
     new_mesh = drawing.mesh
     is_at_rest = np.array_equal(state.positions, mesh.vertices)
@@ -57,21 +62,36 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
                 f"the drawing is bent too sharply for a mesh of {len(new_mesh.vertices)} vertices: "
                 "expected a pose that it can follow; bend it less first"
             )
-    stiffness = state.stiffness
-    if stiffness is not None:
-        centers = new_mesh.vertices[new_mesh.faces].mean(axis=1)
-        stiffness = stiffness[_nearest_on_mesh(centers, mesh)[0]]
+    faces = _nearest_on_mesh(new_mesh.vertices[new_mesh.faces].mean(axis=1), mesh)[0]
+    stiffness = None if state.stiffness is None else state.stiffness[faces]
+
+    def map_pose(pose: Floats) -> Floats:
+        return map_points(new_mesh.vertices, mesh, pose)
+
+    def map_crossings(old: EditState | NamedPose | Keyframe, pose: Floats) -> Ints:
+        overlaps = overlaps_of(mesh, state.pins, old.positions, old.crossings)
+        return transferred_overlaps(new_mesh, pose, overlaps, mesh, faces.astype(np.int32)).crossings
+
+    animation = state.animation.map_poses(map_pose)
+    keyframes = zip(animation.keyframes, state.animation.keyframes, strict=True)
+    named_poses = ((pose, map_pose(pose.positions)) for pose in state.poses)
     return EditState(
         pins=_transfer_pins(state, mesh, new_mesh),
         positions=positions,
         settings=state.settings,
         drawing=drawing,
         poses=tuple(
-            replace(pose, positions=map_points(new_mesh.vertices, mesh, pose.positions))
-            for pose in state.poses
+            replace(pose, positions=mapped, crossings=map_crossings(pose, mapped))
+            for pose, mapped in named_poses
         ),
         stiffness=stiffness,
-        animation=state.animation.map_poses(lambda pose: map_points(new_mesh.vertices, mesh, pose)),
+        animation=replace(
+            animation,
+            keyframes=tuple(
+                replace(new, crossings=map_crossings(old, new.positions)) for new, old in keyframes
+            ),
+        ),
+        crossings=map_crossings(state, positions),
     )
 
 

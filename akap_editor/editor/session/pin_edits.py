@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..document.depth import check_depths, depth_at
+from ..document.crossings import check_depths, depth_at
 from ..document.pin import Pin
 from ..document.pin_angles import with_held_angles
 from .edits import SetPins, SetTargets

@@ -18,6 +18,7 @@ from .edits import (
     EDITS,
     AddPose,
     Edit,
+    SetCrossings,
     SetEasing,
     SetKeyframe,
     SetLoop,
@@ -97,8 +98,12 @@ def opening_edits(document: Document) -> list[Edit]:
         edits.append(SetPose(state.positions))
     if state.pins:
         edits.append(SetPins(state.pins))
-    edits += [AddPose(pose.name, pose.positions) for pose in state.poses]
-    edits += [SetKeyframe(key.time, key.positions, key.ease) for key in state.animation.keyframes]
+    if len(state.crossings):
+        edits.append(SetCrossings(state.crossings))
+    edits += [AddPose(pose.name, pose.positions, pose.crossings) for pose in state.poses]
+    edits += [
+        SetKeyframe(key.time, key.positions, key.ease, key.crossings) for key in state.animation.keyframes
+    ]
     if state.animation.ease != Animation.ease:
         edits.append(SetEasing(None, state.animation.ease))
     if not state.animation.loop:

@@ -13,6 +13,7 @@ from ...deform.deformer import StepResult
 from ...deform.methods import get_method
 from ...errors import SolverError
 from ...geometry.validation import Floats
+from ..document.crossings import crossings_in_pose
 from ..document.document import Document, EditState
 from ..document.drawing import Drawing
 from ..document.pin_angles import pin_angles
@@ -263,7 +264,7 @@ class Session:
         self._stepper.reset_full_turns()
         self._record("begin", label=label)
         if preview is not None and preview.takes_pose:
-            self.apply(SetPose(preview.shown.positions))
+            self.apply(SetPose(preview.shown.positions, preview.shown.crossings))
             self._taken_pose = self.state
 
     def rename(self, label: str) -> None:
@@ -343,7 +344,13 @@ class Session:
         present = self.state if previous is None else previous.present
         steps_left = self._stepper.steps_left if previous is None else previous.steps_left
         self._preview = Preview(present, steps_left, state, line, takes_pose)
-        self._set_state(state if positions is None else replace(state, positions=positions))
+        if positions is not None and positions is not state.positions:
+            drawing = state.drawing or self._opened_drawing
+            crossings = crossings_in_pose(
+                drawing.mesh, state.pins, state.positions, state.crossings, positions
+            )
+            state = replace(state, positions=positions, crossings=crossings)
+        self._set_state(state)
         # The stepper keeps the present state, because its caches decide on the last bits of later steps.
         self._stepper.stop()
 

@@ -1,6 +1,6 @@
 """Steps a document's pose towards its pin targets until it settles."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from concurrent.futures import Executor, Future, wait
 from dataclasses import dataclass, replace
 from threading import Lock
@@ -13,6 +13,8 @@ from ...deform.methods import get_method, make_deformer
 from ...errors import SolverError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats
+from ...overlap.overlaps import no_overlaps
+from ..document.crossings import following_overlaps, overlaps_of, remember_overlaps
 from ..document.document import EditState
 from ..document.pin_angles import FullTurnCounter, pin_angles
 
@@ -50,7 +52,33 @@ class PendingStep:
 
     start: EditState
     pin_offsets: Floats
+    step: "Step"
     result: Future[StepResult]
+
+
+class Step:
+    """One step from a state, to be called once, in any thread.
+
+    overlaps: after the call, those of the new pose; they depend on the state at the start and the new pose
+    only.
+    """
+
+    def __init__(
+        self,
+        mesh: TriMesh,
+        start: EditState,
+        deform: Callable[[], StepResult],
+        dragged_ids: Collection[int],
+    ) -> None:
+        self._mesh, self._start, self._deform, self._dragged_ids = mesh, start, deform, dragged_ids
+        self.overlaps = no_overlaps(mesh)
+
+    def __call__(self) -> StepResult:
+        """The result of the step. Raises SolverError."""
+        result, mesh, start = self._deform(), self._mesh, self._start
+        before = overlaps_of(mesh, start.pins, start.positions, start.crossings)
+        self.overlaps = following_overlaps(mesh, start.pins, before, result.positions, self._dragged_ids)
+        return result
 
 
 class Stepper:
@@ -164,7 +192,7 @@ class Stepper:
         assert self._pending is None, "a step is already pending"
         step = self._make_step(state)
         offsets = state.pin_offsets(self._mesh)
-        self._pending = PendingStep(state, offsets, executor.submit(step))
+        self._pending = PendingStep(state, offsets, step, executor.submit(step))
         return self._pending.result
 
     def is_ready(self, seconds: float = 0.0) -> bool:
@@ -189,7 +217,8 @@ class Stepper:
         if result.field is not None and moved_pins:
             self.last_motion = before, pending.pin_offsets
         aimed_meanwhile = state.pins is not pending.start.pins
-        state = replace(state, positions=result.positions)
+        state = replace(state, positions=result.positions, crossings=pending.step.overlaps.crossings)
+        remember_overlaps(self._mesh, state.positions, pending.step.overlaps)
         arrived = state.pin_error(self._mesh) < PIN_TOLERANCE and self.angle_error(state) < ANGLE_TOLERANCE
         moved = float(np.abs(result.positions - before).max())
         # Pins that something holds back approach in ever smaller steps, so only a tenth counts as settled.
@@ -198,19 +227,23 @@ class Stepper:
         self.last_step = result
         return state
 
-    def _make_step(self, state: EditState) -> Callable[[], StepResult]:
+    def _make_step(self, state: EditState) -> "Step":
         """One step from a state towards its targets and angles, to be called in any thread."""
         pin_positions, errors = state.pin_positions(self._mesh), self.angle_errors(state)
         share = 1.0 / max(1.0, self._least_steps(state))
         targets = state.targets if share == 1.0 else pin_positions + share * (state.targets - pin_positions)
         angles = (state.angles - (1.0 - share) * errors,) if np.isfinite(errors).any() else ()
 
+        is_dragged = np.linalg.norm(state.pin_offsets(self._mesh), axis=1) > PIN_TOLERANCE
+        is_dragged |= np.nan_to_num(np.abs(errors)) > ANGLE_TOLERANCE
+        dragged_ids = {pin.id for pin, dragged in zip(state.pins, is_dragged, strict=True) if dragged}
+
         def step() -> StepResult:
             with self._lock:
                 result: StepResult = self._deformer.step(state.positions, targets, *angles)
             return result
 
-        return step
+        return Step(self._mesh, state, step, dragged_ids)
 
     def vector_fields(self) -> tuple[Floats, Floats] | None:
         """U_opt and U°, (n, 2) each, of the last motion of the current pins; None if there was none.

@@ -10,10 +10,10 @@ from ...editor.document.drawing import Drawing
 from ...editor.document.pin import Pin
 from ...editor.session.recording import drawing_header
 from ...errors import InputError, file_errors
-from ...geometry.validation import Floats
+from ...geometry.validation import Floats, Ints
 from ..atomic import read_file, write_atomic
 from .json_records import file_version, pairs, parse_record, program_name, refuse_newer, require
-from .state_records import check_state, read_pins
+from .state_records import check_state, read_crossings, read_pins, write_crossings
 
 POSE_SUFFIX = ".pose.json"
 POSE_FORMAT = "akap-pose"
@@ -23,10 +23,14 @@ MAX_POSE_BYTES = 2**24  # enough for 400,000 vertices
 
 @dataclass(frozen=True, eq=False)
 class SavedPose:
-    """Pins and pose of a file. positions: (n, 2) float64, of the mesh's vertices, in pixels."""
+    """Pins and pose of a file.
+
+    positions: of the mesh's vertices, (n, 2) float64 pixels; crossings: see `EditState`.
+    """
 
     pins: tuple[Pin, ...]
     positions: Floats
+    crossings: Ints
 
 
 def save_pose(document: Document, path: str | Path) -> None:
@@ -61,6 +65,7 @@ def encode_pose(document: Document) -> bytes:
         "drawing": drawing_header(drawing),
         "pins": [pin.to_json() for pin in state.pins],
         "positions": state.positions.tolist(),
+        **write_crossings(state.crossings),
     }
     data = json.dumps(record, allow_nan=False, separators=(",", ":")).encode() + b"\n"
     _check_size(data)
@@ -81,9 +86,10 @@ def decode_pose(data: bytes, drawing: Drawing) -> SavedPose:
         )
     vertices, faces = len(drawing.mesh.vertices), len(drawing.mesh.faces)
     positions = pairs(require(record, "positions", list), "positions")
-    state = EditState(read_pins(require(record, "pins", list)), positions)
+    pins, crossings = read_pins(require(record, "pins", list)), read_crossings(record)
+    state = EditState(pins, positions, crossings=crossings)
     check_state(state, vertices, faces)
-    return SavedPose(state.pins, state.positions)
+    return SavedPose(state.pins, state.positions, state.crossings)
 
 
 def _check_size(data: bytes) -> None:

@@ -9,11 +9,12 @@ from ...errors import InputError, error_context
 from ...geometry.validation import Floats
 from .archive import Archive, Entry
 from .json_records import Json, numbers, optional, parse_record, require
+from .state_records import read_crossings, write_crossings
 
 POSES_INDEX, KEYFRAMES_INDEX = "poses.json", "animation.json"
 MAX_POSES, MAX_KEYFRAMES = 1000, 10_000
 MAX_POINTS = 2**24  # of all named poses, and of all keyframes: 256 MB
-_MAX_POSES_INDEX_BYTES, _MAX_KEYFRAMES_INDEX_BYTES = 2**20, 2**21
+_MAX_INDEX_BYTES = 2**24
 
 
 # -- named poses ---------------------------------------------------------------------------------------------
@@ -27,7 +28,10 @@ def named_pose_entries(poses: Sequence[NamedPose]) -> list[Entry]:
     if not poses:
         return []
     _check_points(sum(len(pose.positions) for pose in poses))
-    index = json.dumps({"poses": [pose.name for pose in poses]}).encode()
+    record: Json = {"poses": [pose.name for pose in poses]}
+    if any(len(pose.crossings) for pose in poses):
+        record["crossings"] = [pose.crossings.tolist() for pose in poses]
+    index = json.dumps(record).encode()
     return [
         (POSES_INDEX, index, True),
         *(_pose_entry(f"poses/{number}", pose.positions) for number, pose in enumerate(poses)),
@@ -41,17 +45,22 @@ def read_named_poses(archive: Archive, vertices: int) -> tuple[NamedPose, ...]:
     """
     if POSES_INDEX not in archive:
         return ()
-    text = archive.read(POSES_INDEX, _MAX_POSES_INDEX_BYTES)
+    text = archive.read(POSES_INDEX, _MAX_INDEX_BYTES)
     with error_context(POSES_INDEX):
-        names = require(parse_record(text), "poses", list)
+        record = parse_record(text)
+        names = require(record, "poses", list)
         if len(names) > MAX_POSES:
             raise InputError(f"expected at most {MAX_POSES} poses, got {len(names)}")
         if not all(type(name) is str for name in names) or len(set(names)) < len(names):
             raise InputError("expected names of poses, each once, got something else")
         _check_points(len(names) * vertices)
+        rows = optional(record, "crossings", list, [[]] * len(names))
+        if len(rows) != len(names):
+            raise InputError(f"expected crossings of {len(names)} poses, got {len(rows)}")
+        crossings = [read_crossings({"crossings": each}) for each in rows]
     arrays = [_read_pose(archive, f"poses/{number}", vertices) for number in range(len(names))]
     with error_context("poses"):
-        return tuple(map(NamedPose, names, arrays))
+        return tuple(map(NamedPose, names, arrays, crossings))
 
 
 def _check_points(count: int) -> None:
@@ -84,6 +93,7 @@ def keyframe_entries(animation: Animation) -> list[Entry]:
             "time": key.time,
             "pose": poses[id(key.positions)][0],
             **({} if key.ease is None else {"ease": key.ease}),
+            **write_crossings(key.crossings),
         }
         for key in animation.keyframes
     ]
@@ -102,7 +112,7 @@ def read_keyframes(archive: Archive, vertices: int) -> Animation:
     """
     if KEYFRAMES_INDEX not in archive:
         return NO_ANIMATION
-    text = archive.read(KEYFRAMES_INDEX, _MAX_KEYFRAMES_INDEX_BYTES)
+    text = archive.read(KEYFRAMES_INDEX, _MAX_INDEX_BYTES)
     with error_context(KEYFRAMES_INDEX):
         record = parse_record(text)
         keys, count = require(record, "keyframes", list), require(record, "poses", int)
@@ -124,7 +134,8 @@ def _read_keyframe(record: Json, poses: list[Floats]) -> Keyframe:
     time, number = numbers([record.get("time")], "time")[0], require(record, "pose", int)
     if not 0 <= number < len(poses):
         raise InputError(f"expected a pose below {len(poses)}, got {number}")
-    return Keyframe(float(time), poses[number], require(record, "ease", str) if "ease" in record else None)
+    ease = require(record, "ease", str) if "ease" in record else None
+    return Keyframe(float(time), poses[number], ease, read_crossings(record))
 
 
 # -- arrays --------------------------------------------------------------------------------------------------

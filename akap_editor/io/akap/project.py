@@ -29,7 +29,14 @@ from .json_records import (
     require,
 )
 from .pose_entries import keyframe_entries, named_pose_entries, read_keyframes, read_named_poses
-from .state_records import check_state, read_pins, read_settings
+from .state_records import (
+    check_crossings,
+    check_state,
+    read_crossings,
+    read_pins,
+    read_settings,
+    write_crossings,
+)
 
 PROJECT_SUFFIX = ".akap"
 MIMETYPE = b"application/x-akap"
@@ -110,7 +117,11 @@ def _check(document: Document) -> None:
     mesh = document.drawing.mesh
     _check_sizes(*document.drawing.size, len(mesh.vertices), len(mesh.faces))
     _check_vertices(mesh.vertices)
-    check_state(document.state, len(mesh.vertices), len(mesh.faces))
+    state = document.state
+    check_state(state, len(mesh.vertices), len(mesh.faces))
+    of_poses = [pose.crossings for pose in state.poses]
+    for crossings in [*of_poses, *(keyframe.crossings for keyframe in state.animation.keyframes)]:
+        check_crossings(crossings, len(mesh.faces))
 
 
 def _check_sizes(width: int, height: int, vertices: int, faces: int) -> None:
@@ -175,6 +186,7 @@ def _describe(document: Document) -> Json:
         },
         "pins": [pin.to_json() for pin in document.state.pins],
         "settings": document.state.settings.to_json(),
+        **write_crossings(document.state.crossings),
     }
 
 
@@ -224,9 +236,10 @@ def _decode(archive: Archive) -> Document:
     with error_context("document.json"):
         pins = read_pins(require(record, "pins", list))
         settings = read_settings(require(record, "settings", dict))
+        crossings = read_crossings(record)
     stiffness = archive.read_array(STIFFNESS_ENTRY, "<f8", m, 1)[:, 0] if STIFFNESS_ENTRY in archive else None
     poses, animation = read_named_poses(archive, n), read_keyframes(archive, n)
-    state = EditState(pins, positions, settings, None, poses, stiffness, animation)
+    state = EditState(pins, positions, settings, None, poses, stiffness, animation, crossings)
     vertices = archive.read_array("mesh/vertices", "<f8", n, 2)
     _check_vertices(vertices)
     trimesh = TriMesh(vertices, archive.read_array("mesh/faces", "<i4", m, 3), tied)

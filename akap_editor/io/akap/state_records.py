@@ -6,18 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from ...editor.document.depth import MAX_DEPTH
+from ...editor.document.crossings import MAX_DEPTH, as_crossings
 from ...editor.document.document import EditState
 from ...editor.document.pin import Pin
 from ...editor.document.pin_angles import MAX_PIN_ANGLE
 from ...editor.document.settings import Settings
 from ...editor.document.stiffness import as_stiffness
 from ...errors import InputError
-from ...geometry.validation import as_points
+from ...geometry.validation import Ints, as_points
 from .json_records import MAX_INTEGER, Json, numbers, optional, require
 
 WEIGHT_TOLERANCE = 1e-9
 MAX_PINS = 10_000
+MAX_CROSSINGS = 100_000
 
 
 def read_pins(records: list[Any]) -> tuple[Pin, ...]:
@@ -40,6 +41,24 @@ def _read_pin(record: Any) -> Pin:
     return Pin(require(record, "id", int), require(record, "face", int), weights, target, depth, angle)
 
 
+def read_crossings(record: Json) -> Ints:
+    """The crossings (s, 2) of a record, none if absent. Raises InputError on values of other kinds."""
+    rows = optional(record, "crossings", list, [])
+    if len(rows) > MAX_CROSSINGS:
+        raise InputError(f"expected at most {MAX_CROSSINGS} crossings, got {len(rows)}")
+    for row in rows:
+        if type(row) is not list or len(row) != 2 or any(type(face) is not int for face in row):
+            raise InputError(f"crossings: expected pairs of faces, got {reprlib.repr(row)}")
+        if not 0 <= min(row) <= max(row) <= np.iinfo(np.int32).max:
+            raise InputError(f"crossings: expected indices of faces, got {row}")
+    return as_crossings(rows)
+
+
+def write_crossings(crossings: Ints) -> Json:
+    """The entry of a record for crossings (s, 2); empty if there are none."""
+    return {"crossings": crossings.tolist()} if len(crossings) else {}
+
+
 def read_settings(record: Json) -> Settings:
     """The settings that `Settings.to_json` wrote, parameters in the file's order.
 
@@ -52,6 +71,7 @@ def check_state(state: EditState, vertices: int, faces: int) -> None:
     """Raise InputError if a state does not fit a mesh with so many vertices and faces, or is not valid."""
     as_points(state.positions, "positions", vertices)
     _check_pin_count(len(state.pins))
+    check_crossings(state.crossings, faces)
     if state.stiffness is not None:
         as_stiffness(state.stiffness, faces)
     for pin in state.pins:
@@ -60,6 +80,13 @@ def check_state(state: EditState, vertices: int, faces: int) -> None:
         _check_parameter(name, value)
     _check_unique("pin", [pin.id for pin in state.pins])
     _check_unique("parameter", [name for name, _ in state.settings.parameters])
+
+
+def check_crossings(crossings: Ints, faces: int) -> None:
+    """Check that crossings (s, 2) are of a mesh with ``faces`` faces, and not too many. Raises InputError."""
+    as_crossings(crossings, faces)
+    if len(crossings) > MAX_CROSSINGS:
+        raise InputError(f"expected at most {MAX_CROSSINGS} crossings, got {len(crossings)}")
 
 
 def _check_unique(kind: str, names: list[Any]) -> None:

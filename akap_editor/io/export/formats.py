@@ -9,6 +9,7 @@ from ...editor.document.drawing import Drawing
 from ...editor.framing import Color, crop_box
 from ...errors import FileError, InputError, file_errors
 from ...geometry.validation import as_instance
+from ...overlap.overlaps import NO_CROSSINGS
 from ..atomic import as_path, write_atomic
 from ..images import encode_png, join_with_or
 from ..painter import Painter
@@ -140,7 +141,7 @@ def export(
     path = as_path(path)
     chosen = format_of(path)
     if options.rest:
-        state = replace(document.state, positions=document.drawing.mesh.vertices)
+        state = replace(document.state, positions=document.drawing.mesh.vertices, crossings=NO_CROSSINGS)
         document = document.with_state(state)
     with file_errors("export", path):
         files = chosen.encode(document, path.name[: -len(chosen.suffix)], options, painter)

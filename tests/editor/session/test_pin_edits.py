@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from akap_editor.editor.document.depth import MAX_DEPTH
+from akap_editor.editor.document.crossings import MAX_DEPTH
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.session.edits import SetAngles, SetTargets
 from akap_editor.editor.session.pin_edits import (

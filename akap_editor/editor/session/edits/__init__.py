@@ -1,5 +1,6 @@
 """Edits as values, and the table of them: a new undoable feature is one class and one row."""
 
+from .crossings import OrderLimb, SetCrossings
 from .edit import Edit, Effect, ReplayTarget
 from .keyframes import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
 from .method import PaintStiffness, SetSettings, SetStiffness
@@ -13,6 +14,7 @@ EDITS: dict[str, type[Edit]] = {
         *(SetPins, SetTargets, SetAngles),
         *(SetSettings, SetStiffness, PaintStiffness),
         *(SetPose, ResetPose, SetRestPose, Remesh),
+        *(OrderLimb, SetCrossings),
         *(AddPose, DeletePose, RenamePose, ReorderPoses),
         *(SetKeyframe, DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop),
     )
@@ -26,6 +28,7 @@ __all__ = [
     "Edit",
     "Effect",
     "MoveKeyframes",
+    "OrderLimb",
     "PaintStiffness",
     "Remesh",
     "RenamePose",
@@ -33,6 +36,7 @@ __all__ = [
     "ReplayTarget",
     "ResetPose",
     "SetAngles",
+    "SetCrossings",
     "SetEasing",
     "SetKeyframe",
     "SetLoop",

@@ -9,7 +9,8 @@ import numpy as np
 
 from ....errors import InputError
 from ....geometry.mesh import TriMesh
-from ....geometry.validation import Floats, as_points
+from ....geometry.validation import Floats, Ints, as_points
+from ...document.crossings import as_crossings, crossings_in_pose
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.named_poses import as_pose
@@ -96,6 +97,28 @@ def positions_from_json(event: Json, target: ReplayTarget, drawing: Drawing) -> 
     return target.pose(event["positions"], len(drawing.mesh.vertices))
 
 
-def pose_or_current(positions: Any, state: EditState) -> Floats:
-    """The optional pose (n, 2) of an edit, by default the current one. Raises InputError on a bad one."""
-    return state.positions if positions is None else as_pose(positions, "positions", len(state.positions))
+def crossings_to_json(crossings: Any) -> Json:
+    """The optional crossings (s, 2) of an edit, as a value of its event; absent if there are none."""
+    has_any = crossings is not None and len(crossings)
+    return {"crossings": np.asarray(crossings, dtype=np.int32).tolist()} if has_any else {}
+
+
+def crossings_from_json(event: Json) -> Ints | None:
+    """The optional crossings (s, 2) of an event, None if absent. Raises InputError."""
+    return as_crossings(event["crossings"]) if "crossings" in event else None
+
+
+def pose_and_crossings(
+    positions: Any, crossings: Any, state: EditState, drawing: Drawing
+) -> tuple[Floats, Ints]:
+    """The optional pose (n, 2) of an edit with its crossings (s, 2), by default the current ones.
+
+    Of a pose without crossings they follow from the current ones. Raises InputError on bad values.
+    """
+    if positions is None:
+        return state.positions, state.crossings
+    mesh = drawing.mesh
+    pose = as_pose(positions, "positions", len(state.positions))
+    if crossings is None:
+        crossings = crossings_in_pose(mesh, state.pins, state.positions, state.crossings, pose)
+    return pose, as_crossings(crossings, len(mesh.faces))

@@ -11,17 +11,26 @@ from ....errors import InputError
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.keyframes import Animation, Keyframe, as_keyframe_time
-from .edit import Edit, Json, ReplayTarget, pose_or_current, positions_from_json, positions_to_json
+from .edit import (
+    Edit,
+    Json,
+    ReplayTarget,
+    crossings_from_json,
+    crossings_to_json,
+    pose_and_crossings,
+    positions_from_json,
+    positions_to_json,
+)
 
 
 class KeyframeEdit(Edit):
     """An edit that changes the keyframes only."""
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        return replace(state, animation=self.animate(state.animation, state))
+        return replace(state, animation=self.animate(state.animation, state, drawing))
 
     @abstractmethod
-    def animate(self, animation: Animation, state: EditState) -> Animation:
+    def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
         """The animation after the edit. Raises InputError."""
 
 
@@ -30,7 +39,7 @@ class SetKeyframe(KeyframeEdit):
     """Make a keyframe of a pose (n, 2), by default the current one, at a time in seconds.
 
     Replaces a keyframe at this time. ease: a name of `easing.KEYFRAME_EASINGS`; None keeps the easing of a
-    replaced keyframe.
+    replaced keyframe. crossings: which part passes in front in ``positions``, see `EditState`.
     """
 
     name = "key"
@@ -39,17 +48,21 @@ class SetKeyframe(KeyframeEdit):
     time: float
     positions: ArrayLike | None = None
     ease: str | None = None
+    crossings: ArrayLike | None = None
 
-    def animate(self, animation: Animation, state: EditState) -> Animation:
-        return animation.with_keyframe(Keyframe(self.time, pose_or_current(self.positions, state), self.ease))
+    def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
+        positions, crossings = pose_and_crossings(self.positions, self.crossings, state, drawing)
+        return animation.with_keyframe(Keyframe(self.time, positions, self.ease, crossings))
 
     def to_json(self, drawing: Drawing) -> Json:
         ease = {} if self.ease is None else {"ease": self.ease}
-        return {"time": self.time, **ease, **positions_to_json(self.positions)}
+        pose = {**positions_to_json(self.positions), **crossings_to_json(self.crossings)}
+        return {"time": self.time, **ease, **pose}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
-        return cls(event["time"], positions_from_json(event, target, drawing), event.get("ease"))
+        positions = positions_from_json(event, target, drawing)
+        return cls(event["time"], positions, event.get("ease"), crossings_from_json(event))
 
 
 @dataclass(frozen=True)
@@ -61,7 +74,7 @@ class DeleteKeyframes(KeyframeEdit):
 
     times: Sequence[float]
 
-    def animate(self, animation: Animation, state: EditState) -> Animation:
+    def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
         return animation.without_keyframes(map(as_keyframe_time, self.times))
 
     def to_json(self, drawing: Drawing) -> Json:
@@ -81,7 +94,7 @@ class MoveKeyframes(KeyframeEdit):
     moves: Mapping[float, float]
     copy: bool = False
 
-    def animate(self, animation: Animation, state: EditState) -> Animation:
+    def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
         moves = {as_keyframe_time(old): as_keyframe_time(new) for old, new in self.moves.items()}
         return animation.with_moved_keyframes(moves, self.copy)
 
@@ -106,7 +119,7 @@ class SetEasing(KeyframeEdit):
     times: Sequence[float] | None
     ease: str | None
 
-    def animate(self, animation: Animation, state: EditState) -> Animation:
+    def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
         times = None if self.times is None else [as_keyframe_time(time) for time in self.times]
         return animation.with_easing(times, self.ease)
 
@@ -123,7 +136,7 @@ class SetLoop(KeyframeEdit):
 
     loop: bool
 
-    def animate(self, animation: Animation, state: EditState) -> Animation:
+    def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
         if type(self.loop) is not bool:
             raise InputError(f"loop: expected true or false, got {self.loop!r}")
         return replace(animation, loop=self.loop)

@@ -10,29 +10,44 @@ from ....errors import InputError
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.named_poses import NamedPose, with_pose
-from .edit import Edit, Json, ReplayTarget, pose_or_current, positions_from_json, positions_to_json
+from .edit import (
+    Edit,
+    Json,
+    ReplayTarget,
+    crossings_from_json,
+    crossings_to_json,
+    pose_and_crossings,
+    positions_from_json,
+    positions_to_json,
+)
 
 
 @dataclass(frozen=True, eq=False)
 class AddPose(Edit):
-    """Add a pose (n, 2), by default the current one, with a name; replaces the pose of the same name."""
+    """Add a pose (n, 2), by default the current one, with a name; replaces the pose of the same name.
+
+    crossings: which part passes in front in ``positions``, see `EditState`.
+    """
 
     name = "keep"
     fields = ("name",)
 
     pose_name: str
     positions: ArrayLike | None = None
+    crossings: ArrayLike | None = None
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        pose = NamedPose(self.pose_name, pose_or_current(self.positions, state))
-        return replace(state, poses=with_pose(state.poses, pose))
+        pose = pose_and_crossings(self.positions, self.crossings, state, drawing)
+        return replace(state, poses=with_pose(state.poses, NamedPose(self.pose_name, *pose)))
 
     def to_json(self, drawing: Drawing) -> Json:
-        return {"name": self.pose_name, **positions_to_json(self.positions)}
+        pose = {**positions_to_json(self.positions), **crossings_to_json(self.crossings)}
+        return {"name": self.pose_name, **pose}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
-        return cls(str(event["name"]), positions_from_json(event, target, drawing))
+        positions = positions_from_json(event, target, drawing)
+        return cls(str(event["name"]), positions, crossings_from_json(event))
 
 
 @dataclass(frozen=True)

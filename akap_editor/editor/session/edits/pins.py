@@ -9,6 +9,7 @@ import numpy as np
 from ....errors import InputError
 from ....geometry.mesh import MeshPoints, TriMesh
 from ....geometry.validation import as_number, as_points
+from ...document.crossings import crossings_by_depth
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.pin import Pin
@@ -31,7 +32,9 @@ class SetPins(Edit):
     pins: tuple[Pin, ...]
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        return replace(state, pins=self.pins)
+        mesh, pins = drawing.mesh, state.pins
+        crossings = crossings_by_depth(mesh, pins, self.pins, state.positions, state.crossings)
+        return replace(state, pins=self.pins, crossings=crossings)
 
     def fixed_at_pose(self, state: EditState, drawing: Drawing) -> "SetPins":
         """This edit with the current positions of existing pins as their targets, to stop a motion."""

@@ -6,35 +6,53 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ....geometry.validation import Floats
+from ...document.crossings import as_crossings, crossings_in_pose
 from ...document.document import EditState
 from ...document.drawing import Drawing, Meshing
 from ...document.named_poses import as_pose
 from ...document.pin_angles import pins_fixed_at_pose
 from ...document.remesh import remesh_drawing, transfer_state
 from ...document.rest_pose import with_pose_as_rest
-from .edit import Edit, Effect, Json, ReplayTarget
+from .edit import Edit, Effect, Json, ReplayTarget, crossings_from_json, crossings_to_json
 
 
 @dataclass(frozen=True, eq=False)
 class SetPose(Edit):
-    """Set the pose (n, 2), pixels; the pins move with the drawing and stay there."""
+    """Set the pose (n, 2), pixels; the pins move with the drawing and stay there.
+
+    crossings: which part passes in front, see `EditState`; by default the one that does now.
+    """
 
     name = "pose"
     fields = ("positions",)
     effect = Effect.POSE
 
     positions: ArrayLike
+    crossings: ArrayLike | None = None
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         pose = as_pose(self.positions, "positions", len(drawing.mesh.vertices))
-        return replace(state, pins=pins_fixed_at_pose(drawing.mesh, state.pins, pose), positions=pose)
+        return _in_pose(state, drawing, pose, self.crossings)
 
     def to_json(self, drawing: Drawing) -> Json:
-        return {"positions": np.asarray(self.positions, dtype=np.float64).tolist()}
+        positions = np.asarray(self.positions, dtype=np.float64).tolist()
+        return {"positions": positions, **crossings_to_json(self.crossings)}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
-        return cls(target.pose(event["positions"], len(drawing.mesh.vertices)))
+        positions = target.pose(event["positions"], len(drawing.mesh.vertices))
+        return cls(positions, crossings_from_json(event))
+
+
+def _in_pose(
+    state: EditState, drawing: Drawing, pose: Floats, crossings: ArrayLike | None = None
+) -> EditState:
+    """A state in another pose (n, 2), with the given crossings or those that follow from the present ones."""
+    mesh, pins = drawing.mesh, pins_fixed_at_pose(drawing.mesh, state.pins, pose)
+    if crossings is None:
+        crossings = crossings_in_pose(mesh, state.pins, state.positions, state.crossings, pose)
+    return replace(state, pins=pins, positions=pose, crossings=as_crossings(crossings, len(mesh.faces)))
 
 
 @dataclass(frozen=True)
@@ -48,7 +66,7 @@ class ResetPose(Edit):
         rest = drawing.mesh.vertices
         if np.array_equal(state.positions, rest):
             return state
-        return replace(state, pins=pins_fixed_at_pose(drawing.mesh, state.pins, rest), positions=rest)
+        return _in_pose(state, drawing, rest)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor import gestures
-from akap_editor.editor.document.depth import MAX_DEPTH, depth_at, face_order
+from akap_editor.editor.document.crossings import MAX_DEPTH, depth_at, depth_order
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.pin import Pin
@@ -44,14 +44,14 @@ def rank(order):
 @pytest.mark.parametrize("depths", [(), (0,), (0, 0), (3, 3)])
 def test_without_differences_the_order_is_that_of_the_mesh(drawing, depths):
     places = [(*at, depth) for at, depth in zip((HEAD, END), depths, strict=False)]
-    assert face_order(drawing.mesh, pins_at(drawing.mesh, *places)) is None
+    assert depth_order(drawing.mesh, pins_at(drawing.mesh, *places)) is None
 
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_faces_near_the_higher_pin_come_last(drawing, sign):
     mesh = drawing.mesh
     pins = pins_at(mesh, (*HEAD, 0), (*END, sign))
-    order = face_order(mesh, pins)
+    order = depth_order(mesh, pins)
     assert sorted(order) == list(range(len(mesh.faces)))
     at_head, at_end = (rank(order)[pin.face] for pin in pins)
     assert (at_end > at_head) == (sign > 0)
@@ -62,7 +62,7 @@ def test_faces_near_the_higher_pin_come_last(drawing, sign):
 
 def test_faces_of_one_level_keep_the_order_of_the_mesh(drawing):
     mesh = drawing.mesh
-    order = face_order(mesh, pins_at(mesh, (*HEAD, 0), (*END, 1)))
+    order = depth_order(mesh, pins_at(mesh, (*HEAD, 0), (*END, 1)))
     runs = np.split(order, np.flatnonzero(np.diff(order) < 0) + 1)
     assert len(runs) <= 5, "levels of a quarter from 0 to 1"
 
@@ -72,8 +72,8 @@ def test_the_order_depends_on_differences_only_and_not_on_targets(drawing):
     first = pins_at(mesh, (*HEAD, 0), (*NECK, 2), (*END, -1))
     moved = tuple(Pin(pin.id, pin.face, pin.weights, pin.target + 9, pin.depth) for pin in first)
     shifted = tuple(Pin(pin.id, pin.face, pin.weights, pin.target, pin.depth + 5) for pin in first)
-    assert face_order(mesh, moved) is face_order(mesh, first)
-    np.testing.assert_array_equal(face_order(mesh, shifted), face_order(mesh, first))
+    assert depth_order(mesh, moved) is depth_order(mesh, first)
+    np.testing.assert_array_equal(depth_order(mesh, shifted), depth_order(mesh, first))
 
 
 def test_depth_is_exact_at_pins_and_blended_between_them(drawing):
@@ -92,7 +92,7 @@ def test_parts_without_a_pin_have_the_depth_of_the_nearest_one(image):
     mesh = make_drawing(two_parts, vertices=200).mesh
     assert mesh.component.max() == 1
     pins = pins_at(mesh, (*HEAD, 0), (*END, 2))
-    order = rank(face_order(mesh, pins))
+    order = rank(depth_order(mesh, pins))
     second = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] > 130
     assert order[second].min() > order[pins[0].face]
 
@@ -144,7 +144,7 @@ def test_a_click_hits_the_part_in_front(drawing):
     at_end = mesh.locate([END])
     point = mesh.evaluate(at_end, pose)[0]
     for depth in (5, -5):
-        order = face_order(mesh, pins_at(mesh, (*HEAD, 0), (*END, depth)))
+        order = depth_order(mesh, pins_at(mesh, (*HEAD, 0), (*END, depth)))
         hit = mesh.find(point, pose, order)
         x = mesh.vertices[faces[hit.faces[0]]].mean(axis=0)[0]
         assert (x > 62) == (depth > 0), (areas.min(), x)
