@@ -141,6 +141,8 @@ class Editor:
                 return
             self.pointer = self.last_pointer = event.position
             if isinstance(event, ScrollEvent):
+                if self.tool.scroll(event):
+                    return
                 self.camera = self.camera.zoomed(ZOOM_STEP**event.amount, event.position)
             else:
                 self._handle_pointer(event)

@@ -13,6 +13,7 @@ from .session.edits import (
     AddPose,
     DeletePose,
     Edit,
+    OrderLimb,
     ResetPose,
     SetAngles,
     SetPins,
@@ -101,8 +102,15 @@ def shift_depths(editor: EditContext, by: int) -> None:
     """Add to the depths of the selected pins. Raises InputError on a depth out of range."""
     if editor.session is not None and editor.selection:
         depths = {pin.id: pin.depth + by for pin in editor.session.state.pins if pin.id in editor.selection}
-        label = "Bring Forward" if by > 0 else "Send Back"
+        label = "Raise Depth" if by > 0 else "Lower Depth"
         editor.edit(label, lambda session: pin_edits.set_depths(session, depths))
+
+
+def order_limb(editor: EditContext, to_front: bool) -> None:
+    """Bring the limb of the selected pins in front of all that it overlaps, or send it behind."""
+    if editor.selection:
+        label = "Bring Limb to Front" if to_front else "Send Limb to Back"
+        editor.apply(label, OrderLimb(sorted(editor.selection), to_front))
 
 
 def toggle_held_angles(editor: EditContext) -> None:

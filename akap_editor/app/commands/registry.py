@@ -187,17 +187,31 @@ REMOVE = Command(
     icons.ICON_FA_TRASH_CAN,
     lambda state: bool(state.editor.selection) or keying.has_chosen(state),
 )
-BRING_FORWARD = Command(
-    "Bring Forward",
-    lambda state: gestures.shift_depths(state.editor, 1),
+LIMB_TO_FRONT = Command(
+    "Bring Limb to Front",
+    lambda state: gestures.order_limb(state.editor, True),
     (CTRL | Key.right_bracket,),
     "",
     lambda state: bool(state.editor.selection),
 )
-SEND_BACK = Command(
-    "Send Back",
-    lambda state: gestures.shift_depths(state.editor, -1),
+LIMB_TO_BACK = Command(
+    "Send Limb to Back",
+    lambda state: gestures.order_limb(state.editor, False),
     (CTRL | Key.left_bracket,),
+    "",
+    lambda state: bool(state.editor.selection),
+)
+RAISE_DEPTH = Command(
+    "Raise Depth",
+    lambda state: gestures.shift_depths(state.editor, 1),
+    (CTRL | SHIFT | Key.right_bracket,),
+    "",
+    lambda state: bool(state.editor.selection),
+)
+LOWER_DEPTH = Command(
+    "Lower Depth",
+    lambda state: gestures.shift_depths(state.editor, -1),
+    (CTRL | SHIFT | Key.left_bracket,),
     "",
     lambda state: bool(state.editor.selection),
 )
@@ -365,8 +379,10 @@ MENUS: tuple[Menu, ...] = (
             PIN_VALUES,
             MENU_HERE,
             None,
-            BRING_FORWARD,
-            SEND_BACK,
+            LIMB_TO_FRONT,
+            LIMB_TO_BACK,
+            RAISE_DEPTH,
+            LOWER_DEPTH,
             HOLD_ANGLE,
             None,
             RESET_POSE,

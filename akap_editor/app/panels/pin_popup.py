@@ -17,8 +17,10 @@ from ..pending_values import T
 _OFFSET = 14.0  # points from a pin's center to the popup's corner, so that the pin is still seen
 _LABELS = 3.6  # times the font's size: width of the labels
 _MENU: tuple[Command | None, ...] = (
-    commands.BRING_FORWARD,
-    commands.SEND_BACK,
+    commands.LIMB_TO_FRONT,
+    commands.LIMB_TO_BACK,
+    commands.RAISE_DEPTH,
+    commands.LOWER_DEPTH,
     commands.HOLD_ANGLE,
     None,
     commands.REMOVE,

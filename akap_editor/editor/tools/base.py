@@ -8,7 +8,7 @@ import numpy as np
 
 from ...geometry.validation import Floats
 from ..camera import Camera, Point
-from ..events import KeyEvent, PointerEvent
+from ..events import KeyEvent, PointerEvent, ScrollEvent
 from ..gestures import EditContext
 from ..pin_trails import Trails
 from ..session.session import Session
@@ -170,6 +170,10 @@ class Tool:
 
     def key(self, event: KeyEvent) -> bool:
         """Handle a key that went down; return whether this state uses it."""
+        return False
+
+    def scroll(self, event: ScrollEvent) -> bool:
+        """Handle a turn of the wheel; return whether this state uses it. Else it zooms."""
         return False
 
     def resize(self) -> None:

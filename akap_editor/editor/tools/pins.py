@@ -3,9 +3,9 @@
 import numpy as np
 
 from ..camera import Point
-from ..events import PointerEvent
+from ..events import PointerEvent, ScrollEvent
 from ..gestures import remove_pins
-from ..session.edits import SetTargets
+from ..session.edits import OrderLimb, SetTargets
 from ..session.pin_edits import add_pin, hold_stopped_pins
 from .base import Cursor, IdleTool, Markers, PinGesture, Pointing, Tool, ToolContext
 from .rotate import PointingRotationRing, pin_with_ring, ring_at, rotation_ring
@@ -180,7 +180,14 @@ class DraggingPin(PinGesture):
         """What a release does; or that nothing bends because no pin stays where it is."""
         if len(self._positions_before) == len(self.session.state.pins):
             return "No other pin holds the drawing, so all of it moves; Esc to cancel"
+        if len(self.session.state.crossings):
+            return "Release to keep this pose, wheel to bring it to the front or back, Esc to cancel"
         return "Release to keep this pose, Esc to cancel"
+
+    def scroll(self, event: ScrollEvent) -> bool:
+        """Bring what is dragged to the front, or send it to the back."""
+        self.session.apply(OrderLimb(sorted(self._positions_before), event.amount > 0))
+        return True
 
     @property
     def markers(self) -> Markers:

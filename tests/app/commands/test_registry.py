@@ -17,9 +17,10 @@ from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.panels import side_panel as panels
 from akap_editor.deform.methods import get_method, method_names, nearest_preset, presets
+from akap_editor.editor import gestures
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.events import PinRequest
-from akap_editor.editor.session.edits import PaintStiffness
+from akap_editor.editor.session.edits import PaintStiffness, SetTargets
 from akap_editor.editor.tools.stiffness_brush import Brush
 from akap_editor.errors import SolverError
 
@@ -51,6 +52,24 @@ def undone(ui):
 
 def one_selected(ui):
     ui.editor.select({2})
+
+
+def folded(ui):
+    """Pin 3 is dragged over the head, and in front of it."""
+    ui.session.begin("Drag Pin")
+    ui.session.apply(SetTargets({3: (22.0, 46.0)}))
+    ui.session.settle()
+    ui.session.commit()
+    ui.editor.select({3})
+
+
+def folded_behind(ui):
+    folded(ui)
+    gestures.order_limb(ui.editor, False)
+
+
+def last_entry(label):
+    return lambda ui: ui.session.history.undo_label == label
 
 
 def with_tool(name):
@@ -207,8 +226,10 @@ CASES = {
     "Undo": (bent, is_rest),
     "Redo": (undone, lambda ui: ui.session.is_posed),
     "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
-    "Bring Forward": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, 1, 0]),
-    "Send Back": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, -1, 0]),
+    "Raise Depth": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, 1, 0]),
+    "Lower Depth": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, -1, 0]),
+    "Bring Limb to Front": (folded_behind, last_entry("Bring Limb to Front")),
+    "Send Limb to Back": (folded, last_entry("Send Limb to Back")),
     "Remove Last Pin": (nothing, lambda ui: [pin.id for pin in ui.pins] == [1, 2]),
     "Select All Pins": (nothing, lambda ui: ui.editor.selection == {1, 2, 3}),
     "Deselect": (one_selected, lambda ui: not ui.editor.selection),

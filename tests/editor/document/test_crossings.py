@@ -109,7 +109,7 @@ def test_forward_and_back_are_one_entry_each_and_move_nothing(pinned):
     gestures.set_depth(pinned.editor, 3, -5)
     assert [pin.depth for pin in pinned.state.pins] == [0, 1, -5]
     assert pinned.state.positions is pose
-    assert pinned.session.history.labels[depth:] == ["Bring Forward", "Set Depth"]
+    assert pinned.session.history.labels[depth:] == ["Raise Depth", "Set Depth"]
     pinned.undo()
     pinned.undo()
     assert bits(pinned.state) == before
