@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 
+MAX_COORDINATE = 1e9  # pixels; areas of anything farther away could overflow
+
 T = TypeVar("T")
 
 Floats = NDArray[np.float64]
@@ -109,6 +111,16 @@ def as_floats(value: Any, name: str) -> Floats:
         return freeze(array.copy() if array is value and array.flags.writeable else array)
     except (TypeError, ValueError, OverflowError) as error:
         raise InputError(f"{name}: expected an array of numbers, got {reprlib.repr(value)}") from error
+
+
+def as_pixels(value: ArrayLike, name: str, count: int | None = None) -> Floats:
+    """`as_points` (n, 2) with coordinates up to `MAX_COORDINATE` pixels. Raises InputError."""
+    points = as_points(value, name, count)
+    if points.size and np.abs(points).max() > MAX_COORDINATE:
+        raise InputError(
+            f"{name}: expected coordinates up to {MAX_COORDINATE:g} pixels, got {np.abs(points).max():g}"
+        )
+    return points
 
 
 def as_indices(value: ArrayLike, name: str, columns: int | None, limit: int) -> Ints:

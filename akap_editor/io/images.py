@@ -3,14 +3,14 @@
 import struct
 import warnings
 import zlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageOps, UnidentifiedImageError
+from PIL import Image, ImageCms, ImageOps, UnidentifiedImageError
 
 from ..errors import InputError, file_errors
 from ..geometry.validation import as_picture
@@ -28,7 +28,8 @@ def read_image(path: str | Path) -> Picture:
     """The picture in a PNG, JPEG, WebP, BMP, GIF or TIFF file, (h, w, 4) uint8, straight alpha.
 
     Of an animation (see `is_animation`) it is the first frame. 16-bit samples keep their high byte, CMYK
-    becomes RGB, an EXIF orientation is applied, color profiles are ignored.
+    becomes RGB, an EXIF orientation is applied, colors are converted to sRGB if the file has a
+    profile that is not damaged.
     Raises FileError if the file is missing, unreadable, damaged, no picture, or has over `MAX_PIXELS`.
     """
     data = read_file(path, "a picture")
@@ -85,7 +86,7 @@ def decode_image(
         if picture.mode == "F" or (picture.mode == "I" and picture.format != "PNG"):
             raise InputError("expected samples of 8 or 16 bits, got 32 bits per sample")
         try:
-            return _rgba(picture, bit_depth=data[24] if picture.format == "PNG" else 8)
+            return _rgba(picture, data)
         except Exception as error:
             raise InputError(f"the {picture.format} picture is damaged or incomplete") from error
 
@@ -99,31 +100,87 @@ def join_with_or(names: Sequence[str]) -> str:
     return " or ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
 
 
-def _rgba(picture: Image.Image, bit_depth: int) -> Picture:
-    """The pixels (h, w, 4) uint8. A transparent color is compared here, because Pillow does not scale it."""
+def _rgba(picture: Image.Image, data: bytes) -> Picture:
+    """The pixels (h, w, 4) uint8 in sRGB. A transparent color is compared here, in full: Pillow does not."""
     transparent = None if picture.mode == "P" else picture.info.pop("transparency", None)
+    bit_depth = data[24] if picture.format == "PNG" else 8
+    low_bytes = (
+        _low_bytes(data) if transparent is not None and (bit_depth, picture.mode) == (16, "RGB") else None
+    )
+    to_srgb = _srgb_conversion(picture)
     ImageOps.exif_transpose(picture, in_place=True)
     width, height = picture.size
     image = np.empty((height, width, 4), dtype=np.uint8)
     rows = max(1, STRIP_PIXELS // width)
     for top in range(0, height, rows):  # a large picture in several copies would fill the memory
-        strip = picture.crop((0, top, width, min(top + rows, height)))
-        image[top : top + rows] = _rgba_strip(strip, transparent, bit_depth)
+        box = 0, top, width, min(top + rows, height)
+        low = None if low_bytes is None else np.asarray(low_bytes.crop(box))
+        image[top : top + rows] = _rgba_strip(picture.crop(box), transparent, bit_depth, low, to_srgb)
     return image
 
 
-def _rgba_strip(picture: Image.Image, transparent: Any, bit_depth: int) -> Picture:
+def _low_bytes(data: bytes) -> Image.Image:
+    """The low bytes of the samples of a PNG file in RGB with 16 bits; Pillow keeps the high ones."""
+    picture = Image.open(BytesIO(data), formats=("PNG",))
+    picture.info.pop("transparency", None)
+    # Samples are big-endian. Read as little-endian ones, their low bytes are taken for the high ones.
+    picture.tile = [tile._replace(args="RGB;16L") for tile in picture.tile]
+    ImageOps.exif_transpose(picture, in_place=True)
+    return picture
+
+
+def _srgb_conversion(picture: Image.Image) -> Callable[[Image.Image], Image.Image] | None:
+    """A function that converts the colors of a strip to sRGB; None without a profile that says how."""
+    profile = picture.info.pop("icc_profile", None)
+    if not profile:
+        return None
+    try:
+        source = ImageCms.getOpenProfile(BytesIO(profile))
+        if "srgb" in ImageCms.getProfileDescription(source).lower():
+            return None
+        space = source.profile.xcolor_space.strip()
+        has_alpha = picture.mode in ("RGBA", "LA", "PA") or "transparency" in picture.info
+        if space == "CMYK" and picture.mode == "CMYK":
+            modes = "CMYK", "RGB"
+        elif space == "GRAY" and picture.mode in ("1", "L", "LA", "I", "I;16", "I;16B", "P", "PA"):
+            modes = "L", "RGB"
+        elif space == "RGB" and picture.mode in ("RGB", "RGBA", "P", "PA", "YCbCr"):
+            modes = "RGB", "RGB"
+        else:  # one that does not belong to this picture
+            return None
+        transform = ImageCms.buildTransform(source, ImageCms.createProfile("sRGB"), *modes)
+    except Exception:  # a damaged profile is no reason to refuse a picture
+        return None
+
+    def convert(strip: Image.Image) -> Image.Image:
+        colors = ImageCms.applyTransform(strip.convert(modes[0]), transform)
+        assert colors is not None
+        if has_alpha:
+            colors.putalpha(strip.convert("RGBA").getchannel("A"))
+        return colors
+
+    return convert
+
+
+def _rgba_strip(
+    picture: Image.Image,
+    transparent: Any,
+    bit_depth: int,
+    low_bytes: Picture | None,
+    to_srgb: Callable[[Image.Image], Image.Image] | None,
+) -> Picture:
+    """A strip of a picture, (h, w, 4) uint8; low_bytes: (h, w, 3) of samples of 16 bits, if known."""
     if picture.mode.startswith("I"):  # 16-bit gray, which convert() would clip to 255
-        samples = np.asarray(picture).astype(np.uint16)[..., None]
-        high = (samples >> 8).astype(np.uint8)
-        image = np.concatenate([high, high, high, np.full_like(high, 255)], axis=2)
+        samples: NDArray[Any] = np.asarray(picture).astype(np.uint16)[..., None]
+        picture = Image.fromarray((samples[..., 0] >> 8).astype(np.uint8))
     else:
-        image = np.array(picture if picture.mode == "RGBA" else picture.convert("RGBA"))
-        samples = image[..., :3]
-        if transparent is not None and bit_depth == 16:
-            transparent = np.asarray(transparent) >> 8
+        samples = np.array(picture.convert("RGBA"))[..., :3] if transparent is not None else np.empty(0)
+        if low_bytes is not None:
+            samples = samples.astype(np.uint16) << 8 | low_bytes
         elif transparent is not None and bit_depth < 8:
             transparent = min(transparent * 255 // (2**bit_depth - 1), 255)
+    colors = picture if to_srgb is None else to_srgb(picture)
+    image = np.array(colors if colors.mode == "RGBA" else colors.convert("RGBA"))
     if transparent is not None:
         image[(samples == np.asarray(transparent)).all(axis=2), 3] = 0
     return image

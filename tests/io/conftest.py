@@ -31,7 +31,7 @@ def make_document() -> Callable[..., Document]:
         height, width = image.shape[:2]
         mesh = TriMesh([[0, 0], [width, 0], [width, height], [0, height]], [[0, 1, 2], [0, 2, 3]])
         uv = (mesh.vertices / [width, height]).astype(np.float32)
-        pins = Pin(1, 0, [0.1, 0.2, 0.7], [0.1 + 0.2, -3.0]), Pin(7, 1, [1.0, 0.0, 0.0], [1e300, 5e-324])
+        pins = Pin(1, 0, [0.1, 0.2, 0.7], [0.1 + 0.2, -3.0]), Pin(7, 1, [1.0, 0.0, 0.0], [1e9, 5e-324])
         defaults = {
             "pins": pins,
             "positions": mesh.vertices + np.random.default_rng(2).normal(size=(4, 2)),

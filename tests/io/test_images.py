@@ -5,7 +5,7 @@ from io import BytesIO
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageCms
 
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.errors import InputError
@@ -91,6 +91,10 @@ PNGS = {
             (b"tRNS", shorts(0x0102, 0x0304, 0x0506)),
         ),
         [[1, 3, 5, 0], [0, 0, 0, 255]],
+    ),
+    "rgb 16, one transparent, others alike": (
+        png((3, 1), 16, RGB, [shorts(1, 2, 3, 1, 2, 4, 257, 2, 3)], (b"tRNS", shorts(1, 2, 3))),
+        [[0, 0, 0, 0], [0, 0, 0, 255], [1, 0, 0, 255]],
     ),
     "rgba 8": (png((2, 1), 8, RGBA, [bytes([1, 2, 3, 0, 4, 5, 6, 77])]), [[1, 2, 3, 0], [4, 5, 6, 77]]),
     "rgba 16": (png((1, 1), 16, RGBA, [shorts(0x01FF, 0x0200, 0x0380, 0xFF00)]), [[1, 2, 3, 255]]),
@@ -346,3 +350,63 @@ def test_converting_in_strips_changes_nothing(mode, monkeypatch):
     whole = decode_image(buffer.getvalue())
     monkeypatch.setattr(images, "STRIP_PIXELS", 40)
     assert (decode_image(buffer.getvalue()) == whole).all()
+
+
+def linear_profile(space: bytes = b"RGB ") -> bytes:
+    """An ICC profile with the primaries of sRGB and a gamma of 1, or of gray with a gamma of 1."""
+
+    def fixed(*values: float) -> bytes:
+        return struct.pack(f">{len(values)}i", *(round(65536 * value) for value in values))
+
+    curve = b"curv" + bytes(4) + struct.pack(">I", 0)
+    white = b"XYZ " + bytes(4) + fixed(0.9642, 1, 0.8249)
+    text = b"linear\0"
+    tags = {b"wtpt": white, b"desc": b"desc" + bytes(4) + struct.pack(">I", len(text)) + text + bytes(78)}
+    if space == b"RGB ":
+        primaries = (0.4361, 0.2225, 0.0139), (0.3851, 0.7169, 0.0971), (0.1431, 0.0606, 0.7141)
+        for letter, primary in zip((b"r", b"g", b"b"), primaries, strict=True):
+            tags |= {letter + b"XYZ": b"XYZ " + bytes(4) + fixed(*primary), letter + b"TRC": curve}
+    else:
+        tags[b"kTRC"] = curve
+    place, table, content = 128 + 4 + 12 * len(tags), b"", b""
+    for name, value in tags.items():
+        padded = value + bytes(-len(value) % 4)
+        table += name + struct.pack(">II", place + len(content), len(value))
+        content += padded
+    body = struct.pack(">I", len(tags)) + table + content
+    head = struct.pack(">I4sI", 128 + len(body), bytes(4), 0x02400000) + b"mntr" + space + b"XYZ "
+    head += bytes(12) + b"acsp" + bytes(28) + fixed(0.9642, 1, 0.8249)
+    return head.ljust(128, b"\0") + body
+
+
+LEVELS = [0, 54, 128, 255]  # of linear light; in sRGB 0, 127, 188, 255
+
+
+@pytest.mark.parametrize(
+    ("mode", "profile"),
+    [("RGB", b"RGB "), ("RGBA", b"RGB "), ("P", b"RGB "), ("L", b"GRAY"), ("LA", b"GRAY"), ("I;16", b"GRAY")],
+)
+def test_colors_with_a_profile_are_converted_to_srgb(mode, profile):
+    picture = Image.fromarray(np.array([LEVELS], np.uint8))
+    if mode == "I;16":
+        picture = Image.fromarray(np.array([LEVELS], np.uint16) * 257)
+    picture = picture if mode == "I;16" else picture.convert(mode)
+    if mode in ("RGBA", "LA"):
+        picture.putalpha(Image.fromarray(np.array([[0, 7, 99, 255]], np.uint8)))
+    buffer = BytesIO()
+    picture.save(buffer, "PNG", icc_profile=linear_profile(profile))
+    image = decode_image(buffer.getvalue())
+    assert np.abs(image[0, :, :3].astype(int) - np.array([[0], [127], [188], [255]])).max() <= 2
+    assert image[0, :, 3].tolist() == ([0, 7, 99, 255] if mode in ("RGBA", "LA") else [255] * 4)
+
+
+@pytest.mark.parametrize(
+    "profile", ["srgb", b"", b"damaged", linear_profile(b"GRAY"), linear_profile()[:200]]
+)
+def test_a_profile_of_srgb_or_one_that_is_no_use_changes_nothing(profile):
+    if profile == "srgb":
+        profile = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
+    pixels = np.random.default_rng(2).integers(0, 256, (5, 6, 4), dtype=np.uint8)
+    buffer = BytesIO()
+    Image.fromarray(pixels).save(buffer, "PNG", icc_profile=profile)
+    assert decode_image(buffer.getvalue()).tolist() == pixels.tolist()

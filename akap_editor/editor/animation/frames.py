@@ -5,11 +5,13 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from ...errors import InputError
 from ...geometry.validation import Floats, Ints, as_number
 from ..document.drawing import Drawing
 from ..document.easing import easing_function
 from ..session.recording import MAX_TIME
 
+MAX_FRAMES = 1_000_000
 POSE_TOLERANCE = 0.01  # pixels: poses that differ by less look alike
 
 T = TypeVar("T")
@@ -35,6 +37,11 @@ def frame_times(start: float, end: float, fps: float, speed: float = 1.0, ease: 
     as_number(end, "end", start, MAX_TIME)
     eased, span = easing_function(ease), end - start
     count = int(span / speed * fps + 1e-6)
+    if count > MAX_FRAMES:
+        raise InputError(
+            f"expected at most {MAX_FRAMES} frames, got {count} for {span:g} s; "
+            "take fewer frames a second, a higher speed, a part of the time, or shorter pauses"
+        )
     return [*(start + span * eased(k * speed / fps / span) for k in range(count)), end]
 
 

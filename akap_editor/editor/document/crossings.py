@@ -20,9 +20,8 @@ from ...overlap.overlaps import (
     restored_overlaps,
 )
 from ...overlap.rules import Rules
-from .pin import Pin
+from .pin import MAX_DEPTH, Pin
 
-MAX_DEPTH = 999  # in front of the drawing or behind it
 LEVELS_PER_DEPTH = 4  # faces of one level keep the order of the mesh, so that a limb is drawn as a whole
 _PIN_RADIUS = 1e-6  # share of √area: a vertex nearer than this to a pin has the pin's depth
 

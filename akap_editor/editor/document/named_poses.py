@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import InputError
-from ...geometry.validation import Floats, Ints, as_points, freeze
+from ...geometry.validation import Floats, Ints, as_pixels, freeze
 from .crossings import as_crossings, no_crossings
 
 MAX_POSE_NAME = 80  # characters
@@ -17,9 +17,10 @@ def as_pose(value: ArrayLike, name: str, count: int | None = None) -> Floats:
     """``value`` as a read-only pose (n, 2) float64.
 
     A pose that is read-only already is returned itself, because poses are compared by identity.
-    Raises InputError on another shape, numbers that are not finite, or n other than ``count`` if given.
+    Raises InputError on another shape, coordinates that are not finite or above `MAX_COORDINATE`, or n other
+    than ``count`` if given.
     """
-    pose = as_points(value, name, count)
+    pose = as_pixels(value, name, count)
     if isinstance(value, np.ndarray) and value.dtype == np.float64 and not value.flags.writeable:
         return value
     return freeze(pose)

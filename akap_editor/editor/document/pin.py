@@ -1,13 +1,22 @@
 """Pins: the points of a drawing that the artist controls."""
 
+import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ...errors import InputError
+from ...geometry.json_numbers import MAX_INTEGER
 from ...geometry.mesh import MeshPoints
-from ...geometry.validation import Floats, as_floats
+from ...geometry.validation import MAX_COORDINATE, Floats, as_floats
+
+MAX_PINS = 10_000
+MAX_DEPTH = 999  # in front of the drawing or behind it
+MAX_PIN_ANGLE = 20 * math.pi  # radians, in either direction
+WEIGHT_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,3 +58,48 @@ def pin_points(pins: Sequence[Pin]) -> MeshPoints:
         np.array([pin.face for pin in pins], dtype=np.int32),
         np.array([pin.weights for pin in pins]).reshape(-1, 3),
     )
+
+
+def check_pins(pins: Sequence[Pin], faces: int) -> None:
+    """Check that pins can be those of a mesh with ``faces`` faces.
+
+    Raises InputError on more than `MAX_PINS`, an id that occurs twice, or a value out of range.
+    """
+    if len(pins) > MAX_PINS:
+        raise InputError(f"expected at most {MAX_PINS} pins, got {len(pins)}")
+    for pin in pins:
+        _check_pin(pin, faces)
+    for pin_id, count in Counter(pin.id for pin in pins).items():
+        if count > 1:
+            raise InputError(f"expected each pin once, got pin {pin_id} {count} times")
+
+
+def _check_pin(pin: Pin, faces: int) -> None:
+    if abs(pin.id) > MAX_INTEGER:
+        raise InputError(f"pins: expected ids up to {MAX_INTEGER}, got {_short(pin.id)}")
+    if not 0 <= pin.face < faces:
+        raise InputError(f"pin {pin.id}: expected a face from 0 to {faces - 1}, got {_short(pin.face)}")
+    if pin.weights.shape != (3,) or pin.target.shape != (2,):
+        actual = f"{pin.weights.size} and {pin.target.size}"
+        raise InputError(f"pin {pin.id}: expected 3 weights and a target of 2 coordinates, got {actual}")
+    low, high = -WEIGHT_TOLERANCE, 1 + WEIGHT_TOLERANCE
+    inside = all(low <= weight <= high for weight in pin.weights)
+    if not inside or abs(pin.weights.sum() - 1) > WEIGHT_TOLERANCE:
+        actual = str(pin.weights.tolist())
+        raise InputError(f"pin {pin.id}: expected weights from 0 to 1 that sum to 1, got {actual}")
+    if abs(pin.depth) > MAX_DEPTH:
+        expected = f"a depth from -{MAX_DEPTH} to {MAX_DEPTH}"
+        raise InputError(f"pin {pin.id}: expected {expected}, got {_short(pin.depth)}")
+    if pin.angle is not None and not abs(pin.angle) <= MAX_PIN_ANGLE:
+        expected = f"an angle from -{MAX_PIN_ANGLE:.5g} to {MAX_PIN_ANGLE:.5g} radians"
+        raise InputError(f"pin {pin.id}: expected {expected}, got {pin.angle}")
+    if not np.isfinite(pin.target).all():
+        raise InputError(f"pin {pin.id}: expected a finite target, got {pin.target.tolist()}")
+    if (np.abs(pin.target) > MAX_COORDINATE).any():
+        expected = f"a target with coordinates up to {MAX_COORDINATE:g} pixels"
+        raise InputError(f"pin {pin.id}: expected {expected}, got {pin.target.tolist()}")
+
+
+def _short(value: int) -> str:
+    """An integer for a message, however large it is."""
+    return str(value) if value.bit_length() < 100 else f"one of {value.bit_length()} bits"

@@ -1,6 +1,5 @@
 """How far the drawing is rotated around its pins."""
 
-import math
 from collections.abc import Container, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -12,8 +11,6 @@ from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.operators import to_complex
 from ...geometry.validation import Floats
 from .pin import Pin, pin_points
-
-MAX_PIN_ANGLE = 20 * math.pi  # radians, in either direction
 
 _MeasuredPins = tuple[tuple[int, bytes, bool], ...]  # face, weights, and whether its angle is measured
 

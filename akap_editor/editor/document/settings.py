@@ -1,10 +1,15 @@
 """The deformation method of a document, and its parameters."""
 
+import math
+import reprlib
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from ...deform.methods import DEFAULT_METHOD, get_method, parse_method
+from ...errors import InputError
+from ...geometry.json_numbers import MAX_INTEGER
 
 
 def _document_defaults(method: str) -> tuple[tuple[str, Any], ...]:
@@ -41,6 +46,20 @@ class Settings:
             settings = settings.with_parameter(parameter, value)
         return settings
 
+    def check(self) -> None:
+        """Check that the settings can be written to a file.
+
+        Raises InputError on a parameter that occurs twice, or a value that is not a text, a finite number,
+        true, false or None.
+        """
+        for name, value in self.parameters:
+            _check_parameter(name, value)
+        for name, count in Counter(name for name, _ in self.parameters).items():
+            if count > 1:
+                raise InputError(
+                    f"expected each parameter once, got parameter {reprlib.repr(name)} {count} times"
+                )
+
     def to_json(self) -> dict[str, Any]:
         """The settings as an object of a document or recording; docs/file-format.md describes it."""
         return {"method": self.method, "parameters": dict(self.parameters)}
@@ -49,3 +68,14 @@ class Settings:
     def from_json(cls, record: Mapping[str, Any]) -> "Settings":
         """Read the object of `to_json`; sorts parameters by name. Raises KeyError, TypeError, ValueError."""
         return cls(str(record["method"]), tuple(sorted(dict(record["parameters"]).items())))
+
+
+def _check_parameter(name: str, value: object) -> None:
+    if not isinstance(name, str) or not isinstance(value, bool | int | float | str | None):
+        actual = f"{type(value).__name__} for {reprlib.repr(name)}"
+        raise InputError(f"parameters: expected names and numbers, texts, true, false or null, got {actual}")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise InputError(f"parameter {reprlib.repr(name)}: expected a finite number, got {value}")
+    if isinstance(value, int) and abs(value) > MAX_INTEGER:
+        expected, actual = f"an integer up to {MAX_INTEGER}", f"one of {value.bit_length()} bits"
+        raise InputError(f"parameter {reprlib.repr(name)}: expected {expected}, got {actual}")

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import InputError
+from ...geometry.json_numbers import bounded_integer, finite_float, refuse_constant
 from ...geometry.mesh import TriMesh
 from ..document.document import Document
 from ..document.drawing import Drawing
@@ -30,7 +31,7 @@ from .edits import (
 from .event_log import Event, EventLog
 
 VERSION = 1
-MAX_TIME = 1e9  # seconds
+MAX_TIME = 1e7  # seconds, 115 days
 
 # Events that are not edits, with the values that each must have besides its time.
 _SESSION_EVENTS: dict[str, tuple[str, ...]] = {
@@ -120,7 +121,9 @@ def parse_recording(text: str) -> Recording:
     parsed: list[dict[str, Any]] = []
     for number, line in enumerate(lines, start=1):
         try:
-            value = json.loads(line)
+            value = _parse_line(line)
+        except InputError as error:
+            raise InputError(f"recording line {number}: {error}") from error
         except (ValueError, RecursionError) as error:
             if number == 1:
                 actual = repr(line[:40]) if line else "nothing"
@@ -138,6 +141,13 @@ def parse_recording(text: str) -> Recording:
             _check_first_line(value)
         parsed.append(value)
     return Recording(parsed[0]["drawing"], parsed[1:])
+
+
+def _parse_line(line: str) -> Any:
+    """Read JSON with strict numbers. Raises InputError, ValueError or RecursionError."""
+    return json.loads(
+        line, parse_int=bounded_integer, parse_float=finite_float, parse_constant=refuse_constant
+    )
 
 
 def _check_first_line(value: dict[str, Any]) -> None:
@@ -158,7 +168,9 @@ def _check_event(event: dict[str, Any], number: int, previous_time: float) -> No
     if not isinstance(name, str) or name not in _EVENT_FIELDS:
         raise bad(f"one of {', '.join(_EVENT_FIELDS)}", reprlib.repr(name))
     if isinstance(time, bool) or not isinstance(time, int | float) or not previous_time <= time <= MAX_TIME:
-        raise bad(f"a time of {previous_time:g} s or later", reprlib.repr(time))
+        is_late = isinstance(time, int | float) and time > MAX_TIME
+        expected = f"a time up to {MAX_TIME:g} s" if is_late else f"a time of {previous_time:g} s or later"
+        raise bad(expected, reprlib.repr(time))
     for field_name in _EVENT_FIELDS[name]:
         if field_name not in event:
             raise bad(f"a value {field_name!r} in {name!r}", "none")

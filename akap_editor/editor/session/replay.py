@@ -15,6 +15,7 @@ from .session import Session
 
 # Exceptions raised by malformed values of an event.
 _BAD_EVENT = (AssertionError, AttributeError, KeyError, OverflowError, TypeError, ValueError)
+_MAX_REASON = 300  # characters of why an event cannot be replayed
 _MAX_ASPECT_ERROR = 0.01  # aspect ratios that differ by less, as a share, are equal
 
 # Events of gestures and the history; the others are edits, steps, and returns to an earlier state.
@@ -74,7 +75,9 @@ class Replay:
             try:
                 step = self._replay_event(event, target)
             except (*_BAD_EVENT, InputError) as error:
-                raise InputError(f"recording line {line}: cannot be replayed, {error}") from error
+                raise InputError(
+                    f"recording line {line}: cannot be replayed, {_shorten(str(error))}"
+                ) from error
             except SolverError as error:
                 raise SolverError(f"recording line {line}: {error}") from error
             assert self.session is not None
@@ -154,3 +157,9 @@ def replay_target(recording: Recording, drawing: Drawing) -> ReplayTarget:
             f"has {width} x {height}"
         )
     return ReplayTarget(drawing.mesh, same_mesh, scale)
+
+
+def _shorten(text: str) -> str:
+    """A text for a message, without its middle if it is long: values of an event may be of any length."""
+    half = _MAX_REASON // 2
+    return text if len(text) <= _MAX_REASON else f"{text[:half]} ... {text[-half:]}"

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 
+MAX_EXPANDED_BYTES = 2**30  # of all entries that are read, and of the pixels of all pictures
+
 Entry = tuple[str, bytes, bool]  # name, content, whether it is worth compressing
 
 
@@ -28,6 +30,12 @@ def pack(entries: Iterable[Entry]) -> bytes:
     return buffer.getvalue()
 
 
+def check_expanded(size: int) -> None:
+    """Raise InputError if a document would expand to more than `MAX_EXPANDED_BYTES`."""
+    if size > MAX_EXPANDED_BYTES:
+        raise InputError(f"expected at most {MAX_EXPANDED_BYTES} bytes in all, got {size} or more")
+
+
 class Archive:
     """Reads the entries of a zip file by their exact names. Each name may occur once.
 
@@ -41,6 +49,7 @@ class Archive:
             raise InputError("the file is damaged or not an .akap file") from error
         entries = self._archive.infolist()
         self._entries = {entry.filename: entry for entry in entries}
+        self._expanded = 0
         if len(self._entries) < len(entries):
             name, count = Counter(entry.filename for entry in entries).most_common(1)[0]
             raise InputError(f"expected each entry once, got {reprlib.repr(name)} {count} times")
@@ -55,6 +64,7 @@ class Archive:
         entry = self._entries[name]
         if entry.file_size > most:
             raise InputError(f"{name}: expected at most {most} bytes, got {entry.file_size}")
+        self.count_expanded(entry.file_size)
         if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise InputError(f"{name}: expected no compression or deflate, got method {entry.compress_type}")
         try:
@@ -65,6 +75,11 @@ class Archive:
         if len(content) != entry.file_size:
             raise InputError(f"{name}: expected {entry.file_size} bytes, got {len(content)}")
         return content
+
+    def count_expanded(self, size: int) -> None:
+        """Add bytes to what the archive expands to. Raises InputError above `MAX_EXPANDED_BYTES`."""
+        self._expanded += size
+        check_expanded(self._expanded)
 
     def read_array(self, name: str, dtype: str, rows: int, columns: int) -> NDArray[Any]:
         """The array (rows, columns) of an entry without a header, row by row; in the machine's byte order."""

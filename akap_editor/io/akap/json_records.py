@@ -9,9 +9,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ...errors import InputError
+from ...geometry.json_numbers import bounded_integer, finite_float, refuse_constant
 from ...geometry.validation import Floats
-
-MAX_INTEGER = 2**53
 
 Json = dict[str, Any]
 T = TypeVar("T", bool, int, str, list[Any], Json)
@@ -27,7 +26,11 @@ def parse_record(text: bytes) -> Json:
     """
     try:
         record = json.loads(
-            text.decode(), object_pairs_hook=_object, parse_int=_integer, parse_constant=_no_constant
+            text.decode(),
+            object_pairs_hook=_object,
+            parse_int=bounded_integer,
+            parse_float=finite_float,
+            parse_constant=refuse_constant,
         )
     except InputError:
         raise
@@ -99,13 +102,3 @@ def _object(pairs: list[tuple[str, Any]]) -> Json:
     if len(record) < len(pairs):
         raise InputError(f"expected each key once, got one of {reprlib.repr(list(record))} twice")
     return record
-
-
-def _integer(digits: str) -> int:
-    if len(digits) > 17 or abs(int(digits)) > MAX_INTEGER:
-        raise InputError(f"expected integers up to {MAX_INTEGER}, got {reprlib.repr(digits)}")
-    return int(digits)
-
-
-def _no_constant(name: str) -> float:
-    raise InputError(f"expected finite numbers, got {name}")

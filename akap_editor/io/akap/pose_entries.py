@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from ...editor.document.keyframes import NO_ANIMATION, Animation, Keyframe
 from ...editor.document.named_poses import NamedPose
 from ...errors import InputError, error_context
-from ...geometry.validation import Floats
+from ...geometry.validation import Floats, freeze
 from .archive import Archive, Entry
 from .json_records import Json, numbers, optional, parse_record, require
 from .state_records import read_crossings, write_crossings
@@ -146,5 +146,5 @@ def _pose_entry(name: str, positions: Floats) -> Entry:
 
 
 def _read_pose(archive: Archive, name: str, vertices: int) -> Floats:
-    """Positions (vertices, 2). Raises InputError."""
-    return archive.read_array(name, "<f8", vertices, 2)
+    """Positions (vertices, 2), read-only, so that keyframes share them. Raises InputError."""
+    return freeze(archive.read_array(name, "<f8", vertices, 2))

@@ -14,10 +14,10 @@ from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing, Meshing
 from ...errors import InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import Floats, as_instance, as_number, freeze
+from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
 from ..atomic import as_path, read_file, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
-from .archive import Archive, Entry, pack
+from .archive import Archive, Entry, check_expanded, pack
 from .json_records import (
     Json,
     file_version,
@@ -47,7 +47,6 @@ ORIGINAL_ENTRY = "original.png"  # the picture before its background was removed
 
 MAX_VERTICES = 1_000_000
 MAX_FACES = 2_000_000
-MAX_COORDINATE = 1e9
 MAX_DOCUMENT_BYTES = 2**24
 MAX_PICTURE_BYTES = 2**29
 THUMBNAIL_SIDE = 256
@@ -88,21 +87,22 @@ def encode_document(document: Document, more: Sequence[Entry] = ()) -> bytes:
     text = json.dumps(_describe(document), allow_nan=False).encode()
     if len(text) > MAX_DOCUMENT_BYTES:
         raise InputError(f"expected a description of at most {MAX_DOCUMENT_BYTES} bytes, got {len(text)}")
-    return pack(
-        [
-            ("mimetype", MIMETYPE, False),
-            ("document.json", text, True),
-            ("mesh/vertices", drawing.mesh.vertices.astype("<f8").tobytes(), True),
-            ("mesh/faces", drawing.mesh.faces.astype("<i4").tobytes(), True),
-            ("mesh/uv", drawing.uv.astype("<f4").tobytes(), True),
-            ("pose/positions", document.state.positions.astype("<f8").tobytes(), True),
-            *_stiffness_entries(document.state),
-            *_picture_entries(drawing),
-            *named_pose_entries(document.state.poses),
-            *keyframe_entries(document.state.animation),
-            *more,
-        ]
-    )
+    entries = [
+        ("mimetype", MIMETYPE, False),
+        ("document.json", text, True),
+        ("mesh/vertices", drawing.mesh.vertices.astype("<f8").tobytes(), True),
+        ("mesh/faces", drawing.mesh.faces.astype("<i4").tobytes(), True),
+        ("mesh/uv", drawing.uv.astype("<f4").tobytes(), True),
+        ("pose/positions", document.state.positions.astype("<f8").tobytes(), True),
+        *_stiffness_entries(document.state),
+        *_picture_entries(drawing),
+        *named_pose_entries(document.state.poses),
+        *keyframe_entries(document.state.animation),
+        *more,
+    ]
+    pictures = (1 if drawing.original is None else 2) * drawing.image.nbytes
+    check_expanded(pictures + sum(len(content) for name, content, _ in entries if not name.endswith(".png")))
+    return pack(entries)
 
 
 def decode_document(data: bytes) -> Document:
@@ -117,11 +117,21 @@ def _check(document: Document) -> None:
     mesh = document.drawing.mesh
     _check_sizes(*document.drawing.size, len(mesh.vertices), len(mesh.faces))
     _check_vertices(mesh.vertices)
+    if document.drawing.meshing is not None:
+        _check_meshing(document.drawing.meshing)
     state = document.state
     check_state(state, len(mesh.vertices), len(mesh.faces))
     of_poses = [pose.crossings for pose in state.poses]
     for crossings in [*of_poses, *(keyframe.crossings for keyframe in state.animation.keyframes)]:
         check_crossings(crossings, len(mesh.faces))
+
+
+def _check_meshing(meshing: Meshing) -> None:
+    as_number(meshing.vertices, "vertices wanted", 0, MAX_VERTICES)
+    as_number(meshing.expand, "expand", 0.0, MAX_COORDINATE)
+    as_number(meshing.threshold, "threshold", 0.0, 1.0)
+    if meshing.background is not None:
+        as_number(meshing.background, "background", 0.0, 1.0)
 
 
 def _check_sizes(width: int, height: int, vertices: int, faces: int) -> None:
@@ -252,15 +262,18 @@ def _decode(archive: Archive) -> Document:
 
 def _read_meshing(record: Json) -> Meshing:
     expand, threshold = numbers([record.get("expand"), record.get("threshold")], "expand and threshold")
-    background = None
-    if "background" in record:
-        (tolerance,) = numbers([record["background"]], "background")
-        background = as_number(float(tolerance), "background", 0.0, 1.0)
-    return Meshing(require(record, "vertices", int), float(expand), float(threshold), background)
+    background = numbers([record["background"]], "background")[0] if "background" in record else None
+    vertices = require(record, "vertices", int)
+    meshing = Meshing(
+        vertices, float(expand), float(threshold), None if background is None else float(background)
+    )
+    _check_meshing(meshing)
+    return meshing
 
 
 def _picture(archive: Archive, name: str, width: int, height: int) -> NDArray[np.uint8]:
     content = archive.read(name, MAX_PICTURE_BYTES)
+    archive.count_expanded(max(4 * width * height - len(content), 0))
     with error_context(name):
         image = decode_image(content, ("PNG",), (width, height))
         if image.shape[:2] != (height, width):

@@ -1,35 +1,28 @@
 """Reads pins and settings from untrusted JSON, and checks states, for .akap files and pose files."""
 
 import reprlib
-from collections import Counter
 from typing import Any
 
 import numpy as np
 
-from ...editor.document.crossings import MAX_DEPTH, as_crossings
+from ...editor.document.crossings import as_crossings
 from ...editor.document.document import EditState
-from ...editor.document.pin import Pin
-from ...editor.document.pin_angles import MAX_PIN_ANGLE
+from ...editor.document.named_poses import as_pose
+from ...editor.document.pin import MAX_PINS, Pin, check_pins
 from ...editor.document.settings import Settings
 from ...editor.document.stiffness import as_stiffness
 from ...errors import InputError
-from ...geometry.validation import Ints, as_points
-from .json_records import MAX_INTEGER, Json, numbers, optional, require
+from ...geometry.validation import Ints
+from .json_records import Json, numbers, optional, require
 
-WEIGHT_TOLERANCE = 1e-9
-MAX_PINS = 10_000
 MAX_CROSSINGS = 100_000
 
 
 def read_pins(records: list[Any]) -> tuple[Pin, ...]:
     """The pins that `Pin.to_json` wrote. Raises InputError on values of other types."""
-    _check_pin_count(len(records))
+    if len(records) > MAX_PINS:
+        raise InputError(f"expected at most {MAX_PINS} pins, got {len(records)}")
     return tuple(map(_read_pin, records))
-
-
-def _check_pin_count(count: int) -> None:
-    if count > MAX_PINS:
-        raise InputError(f"expected at most {MAX_PINS} pins, got {count}")
 
 
 def _read_pin(record: Any) -> Pin:
@@ -69,17 +62,12 @@ def read_settings(record: Json) -> Settings:
 
 def check_state(state: EditState, vertices: int, faces: int) -> None:
     """Raise InputError if a state does not fit a mesh with so many vertices and faces, or is not valid."""
-    as_points(state.positions, "positions", vertices)
-    _check_pin_count(len(state.pins))
+    as_pose(state.positions, "positions", vertices)
+    check_pins(state.pins, faces)
     check_crossings(state.crossings, faces)
     if state.stiffness is not None:
         as_stiffness(state.stiffness, faces)
-    for pin in state.pins:
-        _check_pin(pin, faces)
-    for name, value in state.settings.parameters:
-        _check_parameter(name, value)
-    _check_unique("pin", [pin.id for pin in state.pins])
-    _check_unique("parameter", [name for name, _ in state.settings.parameters])
+    state.settings.check()
 
 
 def check_crossings(crossings: Ints, faces: int) -> None:
@@ -87,44 +75,3 @@ def check_crossings(crossings: Ints, faces: int) -> None:
     as_crossings(crossings, faces)
     if len(crossings) > MAX_CROSSINGS:
         raise InputError(f"expected at most {MAX_CROSSINGS} crossings, got {len(crossings)}")
-
-
-def _check_unique(kind: str, names: list[Any]) -> None:
-    for name, count in Counter(names).items():
-        if count > 1:
-            raise InputError(f"expected each {kind} once, got {kind} {reprlib.repr(name)} {count} times")
-
-
-def _check_pin(pin: Pin, faces: int) -> None:
-    if abs(pin.id) > MAX_INTEGER:
-        raise InputError(f"pins: expected ids up to {MAX_INTEGER}, got {pin.id}")
-    if not 0 <= pin.face < faces:
-        raise InputError(f"pin {pin.id}: expected a face from 0 to {faces - 1}, got {pin.face}")
-    if pin.weights.shape != (3,) or pin.target.shape != (2,):
-        came = f"{pin.weights.size} and {pin.target.size}"
-        raise InputError(f"pin {pin.id}: expected 3 weights and a target of 2 coordinates, got {came}")
-    low, high = -WEIGHT_TOLERANCE, 1 + WEIGHT_TOLERANCE
-    are_shares = all(low <= weight <= high for weight in pin.weights)
-    if not are_shares or abs(pin.weights.sum() - 1) > WEIGHT_TOLERANCE:
-        came = str(pin.weights.tolist())
-        raise InputError(f"pin {pin.id}: expected weights from 0 to 1 that sum to 1, got {came}")
-    if abs(pin.depth) > MAX_DEPTH:
-        raise InputError(f"pin {pin.id}: expected a depth from -{MAX_DEPTH} to {MAX_DEPTH}, got {pin.depth}")
-    if pin.angle is not None and not abs(pin.angle) <= MAX_PIN_ANGLE:
-        expected = f"an angle from -{MAX_PIN_ANGLE:.5g} to {MAX_PIN_ANGLE:.5g} radians"
-        raise InputError(f"pin {pin.id}: expected {expected}, got {pin.angle}")
-    if not np.isfinite(pin.target).all():
-        raise InputError(f"pin {pin.id}: expected a finite target, got {pin.target.tolist()}")
-
-
-def _check_parameter(name: str, value: object) -> None:
-    if not isinstance(name, str) or not isinstance(value, bool | int | float | str | None):
-        came = f"{type(value).__name__} for {reprlib.repr(name)}"
-        raise InputError(f"parameters: expected names and numbers, texts, true, false or null, got {came}")
-    if isinstance(value, float) and not np.isfinite(value):
-        raise InputError(f"parameter {reprlib.repr(name)}: expected a finite number, got {value}")
-    if isinstance(value, int) and abs(value) > MAX_INTEGER:
-        came = f"one of {value.bit_length()} bits"
-        raise InputError(
-            f"parameter {reprlib.repr(name)}: expected an integer up to {MAX_INTEGER}, got {came}"
-        )

@@ -1,6 +1,5 @@
 """Opens a flat mesh from another program as a drawing."""
 
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +8,13 @@ from numpy.typing import NDArray
 from ...editor.document.drawing import Drawing
 from ...errors import InputError, file_errors
 from ...geometry.mesh import TriMesh, signed_areas
-from ...geometry.validation import Floats, Ints
+from ...geometry.validation import Floats
 from ..akap.project import MAX_VERTICES
 from ..atomic import read_file
 from ..images import read_image
-from .obj_off import PARSERS, PolygonMesh
+from .materials import parse_textures
+from .obj_off import PARSERS, PolygonMesh, decode_text
+from .polygons import triangulate_polygons
 
 _MAX_THICKNESS = 1e-6  # share of its width and height up to which a mesh counts as flat
 # Pixels: a mesh between the first two sizes keeps its size, others are scaled to the third.
@@ -21,6 +22,7 @@ _SMALLEST_SIZE, _LARGEST_SIZE, _USUAL_SIZE = 100.0, 4000.0, 1000.0
 _MARGIN = 20.0  # pixels around a mesh without a texture
 _GRID_LINES = 20  # on a mesh without a texture
 _PAPER, _INK = (226, 228, 234, 255), (150, 156, 170, 255)
+_MAX_FOLDERS = 16  # in the name of a texture
 _TEXTURE_SUFFIXES = (".png", ".webp", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
 
 
@@ -35,11 +37,12 @@ def read_mesh(path: str | Path) -> Drawing:
     path = Path(path)
     data = read_file(path, "a mesh")
     with file_errors("open", path):
-        return _drawing(PARSERS[path.suffix.lower()](data.decode("utf-8", errors="replace")), path)
+        return _drawing(PARSERS[path.suffix.lower()](decode_text(data)), path)
 
 
 def _drawing(mesh: PolygonMesh, path: Path) -> Drawing:
-    points, faces = _flat_points(mesh.vertices), _triangles(mesh.faces)
+    points = _flat_points(mesh.vertices)
+    faces = triangulate_polygons(points, mesh.faces)
     if not len(faces):
         raise InputError("expected a mesh with faces, got none")
     flipped = signed_areas(points, faces) < 0
@@ -77,12 +80,6 @@ def _flat_points(vertices: list[list[float]]) -> Floats:
     return points[:, :2] * [1.0, -1.0]
 
 
-def _triangles(polygons: list[list[int]]) -> Ints:
-    """(m, 3): each polygon cut into a fan around its first corner."""
-    fans = [(face[0], b, c) for face in polygons for b, c in pairwise(face[1:])]
-    return np.array(fans, dtype=np.int32).reshape(-1, 3)
-
-
 def _texture_coordinates(mesh: PolygonMesh, count: int) -> Floats | None:
     """Texture coordinates (n, 2) with v down, or None. Raises InputError if a vertex has several."""
     if not mesh.texture_corners:
@@ -107,18 +104,58 @@ def _texture_coordinates(mesh: PolygonMesh, count: int) -> Floats | None:
 
 def _texture(mesh: PolygonMesh, path: Path) -> tuple[NDArray[np.uint8] | None, bool]:
     """The picture, if there is one, and whether the material names it. Only the mesh's folder is searched."""
-    library = path.with_name(Path(mesh.material_library).name) if mesh.material_library else None
-    if library is not None and library.is_file():
-        text = read_file(library, "a material").decode("utf-8", errors="replace")
-        for line in text.splitlines():
-            words = line.split(maxsplit=1)
-            if len(words) == 2 and words[0] == "map_Kd":
-                return read_image(path.with_name(Path(words[1].strip().replace("\\", "/")).name)), True
+    textures: dict[str, str] = {}  # file names by materials
+    for library in mesh.material_libraries:
+        whole_names = [name for name in (library, library.split(" #", 1)[0]) if _find(path.parent, name)]
+        for name in whole_names[:1] or library.split():
+            file = _find(path.parent, name)
+            if file is not None:
+                textures = {**parse_textures(decode_text(read_file(file, "a material"))), **textures}
+    used = [textures[name] for name in mesh.materials if name in textures] or list(textures.values())
+    if used:
+        folder_and_name = used[0].replace("\\", "/")
+        picture = _find(path.parent, folder_and_name) or _find(path.parent, Path(folder_and_name).name)
+        return read_image(picture or path.with_name(Path(folder_and_name).name or "texture")), True
     for suffix in _TEXTURE_SUFFIXES:
         picture = path.with_suffix(suffix)
         if picture.is_file():
             return read_image(picture), False
     return None, False
+
+
+def _find(folder: Path, name: str) -> Path | None:
+    """The file of a name, perhaps with folders, in or below a folder; letters of another case will do.
+
+    None if there is no such file, or the name leads out of the folder.
+    """
+    parts = name.replace("\\", "/").split("/")
+    parts = [part for part in parts if part not in ("", ".")]
+    if not parts or ".." in parts or len(parts) > _MAX_FOLDERS or name.startswith("/") or "\0" in name:
+        return None
+    place = folder
+    for part in parts:
+        exact = place / part
+        if not _exists(exact):
+            same = [each for each in _children(place) if each.name.casefold() == part.casefold()]
+            if not same:
+                return None
+            exact = min(same)
+        place = exact
+    return place if place.is_file() and place.resolve().is_relative_to(folder.resolve()) else None
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # e.g. a name that is too long
+        return False
+
+
+def _children(folder: Path) -> list[Path]:
+    try:
+        return list(folder.iterdir())
+    except OSError:
+        return []
 
 
 def _fit(points: Floats, goals: Floats) -> Floats:

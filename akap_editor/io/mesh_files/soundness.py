@@ -1,11 +1,11 @@
 """Reads meshes of all kinds that the program opens or exports, and finds their defects."""
 
-import json
+import codecs
+import reprlib
 import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,13 +14,18 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ...errors import InputError
-from ...geometry.validation import Floats, Ints, as_indices, as_points
-from .obj_off import PARSERS
+from ...geometry.validation import MAX_COORDINATE, Floats, Ints, as_indices, as_points
+from ..akap.json_records import parse_record
+from .obj_off import OFF_HEADER, PARSERS, decode_text
+from .polygons import triangulate_polygons
 
 _COMPONENTS = {5121: "<u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 # Raised by code that uses a malformed JSON record.
-_MALFORMED_ERRORS = (AttributeError, IndexError, KeyError, TypeError, ValueError, struct.error)
+_MALFORMED_ERRORS = (
+    *(AttributeError, IndexError, KeyError, MemoryError, OverflowError, RecursionError),
+    *(TypeError, ValueError, struct.error),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,13 +48,17 @@ def decode_mesh(data: bytes) -> TriangleSoup:
     kind, read = _reader(data)
     try:
         vertices, faces = read(data)
+        shape = np.shape(vertices)
     except InputError:
         raise
-    except (*_MALFORMED_ERRORS, RecursionError) as error:
-        raise InputError(f"expected a whole {kind} file, got a damaged one ({error})") from error
-    if np.ndim(vertices) != 2:
+    except _MALFORMED_ERRORS as error:
+        reason = reprlib.repr(str(error))
+        raise InputError(f"expected a whole {kind} file, got a damaged one ({reason})") from error
+    if len(shape) != 2 or shape[1] not in (2, 3) or not shape[0]:
         raise InputError(f"expected vertices in the {kind} file, got none")
-    points = as_points(vertices, "vertices", columns=np.shape(vertices)[1])
+    points = as_points(vertices, "vertices", columns=shape[1])
+    if np.abs(points).max() > MAX_COORDINATE:
+        raise InputError(f"vertices: expected coordinates up to {MAX_COORDINATE:g}, got greater ones")
     return TriangleSoup(kind, points, as_indices(faces, "faces", 3, len(points)))
 
 
@@ -85,20 +94,21 @@ def _reader(data: bytes) -> tuple[str, Callable[[bytes], tuple[Any, Any]]]:
     """The kind of a file, by its first bytes, and the function that reads its vertices and faces."""
     if data[:4] == b"glTF":
         return "glTF", _read_glb
-    if data.lstrip()[:1] == b"{":
+    if data.removeprefix(codecs.BOM_UTF8).lstrip()[:1] == b"{":
         return "JSON mesh", _read_json
-    suffix = ".off" if data.lstrip().startswith(b"OFF") else ".obj"
+    words = decode_text(data[:1000]).split(maxsplit=1)
+    suffix = ".off" if words and OFF_HEADER.fullmatch(words[0]) else ".obj"
     return suffix[1:].upper(), partial(_read_polygons, suffix)
 
 
 def _read_polygons(suffix: str, data: bytes) -> tuple[Any, Any]:
-    mesh = PARSERS[suffix](data.decode("utf-8", "replace"))
-    fans = [[face[0], a, b] for face in mesh.faces for a, b in pairwise(face[1:])]
-    return mesh.vertices, fans
+    mesh = PARSERS[suffix](decode_text(data))
+    points = as_points(mesh.vertices, "vertices", columns=3)
+    return mesh.vertices, triangulate_polygons(points, mesh.faces)
 
 
 def _read_json(data: bytes) -> tuple[Any, Any]:
-    record = json.loads(data)
+    record = parse_record(data.removeprefix(codecs.BOM_UTF8))
     if "faces" in record:
         return record["vertices"], record["faces"]
     vertices: list[Floats] = []
@@ -114,7 +124,7 @@ def _read_json(data: bytes) -> tuple[Any, Any]:
 
 def _read_glb(data: bytes) -> tuple[Any, Any]:
     size = struct.unpack_from("<I", data, 12)[0]
-    record = json.loads(data[20 : 20 + size])
+    record = parse_record(data[20 : 20 + size].rstrip(b" \0"))
     binary = data[28 + size :]
     vertices: list[NDArray[Any]] = []
     faces: list[NDArray[Any]] = []

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from akap_editor.editor import gestures
-from akap_editor.editor.document.crossings import MAX_DEPTH, depth_at, depth_order
+from akap_editor.editor.document.crossings import depth_at, depth_order
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
-from akap_editor.editor.document.pin import Pin
+from akap_editor.editor.document.pin import MAX_DEPTH, Pin
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.session.recording import parse_recording
 from akap_editor.editor.session.replay import replay

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from akap_editor.editor.document.crossings import MAX_DEPTH
 from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.pin import MAX_DEPTH
 from akap_editor.editor.session.edits import SetAngles, SetTargets
 from akap_editor.editor.session.pin_edits import (
     add_pin,

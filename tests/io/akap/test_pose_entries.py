@@ -147,3 +147,24 @@ def test_bad_keyframes_are_refused_in_one_sentence(keyed, tmp_path, entries, mes
     change_entries(tmp_path / "a.akap", entries)
     with pytest.raises(InputError, match=message):
         load(tmp_path / "a.akap")
+
+
+def test_keyframes_that_share_a_pose_share_it_after_opening_too(keyed, tmp_path):
+    save(keyed, tmp_path / "a.akap")
+    again = load(tmp_path / "a.akap")
+    for state in (keyed.state, again.state):
+        keys = state.animation.keyframes
+        assert len({id(key.positions) for key in keys}) < len(keys)
+    save(again, tmp_path / "b.akap")
+    assert (tmp_path / "a.akap").read_bytes() == (tmp_path / "b.akap").read_bytes()
+
+
+def test_what_a_document_may_expand_to_is_a_sum(posed, tmp_path, monkeypatch):
+    save(posed, tmp_path / "a.akap")
+    with zipfile.ZipFile(tmp_path / "a.akap") as archive:
+        largest = max(entry.file_size for entry in archive.infolist())
+    monkeypatch.setattr("akap_editor.io.akap.archive.MAX_EXPANDED_BYTES", 2 * largest)
+    with pytest.raises(InputError, match=f"xpected at most {2 * largest} bytes in all"):
+        load(tmp_path / "a.akap")
+    with pytest.raises(InputError, match=f"xpected at most {2 * largest} bytes in all"):
+        save(posed, tmp_path / "b.akap")

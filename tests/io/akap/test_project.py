@@ -138,6 +138,7 @@ def test_round_trip_of_cartoons(cartoon_path, tmp_path):
 
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
+pixels = st.floats(-1e9, 1e9)
 scalars = st.one_of(st.none(), st.booleans(), st.integers(-(2**53), 2**53), finite, st.text())
 
 
@@ -159,9 +160,9 @@ def documents(draw) -> Document:
     pins = []
     for id in draw(st.lists(st.integers(-(2**53), 2**53), unique=True, max_size=4)):
         s, t = sorted(draw(st.tuples(st.floats(0, 1), st.floats(0, 1))))
-        target = draw(st.tuples(finite, finite))
+        target = draw(st.tuples(pixels, pixels))
         pins.append(Pin(id, draw(st.integers(0, len(faces) - 1)), [s, t - s, 1 - t], target))
-    positions = draw(arrays(np.float64, grid.shape, elements=finite))
+    positions = draw(arrays(np.float64, grid.shape, elements=pixels))
     parameters = draw(st.dictionaries(st.text(), scalars, max_size=4))
     state = EditState(tuple(pins), positions, Settings(draw(st.text()), tuple(parameters.items())))
     return Document(Drawing(image, mesh, uv, draw(st.text())), state)
@@ -201,7 +202,7 @@ def test_format_is_as_documented(document, saved, tmp_path):
     assert record["settings"] == {"method": "akap", "parameters": {"memory": 1.0}}
     assert record["pins"] == [
         {"id": 1, "face": 0, "weights": [0.1, 0.2, 0.7], "target": [0.1 + 0.2, -3.0]},
-        {"id": 7, "face": 1, "weights": [1.0, 0.0, 0.0], "target": [1e300, 5e-324]},
+        {"id": 7, "face": 1, "weights": [1.0, 0.0, 0.0], "target": [1e9, 5e-324]},
     ]
     mesh = document.drawing.mesh
     assert np.frombuffer(saved["mesh/vertices"], "<f8").tolist() == mesh.vertices.ravel().tolist()
@@ -436,7 +437,7 @@ def test_wrong_json_is_refused(saved, reopen, text, message):
 
 def test_float_that_overflows_is_refused(saved, reopen):
     text = saved["document.json"].replace(b'"memory": 1.0', b'"memory": 1e999')
-    with pytest.raises(InputError, match="Parameter 'memory': expected a finite number, got inf"):
+    with pytest.raises(InputError, match=r"document.json: expected finite numbers, got '1e999'"):
         reopen(saved | {"document.json": text})
 
 

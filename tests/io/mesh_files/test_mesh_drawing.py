@@ -99,7 +99,114 @@ def test_what_is_exported_comes_back(tmp_path):
     assert back.image[..., 3].tolist() == alpha.tolist()
 
 
+GOOD_OBJ = {
+    "byte order mark": "\ufeff" + SQUARE + "f 1 2 3 4\n",
+    "capitals": SQUARE.upper() + "F 1 2 3 4\n",
+    "carriage returns": (SQUARE + "f 1 2 3 4\n").replace("\n", "\r\n"),
+    "old line ends": (SQUARE + "f 1 2 3 4\n").replace("\n", "\r"),
+    "continued": SQUARE + "f 1 2 \\\n 3 \\ \r\n 4\n",
+    "continued to the end": SQUARE + "f 1 2 3 4\\",
+    "a comment that ends in a backslash": "# from C:\\\n" + SQUARE + "f 1 2 3 4\n",
+    "relative at its line": "v 0 0\nv 200 0\nv 200 100\nf -3 -2 -1\nv 0 100\nf 1 3 -1\n",
+    "faces first": "f 1 2 3 4\n" + SQUARE,
+    "colors of vertices": SQUARE.replace(" 0\n", " 0 0.5 0.5 1\n") + "f 1 2 3 4\n",
+    "groups, smoothing, lines and points": "o a\ng b\ns off\n" + SQUARE + "f 1 2 3 4\nl 1 2\np 1\n",
+    "plus signs and exponents": SQUARE.replace("200", "+2.E2") + "f +1 2 3 4\n",
+}
+
+
+@pytest.mark.parametrize("kind", GOOD_OBJ)
+def test_obj_as_other_programs_write_it(tmp_path, kind):
+    path = tmp_path / "a.obj"
+    path.write_bytes(GOOD_OBJ[kind].encode())
+    mesh = read_mesh(path).mesh
+    assert (len(mesh.vertices), len(mesh.faces), mesh.rest_areas.sum()) == (4, 2, 20_000)
+
+
+def test_obj_in_utf_16(tmp_path):
+    (tmp_path / "a.obj").write_bytes((SQUARE + "f 1 2 3 4\n").encode("utf-16"))
+    assert len(read_mesh(tmp_path / "a.obj").mesh.faces) == 2
+
+
+BODY = "0 0 0\n200 0 0\n200 100 0\n0 100 0\n4 0 1 2 3\n"
+GOOD_OFF = {
+    "byte order mark": "\ufeffOFF\n4 1 0\n" + BODY,
+    "small letters": "off\n4 1 0\n" + BODY,
+    "no header": "4 1 0\n" + BODY,
+    "no number of edges": "OFF 4 1\n" + BODY,
+    "normals": "NOFF\n4 1 0\n" + BODY.replace("00 0\n", "00 0 0 0 1\n"),
+    "comments and empty lines": "# a\nOFF\n\n4 1 0 # b\n" + BODY.replace("\n", "\n\n# c\n"),
+}
+
+
+@pytest.mark.parametrize("kind", GOOD_OFF)
+def test_off_as_other_programs_write_it(tmp_path, kind):
+    mesh = read_mesh(written(tmp_path, "a.OFF", GOOD_OFF[kind])).mesh
+    assert (len(mesh.vertices), len(mesh.faces), mesh.rest_areas.sum()) == (4, 2, 20_000)
+
+
+LIBRARIES = {
+    "one": ("mtllib a.mtl", {"a.mtl": "newmtl m\nmap_Kd tex.png"}),
+    "several in a line": ("mtllib b.mtl a.mtl", {"b.mtl": "newmtl n", "a.mtl": "newmtl m\nmap_Kd tex.png"}),
+    "several lines": (
+        "mtllib b.mtl\nmtllib a.mtl",
+        {"b.mtl": "newmtl n\nmap_Kd no.png", "a.mtl": "newmtl m\nmap_Kd tex.png"},
+    ),
+    "a missing one": ("mtllib gone.mtl a.mtl", {"a.mtl": "newmtl m\nmap_Kd tex.png"}),
+    "a name with spaces": ("mtllib my #1 file.mtl", {"my #1 file.mtl": "newmtl m\nmap_Kd tex.png"}),
+    "the material that is used": (
+        "mtllib a.mtl",
+        {"a.mtl": "newmtl other\nmap_Kd no.png\nnewmtl m\nmap_Kd tex.png"},
+    ),
+    "any letter case": ("MTLLIB A.MTL", {"a.mtl": "NEWMTL m\nMAP_KD TEX.PNG"}),
+    "options": (
+        "mtllib a.mtl",
+        {"a.mtl": "newmtl m\nmap_Kd -s 1 1 1 -o 0 0 -clamp on -mm 0 1 -bm 0.5 tex.png"},
+    ),
+    "quotes": ("mtllib a.mtl", {"a.mtl": 'newmtl m\nmap_Kd "tex.png"'}),
+    "a folder of another computer": ("mtllib a.mtl", {"a.mtl": "newmtl m\nmap_Kd C:\\art\\tex.png"}),
+    "byte order mark": ("mtllib a.mtl", {"a.mtl": "\ufeffnewmtl m\nmap_Kd tex.png"}),
+}
+
+
+@pytest.mark.parametrize("kind", LIBRARIES)
+def test_the_texture_is_found_by_its_material(tmp_path, kind):
+    head, files = LIBRARIES[kind]
+    pixels = picture_at(tmp_path / "tex.png")
+    for name, text in files.items():
+        written(tmp_path, name, text)
+    drawing = read_mesh(written(tmp_path, "fish.obj", TEXTURED.replace("mtllib a.mtl", head)))
+    assert drawing.image.tolist() == pixels.tolist()
+
+
+@pytest.mark.parametrize("name", ["Textures/tex.png", "textures\\TEX.png", "./textures//tex.png"])
+def test_textures_in_folders_below_the_mesh(tmp_path, name):
+    (tmp_path / "textures").mkdir()
+    pixels = picture_at(tmp_path / "textures" / "tex.png")
+    written(tmp_path, "a.mtl", f"newmtl m\nmap_Kd {name}")
+    assert read_mesh(written(tmp_path, "fish.obj", TEXTURED)).image.tolist() == pixels.tolist()
+
+
+@pytest.mark.parametrize("name", ["../tex.png", "link/tex.png", "..\\tex.png"])
+def test_no_texture_outside_the_folder_of_the_mesh_is_read(tmp_path, name):
+    (tmp_path / "inside").mkdir()
+    picture_at(tmp_path / "tex.png")
+    (tmp_path / "inside" / "link").symlink_to(tmp_path)
+    written(tmp_path, "inside/a.mtl", f"newmtl m\nmap_Kd {name}")
+    with pytest.raises(InputError, match="no such file"):
+        read_mesh(written(tmp_path, "inside/fish.obj", TEXTURED))
+
+
+@pytest.mark.parametrize("head", ["mtllib .", "mtllib ..", "mtllib /", "mtllib", "mtllib " + "x" * 5000])
+def test_a_library_that_is_none_is_no_reason_to_refuse_a_mesh(tmp_path, head):
+    drawing = read_mesh(written(tmp_path, "a.obj", head + "\n" + SQUARE + "f 1 2 3 4\n"))
+    assert drawing.size == (240, 140)
+
+
 BAD_OBJ = {
+    "superscript": (SQUARE + "f ¹ ² ³\n", "line 5: expected an index, got '¹'"),
+    "5,000 digits": (SQUARE + "f 1 2 " + "9" * 5000 + "\n", "line 5: expected a vertex from 1 to 4, got 999"),
+    "underscores": ("v 1_0 2 3\n", "line 1: expected numbers, got '1_0 2 3'"),
     "nothing": ("", "expected a mesh with faces, got none|expected a mesh with vertices, got none"),
     "no faces": (SQUARE, "expected a mesh with faces, got none"),
     "index too large": (SQUARE + "f 1 2 9\n", "line 5: expected a vertex from 1 to 4, got 9"),

@@ -33,7 +33,9 @@ class SetSettings(Edit):
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
-        return cls(Settings.from_json(event))
+        settings = Settings.from_json(event)
+        settings.check()
+        return cls(settings)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,7 @@ from ....geometry.validation import as_number, as_points
 from ...document.crossings import crossings_by_depth
 from ...document.document import EditState
 from ...document.drawing import Drawing
-from ...document.pin import Pin
-from ...document.pin_angles import MAX_PIN_ANGLE
+from ...document.pin import MAX_PIN_ANGLE, Pin, check_pins
 from .edit import Edit, Effect, Json, ReplayTarget
 
 Target = tuple[float, float]
@@ -63,12 +62,14 @@ class SetPins(Edit):
             located = mesh.locate(target.points([pin["rest"] for pin in pins], "rest", len(pins)))
             points = list(zip(located.faces.tolist(), located.weights, strict=True))
         targets = target.points([pin["target"] for pin in pins], "target", len(pins))
-        return cls(
+        edit = cls(
             tuple(
                 Pin(int(pin["id"]), face, weights, goal, int(pin.get("depth", 0)), _angle(pin.get("angle")))
                 for pin, (face, weights), goal in zip(pins, points, targets, strict=True)
             )
         )
+        check_pins(edit.pins, len(mesh.faces))
+        return edit
 
 
 def _lie_on(mesh: TriMesh, pins: list[Any]) -> bool:
