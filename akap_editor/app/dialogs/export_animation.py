@@ -209,7 +209,7 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
 
 
 def _draw_options(options: AnimationExportOptions, scale: float) -> None:
-    """Draw what can be chosen about the format."""
+    """Draw the options of the chosen format."""
     below = imgui.get_cursor_pos_y() + 2 * imgui.get_text_line_height()
     widgets.secondary_text(options.chosen_format.about)
     imgui.set_cursor_pos_y(below + imgui.get_style().item_spacing.y)
@@ -217,8 +217,9 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     preset = preset_buttons([f"{rate}" for rate in FRAME_RATES], scale)
     if preset is not None:
         options.fps = float(FRAME_RATES[preset])
-    options.size = round(number_field("Size", options.size, LIMITS["size"], "%.0f px", 2.0, 96, scale))
-    widgets.show_tooltip("Of the longest side, at most; a drawing is not enlarged.")
+    tooltip = "The longest side, at most: drawings are not enlarged."
+    size = number_field("Size", options.size, LIMITS["size"], "%.0f px", 2.0, 96, scale, tooltip)
+    options.size = round(size)
     low, high = LIMITS["speed"]
     percent = number_field("Speed", 100 * options.speed, (100 * low, 100 * high), "%.4g %%", 0.5, 96, scale)
     options.speed = percent / 100
@@ -227,18 +228,18 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     names = list(EASINGS)
     _, chosen = imgui.combo("##easing", names.index(options.ease), [EASING_LABELS[name] for name in names])
     options.ease = names[chosen]
-    widgets.show_tooltip("Of the whole, on top of what keyframes do.")
-    widgets.switch_label("Repeat", LABEL_WIDTH * scale)
-    _, options.ping_pong = widgets.switch("Ping-pong", options.ping_pong, "Forwards, then backwards.")
+    widgets.show_tooltip("Easing of the whole animation, in addition to that of keyframes.")
+    widgets.switch_label("Playback", LABEL_WIDTH * scale)
+    _, options.ping_pong = widgets.switch("Ping-pong", options.ping_pong, "Play forwards, then backwards.")
     if options.chosen_format.repeats:
         imgui.same_line(0, 16 * scale)
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
-        _, options.loop = widgets.switch("For ever", options.loop, "Off: it is shown once, and stops.")
+        _, options.loop = widgets.switch("Loop forever", options.loop, "Off: the animation plays once.")
     options.opaque, options.background = background_field(
         options.opaque,
         options.background,
         not options.chosen_format.has_transparency,
-        "Without it, it is transparent.",
+        "Off: the background is transparent.",
         scale,
     )
 
@@ -247,5 +248,5 @@ def _draw_result(state: AppState, options: AnimationExportOptions, scale: float)
     """Draw the number of frames and seconds."""
     count = frame_count(state, options)
     seconds = f"{count / options.fps:.1f}".removesuffix(".0")
-    widgets.label("Makes", LABEL_WIDTH * scale)
+    widgets.label("Result", LABEL_WIDTH * scale)
     imgui.text(f"{count} frame{'s' * (count != 1)}, {seconds} s")

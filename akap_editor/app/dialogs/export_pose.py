@@ -7,7 +7,7 @@ from pathlib import Path
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...editor.document.document import Document
-from ...editor.framing import CROPS, Color, crop_box, output_size
+from ...editor.framing import CROPS, MAX_SIZE, Color, crop_box, output_size
 from ...errors import InputError
 from ...io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of
 from ...io.painter import Painter
@@ -19,10 +19,10 @@ from .file_dialog import FileDialog, FileRequest
 
 SCALES = (0.5, 1.0, 2.0, 4.0)
 SMALLEST_SCALE, LARGEST_SCALE = 0.01, 100.0
-_CROPS = {"none": "Frame and pose", "frame": "Picture's frame", "pose": "Pose alone"}
+_CROPS = {"none": "Frame and pose", "frame": "Picture frame", "pose": "Pose only"}
 _ABOUT_CROPS = (
-    "Frame and pose: nothing is cut off. Picture's frame: as large as the picture was, so that it can take "
-    "its place. Pose alone: no empty space around."
+    "Frame and pose: nothing is cut off. Picture frame: the size of the picture, so that the export can "
+    "replace it. Pose only: no empty space around the pose."
 )
 _WIDTH, _HEIGHT, _LIST_WIDTH = 580, 226, 208  # design points
 
@@ -128,7 +128,8 @@ def _draw_options(options: PoseExportOptions, document: Document, scale: float) 
     draw_format_options = _draw_framing if options.format.uses_framing else _draw_mesh_size
     problem = draw_format_options(options, document, scale)
     widgets.switch_label("Pose", LABEL_WIDTH * scale)
-    _, options.rest = widgets.switch("At rest", options.rest, "The drawing as it was before it was bent.")
+    tooltip = "Export the rest pose instead of the current pose."
+    _, options.rest = widgets.switch("Rest pose", options.rest, tooltip)
     return problem
 
 
@@ -140,7 +141,7 @@ def _draw_framing(options: PoseExportOptions, document: Document, scale: float) 
     if preset is not None:
         options.scale = SCALES[preset]
     problem = _draw_picture_size(options, document, scale)
-    widgets.label("Shows", LABEL_WIDTH * scale)
+    widgets.label("Crop", LABEL_WIDTH * scale)
     imgui.set_next_item_width(widgets.FULL)
     opened = imgui.begin_combo("##crop", _CROPS[options.crop])
     widgets.show_tooltip(_ABOUT_CROPS)
@@ -150,7 +151,7 @@ def _draw_framing(options: PoseExportOptions, document: Document, scale: float) 
                 options.crop = name
         imgui.end_combo()
     options.is_opaque, options.background = background_field(
-        options.is_opaque, options.background, False, "Without it, the background is transparent.", scale
+        options.is_opaque, options.background, False, "Off: the background is transparent.", scale
     )
     return problem
 
@@ -161,7 +162,7 @@ def _draw_picture_size(options: PoseExportOptions, document: Document, scale: fl
     try:
         width, height = options.output_size(document)
     except InputError:
-        problem = "more than 8192 px a side"
+        problem = f"More than {MAX_SIZE} px per side"
         imgui.text_colored(ImVec4(*ACCENT), problem)
         return problem
     imgui.text(f"{width} × {height} px")

@@ -50,17 +50,18 @@ def number_field(
     speed: float,
     width: float,
     scale: float,
+    tooltip: str = "",
 ) -> float:
     """Draw a labeled number field that is dragged or typed into; return its value.
 
     limits: lowest and highest value; text_format: as for printf; speed: change per point of a drag; width: of
-    the field in design points.
+    the field in design points; tooltip: follows the hint how to use the field.
     """
     widgets.label(label, LABEL_WIDTH * scale)
     imgui.set_next_item_width(width * scale)
     clamp = imgui.SliderFlags_.always_clamp
     _, value = imgui.drag_float(f"##{label}", value, speed, *limits, text_format, clamp)
-    widgets.show_tooltip("Drag, or double-click to type.")
+    widgets.show_tooltip(f"Drag, or double-click to type. {tooltip}".strip())
     return float(value)
 
 

@@ -65,7 +65,7 @@ def test_all_that_can_be_chosen_about_a_picture(bent, tmp_path):
 
     def crop(hand):
         hand.set_ref(hand.window_info(f"//{EXPORT}###dialog {EXPORT}/##options").window)
-        hand.combo_click("##crop/Pose alone")
+        hand.combo_click("##crop/Pose only")
 
     bent.do(crop)
     choice = dialog(bent).options
@@ -93,7 +93,7 @@ def test_every_format(bent, tmp_path, suffix):
 
 def test_the_drawing_at_rest(bent, tmp_path):
     bent.menu("File", "Export...")
-    bent.dialog(EXPORT, option("glTF binary"), option("At rest"), "Export...")
+    bent.dialog(EXPORT, option("glTF binary"), option("Rest pose"), "Export...")
     assert bent.file_request.name == "figure-rest.glb"
     bent.key(Key.enter)
     bent.settle()
