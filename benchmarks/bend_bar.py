@@ -1,7 +1,7 @@
-"""The bar of the paper's Fig. 9 and Table 1: at which bend does each method give the paper's figures?
+"""The bar of the paper's Fig. 9 and Table 1, by every method: which bend gives the paper's figures?
 
-Run from the project's root: python benchmarks/bend_bar.py [vertices]. Takes minutes; docs/methods.md has what
-came out.
+Run from the project's root: python benchmarks/bend_bar.py [vertices]. Takes minutes; docs/methods.md has the
+results.
 """
 
 import sys
@@ -19,8 +19,8 @@ PAPER = "the paper | 2.356 / 2.001 | 2.042 / 2.036 | 2.070 / 2.062 | 4.951 / 8.1
 CORNERS = MIDDLE + [[x, y] for x in (-REACH, REACH) for y in (-HALF_HEIGHT, HALF_HEIGHT)]
 
 
-def bent(degrees: float) -> Floats:
-    """Where the pins at the ends are on the arc on which the bar's middle line keeps its length, (4, 2)."""
+def arc_targets(degrees: float) -> Floats:
+    """The targets of the pins at the ends, (4, 2), on an arc on which the middle line keeps its length."""
     if not degrees:
         return CORNERS
     radius = 2 * REACH / np.radians(degrees)
@@ -29,14 +29,14 @@ def bent(degrees: float) -> Floats:
     return MIDDLE + np.stack([arm * np.sin(along / radius), radius - arm * np.cos(along / radius)], axis=1)
 
 
-def bend(drawing: akap.Drawing, spec: str, degrees: float, moves: int, held: int = 0) -> str:
-    """E_area / E_angle after a bend in equal moves, then ``held`` more steps."""
-    method, settings = parse_method(spec)
-    deformer = akap.make_deformer(method, drawing.mesh, **settings)
+def bend(drawing: akap.Drawing, spec: str, degrees: float, moves: int, settling: int = 0) -> str:
+    """E_area / E_angle after a bend in equal moves, then ``settling`` more steps at the end."""
+    method, parameters = parse_method(spec)
+    deformer = akap.make_deformer(method, drawing.mesh, **parameters)
     deformer.set_pins(drawing.mesh.locate(CORNERS))
     pose = drawing.mesh.vertices
-    for move in [*range(1, moves + 1), *[moves] * held]:
-        pose = deformer.step(pose, bent(degrees * move / moves)).positions
+    for move in [*range(1, moves + 1), *[moves] * settling]:
+        pose = deformer.step(pose, arc_targets(degrees * move / moves)).positions
     after = akap.distortion(drawing.mesh, pose)
     flipped = f" ({after.flipped} flipped)" if after.flipped else ""
     return f"{after.area:.3f} / {after.angle:.3f}{flipped}"
@@ -50,7 +50,7 @@ def print_table(head: str, rows: Iterable[tuple[str, list[str]]]) -> None:
 
 
 def main() -> None:
-    """By bend, then AKAP by the number of moves at the bend at which the others agree with the paper."""
+    """Print results by bend, then those of AKAP by the number of moves, at the bend of the paper."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 2000
     image = akap.read_image(resource("assets", "drawings", "bar.png"))
     drawing = akap.make_drawing(image, vertices=count, name="bar")

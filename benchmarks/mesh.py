@@ -1,8 +1,8 @@
-"""Meshing alone: a few hundred generated cartoons of 512×512 pixels, how long each takes and how good it is.
+"""Time and quality of meshing a few hundred generated cartoons of 512 × 512 pixels.
 
 Run from the project's root: python benchmarks/mesh.py [--count 300] [--vertices 2000] [--folder DIR]
-Every cartoon is a body of a few overlapping ellipses with limbs, tails, hair, a spot or two missing, islands
-and dust, drawn from a seed. Times are from alpha to mesh, without reading files and measuring.
+Every cartoon is drawn from a seed: a body of overlapping ellipses with limbs, hair, holes, islands and dust.
+Times are those from alpha to mesh, without reading files and measuring quality.
 """
 
 import os
@@ -25,7 +25,7 @@ SLIVER = 5.0  # degrees
 
 
 def cartoon(seed: int) -> np.ndarray:
-    """Alpha (512, 512) of a figure that no one has seen before."""
+    """The alpha channel (512, 512) of a random figure."""
     random = np.random.default_rng(seed)
     canvas = Image.new("L", (SIZE * SAMPLES, SIZE * SAMPLES))
     draw = ImageDraw.Draw(canvas)
@@ -53,7 +53,7 @@ def _ellipse(draw: ImageDraw.ImageDraw, center: np.ndarray, radii: np.ndarray, f
 
 
 def _limb(draw: ImageDraw.ImageDraw, random: np.random.Generator, at: np.ndarray, angle: float) -> None:
-    """A row of discs along a way that bends, thinner towards its end."""
+    """Draw discs along a curve, smaller towards its end."""
     width = random.uniform(5, 24)
     bend, taper = random.normal(0, 0.05), random.uniform(0.95, 1.0)
     for _ in range(random.integers(10, 30)):
@@ -63,13 +63,13 @@ def _limb(draw: ImageDraw.ImageDraw, random: np.random.Generator, at: np.ndarray
 
 
 def _stroke(draw: ImageDraw.ImageDraw, random: np.random.Generator, at: np.ndarray, width: float) -> None:
-    """Hair, whiskers: a line that may leave the head."""
+    """Draw a line that may leave the head: hair, whiskers."""
     ends = [at + random.normal(0, 30, 2), at + random.normal(0, 90, 2)]
     draw.line([tuple(end * SAMPLES) for end in ends], fill=255, width=max(round(width * SAMPLES), 1))
 
 
 def main() -> None:
-    """One line for each figure that stands out, and all together."""
+    """Print the results of all figures, and one line for each of the five worst."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--vertices", type=int, default=2000)
@@ -81,20 +81,20 @@ def main() -> None:
         pictures = ((path.name, np.ascontiguousarray(read_image(path)[..., 3])) for path in names)
     else:
         pictures = ((f"cartoon {seed}", cartoon(seed)) for seed in range(options.count))
-    mesh_picture(cartoon(0))  # starts the child process
+    mesh_picture(cartoon(0))  # starts the child process of Triangle
     seconds, cpu, qualities, missed, slivers, rows = [], [], [], 0, 0, []
     for name, alpha in pictures:
         started, used = time.perf_counter(), time.process_time()
-        made = mesh_picture(alpha, options.vertices, options.expand)
+        result = mesh_picture(alpha, options.vertices, options.expand)
         seconds.append(time.perf_counter() - started)
         cpu.append(time.process_time() - used)
-        quality = mesh_quality(made.mesh, alpha)
+        quality = mesh_quality(result.mesh, alpha)
         qualities.append(quality)
-        visible = made.mesh.rest_areas.sum() * (1 - quality.outside) / quality.covered
-        kept = quality.covered + made.speck_area / visible
-        slivers += int((smallest_angles(made.mesh) < SLIVER).sum())
+        visible = result.mesh.rest_areas.sum() * (1 - quality.outside) / quality.covered
+        covered = quality.covered + result.speck_area / visible
+        slivers += int((smallest_angles(result.mesh) < SLIVER).sum())
         missed += abs(quality.vertices - options.vertices) > 0.1 * options.vertices
-        rows.append((kept, quality, made.specks, name))
+        rows.append((covered, quality, result.specks, name))
     print(
         f"{len(rows)} pictures, {sum(q.faces for q in qualities)} faces\n"
         f"time: median {1000 * np.median(seconds):.1f} ms, 95 % {1000 * np.percentile(seconds, 95):.1f} ms, "
@@ -105,10 +105,10 @@ def main() -> None:
         f"worst 1st percentile {min(q.low_angle for q in qualities):.1f}°\n"
         f"vertices off by more than 10 %: {missed}"
     )
-    for kept, quality, specks, name in sorted(rows, key=lambda row: row[1].worst_angle)[:5]:
+    for covered, quality, specks, name in sorted(rows, key=lambda row: row[1].worst_angle)[:5]:
         print(
             f"  {name}: {quality.parts} parts, {quality.holes} holes, {specks} specks, "
-            f"{quality.vertices} vertices, worst angle {quality.worst_angle:.1f}°, covered {kept:.3%}"
+            f"{quality.vertices} vertices, worst angle {quality.worst_angle:.1f}°, covered {covered:.3%}"
         )
 
 

@@ -1,9 +1,9 @@
-"""The engine alone: one step of a dragged mesh, at several sizes, against the plain method and libigl's ARAP.
+"""Time of one step of a dragged mesh, at several sizes, compared with the plain method and libigl's ARAP.
 
 Run from the project's root: python benchmarks/step.py [--sizes 1000 3000 10000 30000] [--no-plain]
-The bar is bent by 90°, the elephant lifts its trunk, each in 60 frames of one step. All figures come from one
-run on one thread: "plain" factorizes both systems in every substep (`exact=True`), as the paper does; "ours"
-is the default, with and without the memory step. libigl's row appears where `pip install libigl` was done.
+The bar is bent by 90°, the elephant lifts its trunk, each in 60 frames of one step, on one thread. "plain"
+factorizes both systems in every substep (`exact=True`), as the paper does; "ours" is the default, with and
+without memory. The row of libigl appears if it is installed (`pip install libigl`).
 """
 
 import os
@@ -40,7 +40,7 @@ PARTS = ("assemble", "factor", "solve", "spirals", "memory")
 
 @dataclass
 class Drag:
-    """A mesh, its pins, and where they are at each frame, (frames, k, 2)."""
+    """A mesh, its pins, and their targets in each frame, (FRAMES, k, 2)."""
 
     name: str
     mesh: TriMesh
@@ -49,22 +49,22 @@ class Drag:
 
 
 def bar(vertices: int) -> Drag:
-    """A 5:1 bar, two pins at each end, the right end led along an arc to 90°."""
+    """A 5:1 bar with two pins at each end; the right end moves along an arc to 90°."""
     mesh = triangulate([Outline(np.array([[0.0, 0.0], [1000, 0], [1000, 200], [0, 200]]))], vertices)
     points = mesh.locate([[20, 50], [20, 150], [980, 50], [980, 150]])
     start = mesh.evaluate(points, mesh.vertices)
     path = np.repeat(start[None], FRAMES, axis=0)
     for frame, angle in enumerate(np.linspace(0, np.pi / 2, FRAMES + 1)[1:]):
-        turn = np.exp(1j * angle)
+        rotation = np.exp(1j * angle)
         end = 1000 / angle * (np.sin(angle) + 1j * (1 - np.cos(angle))) + 100j
         for pin in (2, 3):
-            place = end + turn * complex(start[pin, 0] - 1000, start[pin, 1] - 100)
-            path[frame, pin] = place.real, place.imag
+            target = end + rotation * complex(start[pin, 0] - 1000, start[pin, 1] - 100)
+            path[frame, pin] = target.real, target.imag
     return Drag("bar", mesh, points, path)
 
 
 def elephant(vertices: int) -> Drag:
-    """The bundled elephant, five pins that hold and one that lifts the trunk."""
+    """The bundled elephant with five pins that stay and one that lifts the trunk."""
     image = read_image(resource("assets", "drawings", "elephant.png"))
     mesh = make_drawing(image, vertices=vertices).mesh
     points = mesh.locate([(135, 800), (285, 795), (445, 795), (625, 800), (260, 420), (915, 180)])
@@ -74,56 +74,55 @@ def elephant(vertices: int) -> Drag:
 
 
 def run_ours(drag: Drag, timer: FunctionTimer, memory: float, exact: bool) -> float:
-    """Print one row; the median of a frame in milliseconds."""
+    """Run a drag and print one row; returns the median time of a frame in milliseconds."""
     deformer = AkapDeformer(drag.mesh, memory=memory, exact=exact)
     deformer.set_pins(drag.points)
-    # From here on only: the figures are those of a drag that is under way.
-    pose, frames, parts, creep = drag.mesh.vertices, [], [], 0.0
-    timer.take()
+    pose, frames, parts, drift = drag.mesh.vertices, [], [], 0.0
+    timer.take()  # without what was prepared before the drag
     for targets in drag.path:
         started = time.perf_counter()
         result = deformer.step(pose, targets)
         frames.append(1000 * (time.perf_counter() - started))
         parts.append(timer.take())
         pose = result.positions
-        held = (drag.path[0] == drag.path[-1]).all(axis=1)
-        off = drag.mesh.evaluate(drag.points, pose) - targets
-        creep = max(creep, float(np.linalg.norm(off[held], axis=1).max()))
+        is_fixed = (drag.path[0] == drag.path[-1]).all(axis=1)
+        offsets = drag.mesh.evaluate(drag.points, pose) - targets
+        drift = max(drift, float(np.linalg.norm(offsets[is_fixed], axis=1).max()))
     solver = deformer._system._pinned_system
     split = "  ".join(f"{np.median([1000 * row[part] for row in parts]):7.2f}" for part in PARTS)
     name = ("plain" if exact else "ours") + (" + memory" if memory else "")
     tail = f"{solver.factorizations:4d} {solver.iterations / FRAMES:5.1f}"
-    quality = quality_of(drag, pose, creep)
+    quality = quality_of(drag, pose, drift)
     print(
         f"  {name:<22}{np.median(frames):8.2f} {np.percentile(frames, 95):8.2f}  {split}  {tail}  {quality}"
     )
     return float(np.median(frames))
 
 
-def quality_of(drag: Drag, pose: np.ndarray, creep: float) -> str:
-    """E_area, E_angle, flipped faces, and how far a held pin ever was from its place."""
+def quality_of(drag: Drag, pose: np.ndarray, drift: float) -> str:
+    """Format E_area, E_angle, the number of flipped faces, and the largest drift of a fixed pin in pixels."""
     measure = distortion(drag.mesh, pose)
-    return f"{measure.area:8.4f} {measure.angle:8.4f} {measure.flipped:5d} {creep:7.3f}"
+    return f"{measure.area:8.4f} {measure.angle:8.4f} {measure.flipped:5d} {drift:7.3f}"
 
 
 def run_libigl(drag: Drag, iterations: int) -> None:
-    """libigl's ARAP pins vertices only: the vertices nearest to our pins, led along the same ways."""
+    """Print a row for libigl's ARAP, which pins vertices only: those nearest to our pins."""
     try:
         import igl
     except ImportError:
         return
     mesh = drag.mesh
     start = drag.mesh.evaluate(drag.points, mesh.vertices)
-    near = np.array([np.argmin(((mesh.vertices - p) ** 2).sum(axis=1)) for p in start], dtype=np.int32)
+    nearest = np.array([np.argmin(((mesh.vertices - p) ** 2).sum(axis=1)) for p in start], dtype=np.int32)
     data = igl.ARAPData()
     data.max_iter = iterations
     data.energy = igl.ARAP_ENERGY_TYPE_ELEMENTS
-    igl.arap_precomputation(mesh.vertices, mesh.faces.astype(np.int64), 2, near, data)
+    igl.arap_precomputation(mesh.vertices, mesh.faces.astype(np.int64), 2, nearest, data)
     pose, frames = np.array(mesh.vertices), []
     for targets in drag.path:
-        goal = mesh.vertices[near] + targets - start
+        goals = mesh.vertices[nearest] + targets - start
         started = time.perf_counter()
-        pose = np.asarray(igl.arap_solve(goal, data, pose))
+        pose = np.asarray(igl.arap_solve(goals, data, pose))
         frames.append(1000 * (time.perf_counter() - started))
     blank = "  ".join("      –" for _ in PARTS)
     name = f"libigl ARAP, {iterations} it."
@@ -134,7 +133,7 @@ def run_libigl(drag: Drag, iterations: int) -> None:
 
 
 def instrument() -> FunctionTimer:
-    """Sort the engine's time by part."""
+    """Measure the engine's time by part."""
     timer = FunctionTimer(PARTS)
     timer.wrap(KillingMatrix, "nonzeros", "assemble")
     timer.wrap(SparseCholesky, "factorize", "factor")
@@ -146,7 +145,7 @@ def instrument() -> FunctionTimer:
 
 
 def main() -> None:
-    """One table a drag and size."""
+    """Print one table for each drag and size."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=[1000, 3000, 10000, 30000])
     parser.add_argument("--no-plain", action="store_true", help="leave out the slow rows")
@@ -155,7 +154,7 @@ def main() -> None:
     head = "  ".join(f"{part:>7}"[-8:] for part in PARTS)
     print(
         f"{'milliseconds a frame':<24}{'median':>8} {'95 %':>8}  {head}  fact. iter."
-        "    E_area  E_angle flips   creep"
+        "    E_area  E_angle flips   drift"
     )
     for make in (bar, elephant):
         for size in options.sizes:

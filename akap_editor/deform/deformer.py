@@ -12,6 +12,7 @@ from ..geometry.mesh import MeshPoints, TriMesh
 from ..geometry.operators import to_complex
 from ..geometry.validation import Complexes, Floats, as_number, as_points
 
+SAME_PLACE = 1e-3  # share of √area: pins that are closer count as at one place
 MAX_REACH = 1e9  # times √area: a target farther from the drawing leaves a pose no digits
 
 Flow = Callable[[float], Floats]  # from time, 0 to 1, to a pose (n, 2)

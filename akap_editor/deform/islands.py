@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from ..geometry.mesh import MeshPoints, TriMesh
+from ..geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from ..geometry.operators import to_complex, to_points
 from ..geometry.validation import Complexes, Floats, Ints, as_points
 from .deformer import Deformer, Flow, StepResult
@@ -91,7 +91,7 @@ class IslandDeformer(Deformer):
         corner_areas = np.repeat(mesh.rest_areas / 3, 3)
         self._vertex_areas = np.bincount(mesh.faces.ravel(), corner_areas, len(self._rest))
         self._component_areas = np.bincount(mesh.component, self._vertex_areas)
-        self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
+        self.set_pins(NO_POINTS)
 
     def set_pins(self, points: MeshPoints) -> None:
         """Choose the pins, k points of the mesh; moves nothing.

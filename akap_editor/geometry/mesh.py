@@ -46,6 +46,9 @@ class MeshPoints:
         return len(self.faces)
 
 
+NO_POINTS = MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
+
+
 @dataclass(frozen=True, eq=False)
 class TriMesh:
     """A triangle mesh in its rest pose, in drawing units: image pixels, x right, y down.

@@ -9,7 +9,7 @@ from scipy.sparse import csr_array
 from .mesh import TriMesh, signed_areas
 from .validation import Complexes, Floats, Ints
 
-_NEXT, _PREVIOUS = [1, 2, 0], [2, 0, 1]  # the other two corners of a face, for each corner
+NEXT, PREVIOUS = [1, 2, 0], [2, 0, 1]  # the other two corners of a face, for each corner
 
 
 def to_complex(points: Floats) -> Complexes:
@@ -31,8 +31,8 @@ def hat_gradients(positions: Floats, faces: Ints) -> tuple[Floats, Floats, Float
     areas = signed_areas(positions, faces)
     x, y = positions[:, 0][faces], positions[:, 1][faces]
     scale = 0.5 / areas[:, None]
-    dx = (y[:, _NEXT] - y[:, _PREVIOUS]) * scale
-    dy = (x[:, _PREVIOUS] - x[:, _NEXT]) * scale
+    dx = (y[:, NEXT] - y[:, PREVIOUS]) * scale
+    dy = (x[:, PREVIOUS] - x[:, NEXT]) * scale
     return dx, dy, areas
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from akap_editor.deform.methods import make_deformer, method_names, presets_of
 from akap_editor.errors import AkapError, InputError, SolverError
-from akap_editor.geometry.mesh import MeshPoints, TriMesh
+from akap_editor.geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from tests.support import shapes
 
 # Every method is tested with the parameters of each of its presets, and with these.
@@ -32,7 +32,6 @@ CASES = {
     ]
 }
 SHAPE_NAMES = ["triangle", "bar", "star", "ring", "islands", "strip", "disc 1", "tied islands"]
-NO_PINS = MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
 
 
 @pytest.fixture(params=CASES)
@@ -158,7 +157,7 @@ def test_choosing_pins_moves_nothing_at_rest(case, mesh):
 
 def test_without_pins_nothing_moves(case, mesh):
     _, pose, _ = scene(mesh)
-    assert stepped(case, mesh, NO_PINS, pose, np.zeros((0, 2))).tolist() == pose.tolist()
+    assert stepped(case, mesh, NO_POINTS, pose, np.zeros((0, 2))).tolist() == pose.tolist()
 
 
 def test_part_without_a_pin_holds_still(case):

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike
 
 from akap_editor.deform.deformer import Deformer, StepReport, StepResult
 from akap_editor.deform.methods import METHODS, Method
-from akap_editor.geometry.mesh import MeshPoints, TriMesh
+from akap_editor.geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from akap_editor.geometry.validation import as_points
 
 TOY = "toy"
@@ -17,7 +17,7 @@ class TranslationDeformer(Deformer):
 
     def __init__(self, mesh: TriMesh) -> None:
         self._mesh = mesh
-        self._points = MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
+        self._points = NO_POINTS
 
     def set_pins(self, points: MeshPoints) -> None:
         self._points = points

@@ -9,7 +9,7 @@ from ..app_state import AppState
 from ..canvas.view_options import DISTORTION_RANGES
 from ..commands import registry as commands
 from ..theme import QUIET
-from . import method_parameters as settings_panel
+from . import method_parameters
 
 _ROWS = 6  # of pins that are seen at once
 _SWITCHES = (
@@ -82,7 +82,7 @@ def bending(state: AppState, scale: float) -> None:
     if widgets.switch("Remember the rest shape", commands.remembers(state), remember)[0]:
         widgets.run(state, commands.REMEMBER)
     imgui.end_disabled()
-    settings_panel.draw(state)
+    method_parameters.draw(state)
     imgui.begin_disabled(not commands.RESET_POSE.enabled(state))
     if imgui.button("Reset pose", ImVec2(widgets.FULL, 0)):
         widgets.run(state, commands.RESET_POSE)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import SolverError
 from ...geometry.jit import compiled
-from ...geometry.mesh import MeshPoints, TriMesh, signed_areas
+from ...geometry.mesh import NO_POINTS, MeshPoints, TriMesh, signed_areas
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import (
     Complexes,
@@ -127,7 +127,7 @@ class AkapDeformer(Deformer):
         self._flow = LogSpirals(mesh).flow if self._has_spirals else linear_flow
         self._memory = RestMemory(mesh, self._system, self._stiffness)
         self._faces, self._min_areas = mesh.faces.copy(), _MIN_AREA_SHARE * mesh.rest_areas
-        self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
+        self.set_pins(NO_POINTS)
 
     def set_pins(self, points: MeshPoints) -> None:
         """Choose the pins, k points of the mesh; moves nothing.

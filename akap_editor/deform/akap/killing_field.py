@@ -5,14 +5,13 @@ from numpy.typing import NDArray
 
 from ...geometry.jit import compiled
 from ...geometry.killing_matrix import KillingMatrix
-from ...geometry.mesh import MeshPoints, TriMesh
+from ...geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints
 from ..cholesky import SymmetricPattern
+from ..deformer import SAME_PLACE
 from .pin_rotation import PinRotationConstraints
 from .preconditioned_cholesky import PreconditionedCholesky
-
-_SAME_PLACE = 1e-3  # share of √area: pins that are closer count as at one place
 
 
 class KillingSystem:
@@ -62,9 +61,9 @@ class KillingSystem:
             inner, self._inner_nonzeros = self.pattern.restrict(unknowns)
             self._interior_system = PreconditionedCholesky(inner, exact)
         self._first_faces = np.unique(mesh.component[mesh.faces[:, 0]], return_index=True)[1]
-        self._same_place = _SAME_PLACE * mesh.length
+        self._same_place = SAME_PLACE * mesh.length
         self._frames = _VertexFrames(mesh)
-        self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
+        self.set_pins(NO_POINTS)
 
     def set_pins(self, points: MeshPoints, rotation: PinRotationConstraints | None = None) -> None:
         """Choose the constraints C of eq. 3, k points, and the faces that rotate with pins."""

@@ -20,12 +20,10 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 
 from ...geometry.mesh import TriMesh
-from ...geometry.operators import to_complex, to_points
+from ...geometry.operators import NEXT, PREVIOUS, to_complex, to_points
 from ...geometry.validation import Complexes, Floats, as_number
 from ..cholesky import SparseCholesky, SummedPattern
 from .rest_based import RestBasedDeformer, product
-
-_NEXT, _PREVIOUS = [1, 2, 0], [2, 0, 1]  # the other two corners of a face, for each corner
 
 
 class IgarashiDeformer(RestBasedDeformer):
@@ -43,20 +41,20 @@ class IgarashiDeformer(RestBasedDeformer):
         self._pin_weight = as_number(pin_weight, "pin_weight", 1.0, 1e5) ** 2
         n, faces = len(mesh.vertices), mesh.faces
         corners = to_complex(mesh.vertices)[faces]
-        opposite = corners[:, _PREVIOUS] - corners[:, _NEXT]
+        opposite = corners[:, PREVIOUS] - corners[:, NEXT]
         # The terms of a face are multiples of Σ e_k v_k, where e_k is the edge opposite to corner k: the only
         # linear form that is 0 for all similarities. The term of corner k has the factor 1 / |e_k|².
         scale = np.sqrt((np.abs(opposite) ** -2.0).sum(axis=1, keepdims=True))
         rows = np.repeat(np.arange(len(faces)), 3)
         forms = csr_array(((scale * opposite).ravel(), (rows, faces.ravel())), shape=(len(faces), n))
         self._similar = forms.conj().T @ forms
-        starts, ends = faces.ravel(), faces[:, _NEXT].ravel()
+        starts, ends = faces.ravel(), faces[:, NEXT].ravel()
         edge = np.arange(len(starts))
         signs = np.concatenate([np.ones(len(edge)), -np.ones(len(edge))])
         self._edges = csr_array(
             (signs, (np.tile(edge, 2), np.concatenate([ends, starts]))), shape=(len(edge), n)
         )
-        self._rest_edges = (corners[:, _NEXT] - corners).ravel()
+        self._rest_edges = (corners[:, NEXT] - corners).ravel()
         arms = corners - corners.mean(axis=1, keepdims=True)
         self._fit = csr_array((arms.conj().ravel(), (rows, faces.ravel())), shape=forms.shape)
         super().__init__(mesh)

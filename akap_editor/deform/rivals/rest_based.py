@@ -9,12 +9,10 @@ from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 
 from ...errors import SolverError
-from ...geometry.mesh import MeshPoints, TriMesh, signed_areas
+from ...geometry.mesh import NO_POINTS, MeshPoints, TriMesh, signed_areas
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints, as_indices, as_points
-from ..deformer import Deformer, StepReport, StepResult, as_targets
-
-_SAME_PLACE = 1e-3  # share of √area: pins that are closer count as at one place
+from ..deformer import SAME_PLACE, Deformer, StepReport, StepResult, as_targets
 
 
 def product(matrix: Floats | Complexes, values: Complexes) -> Complexes:
@@ -32,8 +30,8 @@ class RestBasedDeformer(Deformer, ABC):
     def __init__(self, mesh: TriMesh) -> None:
         self._mesh = mesh
         self._rest = to_complex(mesh.vertices)
-        self._same_place = _SAME_PLACE * mesh.length
-        self.set_pins(MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3))))
+        self._same_place = SAME_PLACE * mesh.length
+        self.set_pins(NO_POINTS)
 
     def set_pins(self, points: MeshPoints) -> None:
         """Choose the pins, k points of the mesh; moves nothing.

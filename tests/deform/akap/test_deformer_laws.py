@@ -8,7 +8,7 @@ from akap_editor.deform.akap.killing_field import KillingSystem
 from akap_editor.deform.deformer import StepReport, StepResult
 from akap_editor.errors import InputError, SolverError
 from akap_editor.geometry.distortion import distortion
-from akap_editor.geometry.mesh import MeshPoints, signed_areas
+from akap_editor.geometry.mesh import NO_POINTS, MeshPoints, signed_areas
 from akap_editor.geometry.operators import to_complex, to_points
 from tests.support import dense, shapes
 from tests.support.deformers import akap_with_pins, bent_pose
@@ -210,8 +210,7 @@ def test_path_of_a_rotation_is_the_rotation(mesh, t):
 
 
 def test_without_pins_nothing_moves_at_any_time(mesh):
-    none = MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
-    result = akap_with_pins(mesh, none).step(mesh.vertices, np.zeros((0, 2)))
+    result = akap_with_pins(mesh, NO_POINTS).step(mesh.vertices, np.zeros((0, 2)))
     assert result.at(0.5).tolist() == mesh.vertices.tolist()
 
 

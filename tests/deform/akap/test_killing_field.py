@@ -5,7 +5,7 @@ import pytest
 
 from akap_editor.deform.akap.killing_field import KillingSystem
 from akap_editor.errors import SolverError
-from akap_editor.geometry.mesh import MeshPoints, TriMesh
+from akap_editor.geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from akap_editor.geometry.operators import to_complex, to_points
 from tests.support import dense, shapes
 from tests.support.dense import killing_energy
@@ -134,8 +134,7 @@ def test_larger_weight_follows_the_pins_better():
 
 
 def test_without_pins_nothing_moves(mesh):
-    none = MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
-    for field in fields(mesh, bent(mesh), none, np.zeros((0, 2))):
+    for field in fields(mesh, bent(mesh), NO_POINTS, np.zeros((0, 2))):
         assert not field.any()
 
 
