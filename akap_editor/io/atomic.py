@@ -14,6 +14,7 @@ from typing import Any
 from ..errors import FileError, InputError
 
 MAX_FILE_BYTES = 2**30
+TEMPORARY_PREFIX, TEMPORARY_SUFFIX = ".akap-", ".tmp"  # of a file that is being written
 
 Write = Callable[[str | Path, bytes], None]  # writes a file, as `write_atomic` does
 
@@ -62,7 +63,7 @@ def write_atomic(path: str | Path, data: bytes) -> None:
             raise OSError(errno.EINVAL, "it is not a regular file")
         if exists and not os.access(target, os.W_OK):  # moving over a protected file would succeed
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-        temporary = target.with_name(f".akap-{secrets.token_hex(8)}.tmp")
+        temporary = target.with_name(f"{TEMPORARY_PREFIX}{secrets.token_hex(8)}{TEMPORARY_SUFFIX}")
         file = temporary.open("xb")
         try:
             with file:

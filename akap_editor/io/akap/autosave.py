@@ -1,4 +1,4 @@
-"""Recovery copies of unsaved work in the user's state folder, so that a crash costs at most a minute."""
+"""Recovery copies of unsaved work in the user's state folder: a crash costs seconds, at most a minute."""
 
 import json
 import os
@@ -15,13 +15,15 @@ from filelock import FileLock, Timeout
 
 from ...editor.document.document import Document, EditState
 from ...errors import InputError, file_errors
-from ..atomic import read_file, write_atomic
+from ..atomic import TEMPORARY_PREFIX, TEMPORARY_SUFFIX, read_file, write_atomic
 from .archive import Archive
 from .json_records import parse_record, require
 from .project import PROJECT_SUFFIX, decode_document, encode_document
 
 FOLDER_VARIABLE = "AKAP_EDITOR_STATE"  # environment variable with another folder, e.g. for tests
-COPY_SECONDS = 60.0
+FIRST_COPY_SECONDS = 3.0  # from the first change to the first copy
+COPY_SECONDS = 60.0  # from a change that is not in the copy to the next one
+STALE_SECONDS = 3600.0  # age of a temporary file that no running program can still be writing
 COPY_GESTURES = 10
 ORIGIN_ENTRY = "autosave.json"  # only in recovery copies: the path of the document's own file
 MAX_ORIGIN_BYTES = 2**16
@@ -52,8 +54,11 @@ class RecoveryCopy:
 
     @property
     def time(self) -> float:
-        """When the copy was written, in seconds of `time.time`."""
-        return self.path.stat().st_mtime
+        """When the copy was written, in seconds of `time.time`; 0 if the system cannot tell."""
+        try:
+            return self.path.stat().st_mtime
+        except OSError:
+            return 0.0
 
     def read(self) -> Document:
         """The document, with the ``path`` of its own file, None if it was never saved. Raises InputError."""
@@ -84,8 +89,9 @@ class RecoveryCopy:
 class Autosave:
     """Keeps a recovery copy of the open document as long as it has unsaved changes.
 
-    A copy is written in another thread, a minute after the first change that is not in the copy, or at every
-    tenth gesture. Several programs may share a folder: each has its own copy, which it locks while it runs.
+    Copies are written in another thread: the first one seconds after the first change, the next ones a minute
+    after the first change that is not in the copy, or at every tenth gesture. Several programs may share a
+    folder: each has its own copy, which it locks while it runs.
     clock: seconds that never decrease; worker: has one thread, so that no job overtakes another.
     """
 
@@ -105,12 +111,14 @@ class Autosave:
         self._changed_at: float | None = None  # time of the first change that is not in the copy
         self._gesture_count = 0  # since the last copy
         self._last_gesture: object = None
+        self._has_failed = False  # and has said so
 
     def watch(self, document: Document | None, modified: bool, gesture: object = None) -> None:
         """Start a copy if one is due. Called about once a frame; takes microseconds.
 
         modified: whether there are unsaved changes; gesture: an object that differs after each gesture.
-        Raises InputError once if the last copy could not be written; the next attempt is a minute later.
+        Raises InputError if a copy could not be written, whatever the reason, but only once until one
+        succeeds; the next attempt is a minute later.
         """
         if document is None or not modified:
             self._discard_copy()
@@ -121,12 +129,19 @@ class Autosave:
             self._gesture_count += 1
         if self._job is not None and self._job.done():
             job, self._job = self._job, None
-            self._check(job)
+            had_failed = self._has_failed
+            try:
+                self._check(job)
+            except InputError:
+                if not had_failed:
+                    raise
         if document.state is self._copied_state:
             return
         now = self._clock()
         self._changed_at = now if self._changed_at is None else self._changed_at
-        is_due = now - self._changed_at >= COPY_SECONDS or self._gesture_count >= COPY_GESTURES
+        is_first = not self._has_copy and not self._has_failed
+        delay = FIRST_COPY_SECONDS if is_first else COPY_SECONDS
+        is_due = now - self._changed_at >= delay or self._gesture_count >= COPY_GESTURES
         if self._job is None and is_due:
             self._job, self._has_copy = self._worker.submit(self._write, document), True
             self._copied_state, self._changed_at, self._gesture_count = document.state, None, 0
@@ -142,11 +157,14 @@ class Autosave:
         self._worker.shutdown()
 
     def _check(self, job: "Future[None]") -> None:
+        """Raise InputError if a copy could not be written, by whatever exception."""
         try:
             job.result()
-        except (OSError, InputError, NotImplementedError) as error:
-            self._copied_state = None
-            raise InputError(f"Unsaved work is not protected against a crash. {error}") from error
+        except Exception as error:  # a bug in what it writes must not end the program
+            self._copied_state, self._has_failed = None, True
+            reason = str(error) or type(error).__name__
+            raise InputError(f"Unsaved work is not protected against a crash. {reason}") from error
+        self._has_failed = False
 
     def _discard_copy(self) -> None:
         """Delete the copy in the worker's thread, because its content is saved or not wanted."""
@@ -183,14 +201,31 @@ class Autosave:
         This program owns them until it calls `adopt`, or `RecoveryCopy.discard` or `RecoveryCopy.release`.
         """
         copies = []
-        with suppress(OSError, NotImplementedError):  # there is no folder, or the file system has no locks
+        with suppress(OSError):  # there is no folder
             for path in self._folder.glob(f"*{PROJECT_SUFFIX}"):
-                copy = RecoveryCopy.claim(path)
-                if copy is not None and path.exists():
-                    copies.append(copy)
-                elif copy is not None:
-                    copy.release()
+                # Without rights, or on a file system without locks; other copies may still be readable.
+                with suppress(OSError, NotImplementedError):
+                    copy = RecoveryCopy.claim(path)
+                    if copy is not None and path.exists():
+                        copies.append(copy)
+                    elif copy is not None:
+                        copy.release()
         return sorted(copies, key=lambda copy: copy.time, reverse=True)
+
+    def remove_leftovers(self) -> None:
+        """Delete the temporary files of killed programs, and their locks if no copy is left."""
+        with suppress(OSError):
+            for path in self._folder.glob("*.lock"):
+                with suppress(OSError, NotImplementedError):
+                    copy = RecoveryCopy.claim(path.with_suffix(PROJECT_SUFFIX))
+                    if copy is not None and not copy.path.exists():
+                        copy.release()  # which deletes the lock
+                    elif copy is not None:
+                        copy.lock.release()
+            for path in self._folder.glob(f"{TEMPORARY_PREFIX}*{TEMPORARY_SUFFIX}"):
+                with suppress(OSError):
+                    if time.time() - path.stat().st_mtime > STALE_SECONDS:
+                        path.unlink()
 
     def adopt(self, copy: RecoveryCopy, document: Document) -> None:
         """Continue a lost copy as this program's own; ``document`` is what was read from it."""

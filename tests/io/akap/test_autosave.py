@@ -13,11 +13,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from filelock import FileLock
 
 import akap_editor
 from akap_editor.errors import InputError
 from akap_editor.io.akap import autosave as autosave_module
-from akap_editor.io.akap.autosave import COPY_GESTURES, COPY_SECONDS, ORIGIN_ENTRY, Autosave
+from akap_editor.io.akap.autosave import (
+    COPY_GESTURES,
+    COPY_SECONDS,
+    FIRST_COPY_SECONDS,
+    ORIGIN_ENTRY,
+    STALE_SECONDS,
+    Autosave,
+)
 from akap_editor.io.akap.project import encode_document, load
 from tests.io.akap.test_project import assert_equal
 
@@ -68,12 +76,12 @@ def copies(folder):
     return sorted(folder.glob("*.akap"))
 
 
-def test_a_minute_after_the_first_change_there_is_a_copy(watch, folder, document):
+def test_the_first_copy_comes_within_seconds_and_the_next_ones_every_minute(watch, folder, document):
     watch.see(document)
-    watch.now = COPY_SECONDS - 0.1
+    watch.now = FIRST_COPY_SECONDS - 0.1
     watch.see(moved(document, 1))
     assert copies(folder) == []
-    watch.now = COPY_SECONDS
+    watch.now = FIRST_COPY_SECONDS
     last = moved(document, 2)
     watch.see(last)
     (path,) = copies(folder)
@@ -83,8 +91,10 @@ def test_a_minute_after_the_first_change_there_is_a_copy(watch, folder, document
     assert_equal(load(path), last)
     later = moved(document, 3)
     watch.see(later)
+    watch.now += COPY_SECONDS - 0.1
+    watch.see(later)
     assert_equal(load(path), last), "the next minute begins with the next change"
-    watch.now += COPY_SECONDS
+    watch.now += 0.1
     watch.see(later)
     assert_equal(load(path), later)
     assert copies(folder) == [path]
@@ -141,19 +151,33 @@ def test_watching_never_waits_for_the_writer(watch, folder, document, monkeypatc
     assert_equal(load(copies(folder)[0]), document)
 
 
-def test_failure_is_told_once_and_tried_again_a_minute_later(watch, folder, document, monkeypatch):
+@pytest.mark.parametrize(
+    "error",
+    [
+        InputError("Couldn't save: no space left on device"),
+        OSError(28, "no space left on device"),
+        ValueError("Out of range float values are not JSON compliant: no space"),
+        TypeError("no space: a bug in what is written"),
+        MemoryError("no space in memory"),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_failure_is_told_once_and_tried_again_every_minute(watch, folder, document, monkeypatch, error):
     def fail(*_):
-        raise InputError("Couldn't save: no space left on device")
+        raise error
 
     watch.see(document)
     watch.now = COPY_SECONDS
     with monkeypatch.context() as patch:
         patch.setattr(autosave_module, "write_atomic", fail)
         watch.see(document)
-        message = r"^Unsaved work is not protected against a crash\. Couldn't save: no space"
+        message = r"^Unsaved work is not protected against a crash\. .*no space"
         with pytest.raises(InputError, match=message):
             watch.see(document)
         watch.see(document)
+        watch.now += COPY_SECONDS
+        watch.see(document)  # fails once more
+        watch.see(document)  # and does not say so again
     watch.now += COPY_SECONDS - 1
     watch.see(document)
     assert copies(folder) == []
@@ -308,3 +332,46 @@ def test_a_copy_that_is_no_good_is_an_input_error(folder, document, origin):
     with pytest.raises(InputError, match=r"Couldn't recover “.*bad\.akap”\. "):
         copy.read()
     assert (folder / "bad.akap").exists()
+
+
+def test_one_lock_that_cannot_be_opened_hides_no_other_copy(folder, document, monkeypatch):
+    for _ in range(2):
+        dead = Watch(folder)
+        dead.see(document)
+        dead.autosave.rescue(document)
+    unreadable, readable = copies(folder)
+    acquire = FileLock.acquire
+
+    def fail(lock, *arguments, **options):
+        if Path(lock.lock_file).stem == unreadable.stem:
+            raise PermissionError(13, "Permission denied")
+        return acquire(lock, *arguments, **options)
+
+    monkeypatch.setattr(FileLock, "acquire", fail)
+    (copy,) = Autosave(folder).claim_lost_copies()
+    assert copy.path == readable
+
+
+def test_what_killed_programs_left_beside_their_copies_is_removed(folder, document):
+    dead = Watch(folder)
+    dead.see(document)
+    dead.autosave.rescue(document)
+    (copy,) = copies(folder)
+    (folder / "0123456789abcdef.lock").touch()
+    old, new = folder / ".akap-0123456789abcdef.tmp", folder / ".akap-fedcba9876543210.tmp"
+    old.touch()
+    new.touch()
+    long_ago = time.time() - STALE_SECONDS - 60
+    os.utime(old, (long_ago, long_ago))
+    running = Watch(folder)
+    running.see(document)
+    running.now = FIRST_COPY_SECONDS
+    running.see(document)
+    Autosave(folder).remove_leftovers()
+    locks = {path.stem for path in folder.glob("*.lock")}
+    assert locks <= {path.stem for path in copies(folder)}
+    assert len(copies(folder)) == 2, "no copy is removed"
+    assert not old.exists()
+    assert new.exists(), "another program may be writing it"
+    assert copy.exists()
+    running.worker.shutdown()
