@@ -1,5 +1,6 @@
 """What the window holds besides the drawing's own state: view switches, files, messages, questions."""
 
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -32,6 +33,16 @@ from .timeline.timeline import Timeline
 SWITCHES = ("show_mesh", "checker")  # fields that are remembered between runs
 
 P = TypeVar("P")
+
+
+def error_message(error: Exception) -> str:
+    """The message of an exception on the screen; an unexpected one is also printed for a bug report."""
+    if isinstance(error, AkapError):
+        return str(error)
+    traceback.print_exception(error)
+    return (
+        f"Something went wrong in the program ({type(error).__name__}: {error}). Your drawing is still open."
+    )
 
 
 @dataclass
@@ -84,6 +95,10 @@ class AppState:
             self._parts[kind] = kind()
         part: P = self._parts[kind]
         return part
+
+    def reset_part(self, kind: type[object]) -> None:
+        """Forget a part; the next use makes it anew, for example a dialog that is closed."""
+        self._parts.pop(kind, None)
 
     # -- between runs ----------------------------------------------------------------------------------------
 
@@ -150,8 +165,8 @@ class AppState:
         has_changed = bool(jobs)
         try:
             has_changed |= self.remesher.advance()
-        except InputError as error:  # no dialog in the middle of a drag
-            self.notice = str(error)
+        except Exception as error:  # no dialog in the middle of a drag
+            self.notice = error_message(error)
         return has_changed or (self.notice, self.error) != messages
 
     def _go_on_writing(self) -> None:
@@ -166,11 +181,11 @@ class AppState:
             self.task = task
 
     def run_reporting_errors(self, job: Callable[[], object]) -> bool:
-        """Run ``job``; what it raises on purpose becomes a message, and everything open stays as it was."""
+        """Run ``job``; an exception becomes a message, and everything open stays as it was."""
         try:
             job()
-        except AkapError as error:
-            self.notice, self.error = "", str(error)
+        except Exception as error:
+            self.notice, self.error = "", error_message(error)
             return False
         return True
 

@@ -16,7 +16,7 @@ from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.images import has_transparency, is_animation
 from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document
 from ..resources import bundled_drawings
-from .app_state import AppState
+from .app_state import AppState, error_message
 from .dialogs.file_dialog import FileDialog, FileRequest
 from .dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
 from .jobs.open_recording import open_recording
@@ -94,6 +94,7 @@ def remember_file(state: AppState, path: Path) -> None:
     state.folder = path.resolve().parent
     if path.resolve() not in map(Path.resolve, bundled_drawings()):
         state.preferences.opened(path)
+        state.remember()  # now, so that it survives a crash
 
 
 # -- saving -------------------------------------------------------------------------------------------------
@@ -185,8 +186,8 @@ def autosave(state: AppState) -> None:
         last_gesture = session.history.last if session is not None else None
         document = session.present_document if session is not None else None
         state.autosave.watch(document, state.editor.is_modified, last_gesture)
-    except InputError as error:
-        state.notice = str(error)
+    except Exception as error:  # a copy that fails must not end the program that it protects
+        state.notice = error_message(error)
 
 
 def rescue(state: AppState) -> None:

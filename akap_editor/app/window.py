@@ -4,8 +4,8 @@
 from imgui_bundle import imgui  # isort: skip
 import ctypes
 import time
-import traceback
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from threading import Event, Lock, Thread
 from typing import Any
@@ -21,7 +21,7 @@ from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from . import files, start_page, theme, widgets
 from . import glfw_key_order as key_order
-from .app_state import AppState
+from .app_state import AppState, error_message
 from .canvas import split_view
 from .canvas.legend import draw_legend
 from .canvas.pin_markers import draw_markers
@@ -35,11 +35,13 @@ from .dialogs.file_dialog import FileDialog, has_native_dialogs
 from .dialogs.recovery import RecoveryDialog
 from .panels import side_panel as panels
 from .preferences import Preferences
+from .termination import TerminationSignals, rescue_on_lost_display
 from .thumbnails import Thumbnails
 
 SIZE = (1280, 800)
 SMALLEST = (640, 400)
 GRASP = 64  # screen coordinates of a window's corner that must be on a screen for a hand to move it
+MAX_FAILURES_IN_A_ROW = 3  # of the loop
 SETTLE_FRAMES = 3  # ImGui needs this many frames after an event until every widget has its final place
 IDLE_SECONDS, BLINK_SECONDS = 1.0, 0.4  # the longest sleep; half the period of a text caret
 MINIMIZED_SECONDS = 0.25  # between two looks whether a minimized window can be drawn again
@@ -81,11 +83,13 @@ class Window:
         self.state = AppState.remembering(preferences or Preferences(), self.wake)
         self.state.autosave = autosave
         if autosave is not None:
+            autosave.remove_leftovers()
             self.state.part(RecoveryDialog).copies = autosave.claim_lost_copies()
         self.state.part(FileDialog).uses_native = has_native_dialogs() and not null
         self.frames = 0
         self.after_draw: list[Callable[[], None]] = []
         self._scale_wanted, self._in_frame, self._focused = scale, False, False
+        self._failures_in_a_row = 0
         self._frames_due = SETTLE_FRAMES
         self._dropped: list[list[Path]] = []
         self._title = ""
@@ -147,21 +151,41 @@ class Window:
 
     def run(self, document: Document | None = None) -> None:
         """Show a document and stay until the window is closed."""
+        lost_display_handler = rescue_on_lost_display(partial(files.rescue, self.state))
         Thread(target=_precompile, name="precompile", daemon=True).start()
         if document is not None:
             files.show_document(self.state, document)
         try:
-            while not self.state.closing:
-                self.loop_once()
+            with TerminationSignals(self.wake):
+                while not self.state.closing:
+                    self.loop_once()
         except BaseException:
             files.rescue(self.state)
             raise
         if self.state.autosave is not None:
             self.state.autosave.close()
         self.state.writer.finish(self.state.exporter)
+        del lost_display_handler  # it had to live until here
 
     def loop_once(self) -> None:
-        """Sleep if there is nothing to draw; otherwise, or after that, draw a frame."""
+        """Sleep if there is nothing to draw; otherwise, or after that, draw a frame.
+
+        An exception becomes a message. Several in a row are raised: then not even the message can be drawn.
+        """
+        try:
+            self._sleep_or_draw()
+        except Exception as error:
+            self._failures_in_a_row += 1
+            if self._failures_in_a_row >= MAX_FAILURES_IN_A_ROW:
+                raise
+            self.state.error = error_message(error)
+            if imgui.get_current_context().within_frame_scope:
+                imgui.end_frame()
+            self._frames_due = SETTLE_FRAMES
+        else:
+            self._failures_in_a_row = 0
+
+    def _sleep_or_draw(self) -> None:
         files.autosave(self.state)
         if self.needs_frame:
             glfw.poll_events()
@@ -250,12 +274,10 @@ class Window:
         imgui.internal.error_recovery_store_state(recovery)
         try:
             self._interface()
-        except AkapError as error:
-            self._recover(recovery, str(error))
-        except Exception as error:  # a bug must not cost the user's work
-            traceback.print_exc()
-            self._recover(recovery, f"Something went wrong in the program ({type(error).__name__}: {error})")
-            self.state.editor.cancel()
+        except Exception as error:
+            self._recover(recovery, error_message(error))
+            if not isinstance(error, AkapError):  # a bug must not cost the user's work
+                self.state.editor.cancel()
         render_imgui()
         self._picture.draw(self.state, framebuffer, glfw.get_window_size(self.handle), self.scale)
         imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())

@@ -2,6 +2,7 @@
 
 from imgui_bundle import imgui  # isort: skip
 import threading
+from pathlib import Path
 
 import glfw
 import numpy as np
@@ -9,7 +10,9 @@ import pytest
 
 from akap_editor.app import files, widgets
 from akap_editor.app import window as window_module
+from akap_editor.app.canvas.scene import Scene
 from akap_editor.app.dialogs.about import AboutDialog
+from akap_editor.app.jobs.task import Progress, Task
 from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES, Window
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor.session.edits import SetTargets
@@ -234,3 +237,120 @@ def test_no_opengl_is_said_in_one_sentence(monkeypatch):
     monkeypatch.setattr(glfw, "terminate", lambda: None)
     with pytest.raises(GraphicsError, match=r"OpenGL 3\.3"):
         Window()
+
+
+# -- exceptions ----------------------------------------------------------------------------------------------
+
+
+def fail_once(patch, owner, name):
+    """Let a method raise a bug's exception at its next call; later calls work."""
+    original, calls = getattr(owner, name), []
+
+    def method(*arguments, **options):
+        calls.append(name)
+        if len(calls) == 1:
+            raise ValueError("a bug")
+        return original(*arguments, **options)
+
+    patch.setattr(owner, name, method)
+
+
+class BrokenAutosave:
+    def watch(self, *_):
+        raise ValueError("a bug")
+
+
+def broken_task():
+    yield Progress(0.5, "Working")
+    raise ValueError("a bug")
+
+
+def deferred_job(ui, patch):
+    ui.state.run_after_frame(lambda: [][0])
+
+
+def task(ui, patch):
+    ui.state.task = Task("Work", broken_task())
+
+
+def autosave(ui, patch):
+    patch.setattr(ui.state, "autosave", BrokenAutosave())
+
+
+def remeshing(ui, patch):
+    fail_once(patch, ui.state.remesher, "advance")
+
+
+def background_export(ui, patch):
+    fail_once(patch, ui.state.writer, "advance")
+
+
+def dropped_file(ui, patch):
+    fail_once(patch, files, "open_path")
+    ui.window.drop([Path("drawing.akap")])
+
+
+def panel(ui, patch):
+    fail_once(patch, window_module.panels, "draw")
+
+
+def dialog(ui, patch):
+    ui.state.part(AboutDialog).open()
+    patch.setattr(AboutDialog, "draw", lambda *_: [][0])
+
+
+def scene(ui, patch):
+    fail_once(patch, Scene, "draw")
+
+
+def preferences(ui, patch):
+    fail_once(patch, ui.state, "remember")
+
+
+FAILURES = [
+    *(deferred_job, task, autosave, remeshing, background_export),
+    *(dropped_file, panel, dialog, scene, preferences),
+]
+
+
+@pytest.mark.parametrize("fail", FAILURES)
+def test_an_exception_becomes_a_message_and_the_drawing_stays(pinned, monkeypatch, capfd, fail):
+    ui, state = pinned, pinned.session.state
+    monkeypatch.setattr(ui.window, "wait_for_events", lambda _: None)  # the loop of the test never sleeps
+    ui.settle()
+    with monkeypatch.context() as patch:
+        fail(ui, patch)
+        frames = 0
+        ui.window.wake()
+        while not (ui.state.error or "went wrong" in ui.state.notice):
+            ui.window.loop_once()
+            frames += 1
+            assert frames < 20, "nothing was said"
+        for _ in range(5):  # it goes on, and says so only once
+            ui.window.wake()
+            ui.window.loop_once()
+        message = ui.state.error or ui.state.notice
+        assert "Your drawing is still open" in message
+        assert ui.session.state is state
+    monkeypatch.undo()
+    if ui.state.error:
+        ui.dialog("That did not work", "OK")
+    assert not ui.state.error
+    assert not ui.state.part(AboutDialog).is_open
+    assert "Traceback" in capfd.readouterr().err, "for a bug report"
+    ui.click(ui.screen(ui.pin_place(1)))
+    assert ui.editor.selection == {1}
+
+
+def test_a_window_that_cannot_draw_at_all_ends_with_a_rescue(pinned, monkeypatch, capfd):
+    rescued = []
+    monkeypatch.setattr(Scene, "draw", lambda *_: [][0])
+    monkeypatch.setattr(files, "rescue", rescued.append)
+    monkeypatch.setattr(pinned.window, "wait_for_events", lambda _: None)
+    pinned.window.wake()
+    with pytest.raises(IndexError):
+        pinned.window.run()
+    assert rescued == [pinned.state]
+    monkeypatch.undo()
+    pinned.state.error = ""
+    pinned.settle()

@@ -3,9 +3,11 @@
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -30,9 +32,9 @@ CORNER = (LEFT + 12, TOP + 12)  # on the canvas, beside the drawing
 MARKER = 14  # pixels around a pin's center in which its marker lies
 
 
-@pytest.fixture(scope="module")
-def display():
-    """An X server of our own, never the user's screen."""
+@contextmanager
+def x_server():
+    """An X server of our own, never the user's screen: its process and its display."""
     for tool in ("Xvfb", "xdotool"):
         assert shutil.which(tool), f"{tool} is missing: install the packages xvfb and xdotool"
     read, write = os.pipe()
@@ -43,9 +45,15 @@ def display():
     with os.fdopen(read) as pipe:
         number = pipe.readline().strip()
     assert number, "Xvfb did not start"
-    yield f":{number}"
+    yield server, f":{number}"
     server.terminate()
     server.wait(DEADLINE)
+
+
+@pytest.fixture(scope="module")
+def display():
+    with x_server() as (_, name):
+        yield name
 
 
 @pytest.fixture
@@ -309,6 +317,34 @@ def test_closing_the_window_asks_for_unsaved_changes_and_else_ends(start, pictur
     assert program.ended() == 0
 
 
+def pins_in_copies(state):
+    """The number of pins in each recovery copy."""
+    return [len(akap_editor.load(path).state.pins) for path in state.glob("autosave/*.akap")]
+
+
+@pytest.mark.parametrize("end", ["SIGTERM", "SIGHUP", "the display is lost"])
+def test_unsaved_work_survives_the_end_of_the_program(picture, monkeypatch, tmp_path, end):
+    """Also if it comes right after the first pin, while the program sleeps."""
+    state = tmp_path / "state"
+    monkeypatch.setenv("AKAP_EDITOR_STATE", str(state))
+    with x_server() as (server, display):
+        preferences = tmp_path / "preferences"
+        preferences.mkdir()
+        (preferences / "preferences.json").write_text(json.dumps({"first steps done": True}))
+        program = Program(display, picture, tmp_path, preferences)
+        alpha = read_image(picture)[..., 3]
+        zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+        (pin,) = np.rint(far_apart(alpha, 1) * zoom + offset).astype(int).tolist()
+        program.click(pin)
+        if end == "the display is lost":
+            server.kill()
+        else:
+            program.process.send_signal(getattr(signal, end))
+        assert program.process.wait(DEADLINE) != 0
+    assert pins_in_copies(state) == [1], program.log()
+    assert "Traceback" not in program.log()
+
+
 def test_after_a_kill_in_a_drag_the_next_start_offers_the_drawing(start, picture, monkeypatch, tmp_path):
     state = tmp_path / "state"
     monkeypatch.setenv("AKAP_EDITOR_STATE", str(state))
@@ -318,7 +354,7 @@ def test_after_a_kill_in_a_drag_the_next_start_offers_the_drawing(start, picture
     pins = np.rint(far_apart(alpha, 10) * zoom + offset).astype(int)
     for pin in pins.tolist():
         program.click(pin)
-    program.until(lambda _: list(state.glob("autosave/*.akap")), "the tenth pin is in a copy")
+    program.until(lambda _: pins_in_copies(state) == [10], "the tenth pin is in a copy")
     program.hand("mousemove", *pins[0], "mousedown", 1)
     program.hand("mousemove", *(pins[0] + 25))
     program.process.kill()

@@ -2,6 +2,7 @@
 
 from typing import Protocol
 
+from ...errors import AkapError
 from ..app_state import AppState
 from ..commands.shortcuts_page import ShortcutsPage
 from . import message, progress
@@ -42,7 +43,14 @@ def draw(state: AppState, scale: float) -> None:
     elif state.task is not None:
         progress.draw(state, state.task, scale)
     else:
-        for dialog in map(state.part, DIALOGS):
+        for kind in DIALOGS:
+            dialog = state.part(kind)
             if dialog.is_open:
-                dialog.draw(state, scale)
+                try:
+                    dialog.draw(state, scale)
+                except AkapError:
+                    raise  # what the user chose is not possible; the dialog stays
+                except Exception:
+                    state.reset_part(kind)  # otherwise it would fail again in every frame
+                    raise
                 return
