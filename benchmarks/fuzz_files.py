@@ -1,13 +1,12 @@
-"""Opens many thousands of damaged and malicious files: each must open, or be refused in one sentence.
+"""Fuzzes the file readers: each damaged or malicious file must open, or be refused with an InputError.
 
 Run from the project's root: python benchmarks/fuzz_files.py [--cases N] [--seed S]
-Makes .akap, .pose.json and .akaprec files, each with something wrong on the outside (a byte, the length, the
-zip directory) or, with all checksums right again, on the inside (numbers, JSON, PNG, sizes, names, bombs),
-and opens them in memory, with all Python warnings as errors. What opens is saved and opened again, and must
-be the same.
-Prints how many opened and how many were refused, the slowest case and the process's peak memory. Exit code 1
-on any other exception, a case of over 20 seconds, or a gigabyte of memory. A failing case prints its seed;
---seed S --cases 1 runs it alone.
+Makes .akap, .pose.json and .akaprec files with damage on the outside (bytes, length, zip directory) or, with
+correct checksums, on the inside (numbers, JSON, PNG, sizes, names, bombs), and opens them in memory, with all
+Python warnings as errors. A file that opens is saved and opened again, and must be the same.
+Prints the numbers of opened and refused files, the slowest case and the peak memory. The exit code is 1 after
+any other exception, a case of over 20 seconds, or more than a gigabyte of memory. A failing case prints its
+seed; --seed S --cases 1 runs it alone.
 """
 
 import os
@@ -47,9 +46,9 @@ from akap_editor.io.akap.pose import decode_pose, encode_pose
 from akap_editor.io.akap.project import decode_document, encode_document
 from akap_editor.io.akap.recording import decode_recording
 
-MOST_SECONDS = 20.0  # of work on one case: the largest pictures that are allowed take several
-MOST_BYTES = 2**30
-BOMB_SHARE = 1 / 8000
+MAX_CASE_SECONDS = 20.0  # of processor time; the largest allowed pictures take several
+MAX_MEMORY_BYTES = 2**30
+BOMB_SHARE = 1 / 8000  # of all .akap files
 
 Rng = np.random.Generator
 Entries = list[tuple[str, bytes]]
@@ -65,7 +64,7 @@ NAMES = ["", "/", "../x", "/etc/passwd", "mesh", "mesh/", "mesh/../mimetype", "M
 
 
 def seed_documents() -> list[Document]:
-    """Small drawings with pins and a pose: two triangles, and a strip of triangles."""
+    """Small drawings with pins, a pose and named poses: two triangles, and a strip of triangles."""
     documents = []
     for columns in (2, 5):
         x = np.repeat(np.arange(columns), 2)
@@ -89,7 +88,7 @@ def seed_documents() -> list[Document]:
 
 
 def seed_recording(document: Document) -> bytes:
-    """A short session with a bit of everything."""
+    """The recording of a short session with edits of many kinds."""
     editor = Editor(clock=lambda: 0.0)
     editor.open(Document(document.drawing, EditState((), document.drawing.mesh.vertices)))
     session = editor.session
@@ -109,16 +108,16 @@ def seed_recording(document: Document) -> bytes:
     return session.recording.to_text().encode()
 
 
-# -- what can be wrong ---------------------------------------------------------------------------------------
+# -- damage ------------------------------------------------------------------------------------------------
 
 
 def pick(rng: Rng, values: Any) -> Any:
-    """One of the values."""
+    """A random one of the values."""
     return values[int(rng.integers(len(values)))]
 
 
 def change_bytes(rng: Rng, data: bytes) -> bytes:
-    """One to three other bytes."""
+    """Change one to three bytes."""
     if not data:
         return bytes(rng.integers(0, 256, 3, dtype=np.uint8))
     array = np.frombuffer(data, np.uint8).copy()
@@ -129,13 +128,13 @@ def change_bytes(rng: Rng, data: bytes) -> bytes:
 
 
 def cut(rng: Rng, data: bytes) -> bytes:
-    """A part is missing at the end, in the middle, or is there twice."""
+    """Cut off the end, cut out a part, or repeat a part."""
     a, b = sorted(int(place) for place in rng.integers(0, len(data) + 1, 2))
     return pick(rng, [data[:b], data[:a] + data[b:], data[:b] + data[a:]])
 
 
 def change_json(rng: Rng, text: bytes) -> bytes:
-    """Another value, or none, at a random place of a JSON object."""
+    """Replace, remove or add a value at a random place of a JSON object."""
     try:
         record = json.loads(text)
     except ValueError:
@@ -158,7 +157,7 @@ def change_json(rng: Rng, text: bytes) -> bytes:
 
 
 def change_numbers(rng: Rng, name: str, data: bytes) -> bytes:
-    """Other numbers in an array, in its own type."""
+    """Change numbers of an array, in its own dtype."""
     if name == "mesh/faces":
         array: Any = np.frombuffer(data[: len(data) // 4 * 4], "<i4").copy()
         values: Any = INDICES
@@ -173,7 +172,7 @@ def change_numbers(rng: Rng, name: str, data: bytes) -> bytes:
 
 
 def png_chunks(data: bytes) -> list[tuple[bytes, bytes]]:
-    """Kind and content of each chunk."""
+    """Kind and content of each chunk of a PNG file."""
     chunks, at = [], 8
     while at + 12 <= len(data):
         (length,) = struct.unpack(">I", data[at : at + 4])
@@ -183,7 +182,7 @@ def png_chunks(data: bytes) -> list[tuple[bytes, bytes]]:
 
 
 def png(chunks: list[tuple[bytes, bytes]]) -> bytes:
-    """A PNG file whose checksums are right."""
+    """A PNG file of chunks, with correct checksums."""
     parts = [b"\x89PNG\r\n\x1a\n"]
     for kind, content in chunks:
         parts.append(struct.pack(">I", len(content)) + kind + content)
@@ -192,7 +191,7 @@ def png(chunks: list[tuple[bytes, bytes]]) -> bytes:
 
 
 def change_png(rng: Rng, data: bytes) -> bytes:
-    """A damaged chunk, pixel stream or header, or chunks that do not belong there, with right checksums."""
+    """Damage a chunk, the pixel stream or the header, or insert other chunks; checksums are correct."""
     chunks = png_chunks(data) or [(b"IHDR", data)]
     index = int(rng.integers(len(chunks)))
     kind, content = chunks[index]
@@ -215,7 +214,7 @@ def change_png(rng: Rng, data: bytes) -> bytes:
 
 
 def change_directory(rng: Rng, data: bytes) -> bytes:
-    """Other sizes, methods, flags, offsets or names in the zip's own tables."""
+    """Change sizes, methods, flags, offsets or names in the tables of a zip archive."""
     array = bytearray(data)
     signature = pick(rng, [b"PK\x01\x02", b"PK\x03\x04", b"PK\x05\x06"])
     places = [at for at in range(len(data)) if data.startswith(signature, at)]
@@ -227,7 +226,7 @@ def change_directory(rng: Rng, data: bytes) -> bytes:
 
 
 def pack(entries: Entries, method: int) -> bytes:
-    """A zip archive, whatever the names."""
+    """A zip archive of entries with any names."""
     buffer = BytesIO()
     with warnings.catch_warnings(), zipfile.ZipFile(buffer, "w") as archive:
         warnings.simplefilter("ignore")  # of duplicate names
@@ -239,7 +238,7 @@ def pack(entries: Entries, method: int) -> bytes:
 
 
 def bomb(rng: Rng, entries: Entries) -> Entries:
-    """A small file that would become a large one."""
+    """Entries that are small in the file and large when they are unpacked or decoded."""
     contents = dict(entries)
     record = json.loads(contents["document.json"])
     match int(rng.integers(6)):
@@ -271,7 +270,7 @@ def bomb(rng: Rng, entries: Entries) -> Entries:
 
 
 def damaged_drawing(rng: Rng, files: list[Entries]) -> bytes:
-    """An .akap file with one to three things wrong."""
+    """An .akap file with damage in one or two places."""
     entries = list(pick(rng, files))
     method = pick(rng, [zipfile.ZIP_STORED, zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
     if rng.random() < BOMB_SHARE:
@@ -309,12 +308,12 @@ def damaged_drawing(rng: Rng, files: list[Entries]) -> bytes:
 
 
 def damaged_pose(rng: Rng, poses: list[bytes]) -> bytes:
-    """A .pose.json file with something wrong."""
+    """A damaged .pose.json file."""
     return pick(rng, [change_json, change_json, change_bytes, cut])(rng, pick(rng, poses))
 
 
 def damaged_recording(rng: Rng, recordings: list[bytes]) -> bytes:
-    """An .akaprec file with something wrong, in one of its lines or among them."""
+    """An .akaprec file with damaged, missing, repeated or swapped lines."""
     data = pick(rng, recordings)
     if rng.random() < 0.2:
         return pick(rng, [change_bytes, cut])(rng, data)
@@ -340,7 +339,10 @@ def damaged_recording(rng: Rng, recordings: list[bytes]) -> bytes:
 
 @dataclass
 class Fuzzer:
-    """Makes a case from each seed. counts: by kind and outcome; slowest: seconds, kind, seed."""
+    """Makes and checks one case per seed.
+
+    counts: by kind and outcome; messages: of refused files; slowest: seconds, kind and seed of a case.
+    """
 
     counts: Counter[str] = field(default_factory=Counter)
     messages: set[str] = field(default_factory=set)
@@ -356,7 +358,7 @@ class Fuzzer:
         self.recordings = [seed_recording(document) for document in self.documents]
 
     def run(self, seed: int) -> None:
-        """One case. Raises what is neither a good file nor an `InputError` of one line."""
+        """Check one case. Raises any exception but an `InputError` whose message is one line."""
         rng = np.random.default_rng(seed)
         kind = pick(rng, ["akap", "akap", "akap", "pose", "akaprec"])
         started = time.process_time()
@@ -366,7 +368,7 @@ class Fuzzer:
         except InputError as error:
             message = str(error)
             if "\n" in message or not message or len(message) > 600:
-                raise AssertionError(f"no sentence: {message!r}") from error
+                raise AssertionError(f"not one line: {message!r}") from error
             self.messages.add(message)
             outcome = "refused"
         self.counts[f"{kind} {outcome}"] += 1
@@ -394,23 +396,23 @@ class Fuzzer:
                 raise InputError(str(error)) from error
 
 
-def give_up(*_: object) -> None:
-    """For the alarm clock."""
-    raise TimeoutError(f"over {MOST_SECONDS:g} s")
+def stop_case(*_: object) -> None:
+    """End a case that takes too long."""
+    raise TimeoutError(f"over {MAX_CASE_SECONDS:g} s")
 
 
 def main() -> None:
-    """Run the cases, tell how it went."""
+    """Run the cases and print the results."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--cases", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1, help="of the first case; each next one is one higher")
     options = parser.parse_args()
     warnings.simplefilter("error")
-    signal.signal(signal.SIGPROF, give_up)
+    signal.signal(signal.SIGPROF, stop_case)
     fuzzer, failed = Fuzzer(), 0
     started = time.process_time()
     for seed in range(options.seed, options.seed + options.cases):
-        signal.setitimer(signal.ITIMER_PROF, MOST_SECONDS)
+        signal.setitimer(signal.ITIMER_PROF, MAX_CASE_SECONDS)
         try:
             fuzzer.run(seed)
         except Exception as error:
@@ -420,18 +422,18 @@ def main() -> None:
                 raise
         signal.setitimer(signal.ITIMER_PROF, 0)
         if (seed + 1 - options.seed) % 10_000 == 0:
-            tell(fuzzer, failed, started)
-    tell(fuzzer, failed, started)
-    sys.exit(bool(failed) or peak_memory() > MOST_BYTES)
+            print_results(fuzzer, failed, started)
+    print_results(fuzzer, failed, started)
+    sys.exit(bool(failed) or peak_memory() > MAX_MEMORY_BYTES)
 
 
 def peak_memory() -> int:
-    """The most that this process has ever had, in bytes."""
+    """The peak memory of this process in bytes."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
-def tell(fuzzer: Fuzzer, failed: int, started: float) -> None:
-    """Print how it went so far."""
+def print_results(fuzzer: Fuzzer, failed: int, started: float) -> None:
+    """Print the results so far."""
     seconds, kind, seed = fuzzer.slowest
     count = fuzzer.counts.total() + failed
     print(f"{count} files, {failed} failed, {time.process_time() - started:.0f} s of work")

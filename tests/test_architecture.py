@@ -148,7 +148,7 @@ OVERALL = {
     "test_architecture",
     "test_docs",
     "test_library",
-    "io/test_fuzz",  # runs benchmarks/fuzz_files.py
+    "io/test_fuzz_files",  # runs benchmarks/fuzz_files.py
 }
 
 

@@ -1,4 +1,4 @@
-"""Thousands of damaged and malicious files: what benchmarks/fuzz_files.py does with a hundred thousand."""
+"""Runs benchmarks/fuzz_files.py with fewer cases: damaged and malicious files open or are refused."""
 
 import runpy
 import warnings
