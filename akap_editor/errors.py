@@ -1,6 +1,6 @@
 """The exceptions of the package, and what puts a file or an entry into their messages."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -58,3 +58,8 @@ def _as_sentence(reason: str) -> str:
     if reason.split(" ", 1)[0].isalpha():
         reason = reason[:1].upper() + reason[1:]
     return reason if reason.endswith((".", "?", "!")) else f"{reason}."
+
+
+def join_with_or(names: Sequence[str]) -> str:
+    """Join names for a sentence: "a, b or c"."""
+    return " or ".join(filter(None, [", ".join(names[:-1]), names[-1]]))

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import InputError, join_with_or
 
 MAX_COORDINATE = 1e9  # pixels; areas of anything farther away could overflow
 
@@ -83,7 +83,8 @@ def as_number(value: Any, name: str, low: float, high: float) -> float:
 def as_choice(value: Any, name: str, choices: Sequence[str]) -> str:
     """Return ``value`` if it is one of the words ``choices``. Raises InputError."""
     if not isinstance(value, str) or value not in choices:
-        raise InputError(f"{name}: expected {' or '.join(map(repr, choices))}, got {reprlib.repr(value)}")
+        expected = join_with_or([repr(choice) for choice in choices])
+        raise InputError(f"{name}: expected {expected}, got {reprlib.repr(value)}")
     return value
 
 

@@ -3,7 +3,7 @@
 import struct
 import warnings
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageCms, ImageOps, UnidentifiedImageError
 
-from ..errors import InputError, file_errors
+from ..errors import InputError, file_errors, join_with_or
 from ..geometry.validation import as_picture
 from .atomic import read_file, write_atomic
 
@@ -93,11 +93,6 @@ def decode_image(
 
 def _too_large(came: str) -> str:
     return f"expected a picture of at most {MAX_PIXELS / 1e6:g} megapixels, got {came}"
-
-
-def join_with_or(names: Sequence[str]) -> str:
-    """Names for a sentence: "a, b or c"."""
-    return " or ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
 
 
 def _rgba(picture: Image.Image, data: bytes) -> Picture:

@@ -6,6 +6,7 @@ import pytest
 from akap_editor.errors import InputError
 from akap_editor.geometry.validation import (
     as_channel,
+    as_choice,
     as_indices,
     as_number,
     as_numbers,
@@ -120,3 +121,14 @@ def test_frozen_arrays_cannot_be_written():
     assert array.flags.c_contiguous
     with pytest.raises(ValueError, match="read-only"):
         array[0] = 1.0
+
+
+@pytest.mark.parametrize(
+    ("choices", "expected"),
+    [(["soft"], "'soft'"), (["soft", "hard"], "'soft' or 'hard'"), (["a", "b", "c"], "'a', 'b' or 'c'")],
+)
+def test_words_outside_a_choice_are_refused_with_all_of_them(choices, expected):
+    assert as_choice(choices[-1], "kind", choices) == choices[-1]
+    for value in ("other", None, 3, [choices[0]]):
+        with pytest.raises(InputError, match=f"^kind: expected {expected}, got "):
+            as_choice(value, "kind", choices)

@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...errors import FileError, InputError
+from ...errors import FileError, InputError, join_with_or
 from ..atomic import Write, write_atomic
-from ..images import Picture, join_with_or, write_png
+from ..images import Picture, write_png
 from .animated_images import write_apng, write_gif, write_webp
 from .sprite_sheet import write_frames, write_sheet
 from .video import require_av, write_mp4, write_webm

@@ -7,11 +7,11 @@ from pathlib import Path
 from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
 from ...editor.framing import Color, crop_box
-from ...errors import FileError, InputError, file_errors
+from ...errors import FileError, InputError, file_errors, join_with_or
 from ...geometry.validation import as_instance
 from ...overlap.overlaps import NO_CROSSINGS
 from ..atomic import as_path, write_atomic
-from ..images import encode_png, join_with_or
+from ..images import encode_png
 from ..painter import Painter
 from .gltf import encode_glb
 from .mesh_json import encode_json
