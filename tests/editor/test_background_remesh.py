@@ -147,7 +147,7 @@ def test_another_drawing_cancels_the_request(editor, held, thread):
 def test_a_mesh_that_cannot_be_made_is_an_error_and_changes_nothing(editor, remesher):
     state = editor.session.state
     remesher.request(Meshing(300, threshold=1.5))
-    with pytest.raises(InputError, match=r"threshold: expected a share between 0 and 1, got 1\.5"):
+    with pytest.raises(InputError, match=r"threshold: expected a number from 0 to 1, got 1\.5"):
         remesher.finish()
     assert editor.session.state is state
     assert not remesher.is_busy
