@@ -10,7 +10,7 @@ import platformdirs
 from ..errors import InputError
 from ..io.atomic import read_file, write_atomic
 
-FOLDER_VARIABLE = "AKAP_EDITOR_CONFIG"  # environment: another folder, e.g. for tests
+CONFIG_FOLDER_VARIABLE = "AKAP_EDITOR_CONFIG"  # environment: another folder, e.g. for tests
 FILE_NAME = "preferences.json"
 MOST_RECENT = 12
 
@@ -19,7 +19,9 @@ T = TypeVar("T")
 
 def preferences_path() -> Path:
     """The file of the user who runs the program."""
-    folder = os.environ.get(FOLDER_VARIABLE) or platformdirs.user_config_dir("akap-editor", appauthor=False)
+    folder = os.environ.get(CONFIG_FOLDER_VARIABLE) or platformdirs.user_config_dir(
+        "akap-editor", appauthor=False
+    )
     return Path(folder) / FILE_NAME
 
 

@@ -111,9 +111,9 @@ def test_a_folder_that_cannot_be_made_is_told_once(tmp_path):
 
 
 def test_the_folder_is_the_one_of_the_environment_or_of_the_platform(monkeypatch, tmp_path):
-    monkeypatch.setenv(module.FOLDER_VARIABLE, str(tmp_path))
+    monkeypatch.setenv(module.CONFIG_FOLDER_VARIABLE, str(tmp_path))
     assert preferences_path() == tmp_path / "preferences.json"
-    monkeypatch.delenv(module.FOLDER_VARIABLE)
+    monkeypatch.delenv(module.CONFIG_FOLDER_VARIABLE)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     folder = preferences_path().parent
     assert folder.name == "akap-editor"

@@ -14,10 +14,10 @@ from ...errors import InputError
 
 MAX_EXPANDED_BYTES = 2**30  # of all entries that are read, and of the pixels of all pictures
 
-Entry = tuple[str, bytes, bool]  # name, content, whether it is worth compressing
+ArchiveEntry = tuple[str, bytes, bool]  # name, content, whether it is worth compressing
 
 
-def pack(entries: Iterable[Entry]) -> bytes:
+def pack(entries: Iterable[ArchiveEntry]) -> bytes:
     """A zip archive of the entries, in this order; equal entries give equal bytes, as all have one date."""
     buffer = BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:

@@ -20,7 +20,7 @@ from .archive import Archive
 from .json_records import parse_record, require
 from .project import PROJECT_SUFFIX, decode_document, encode_document
 
-FOLDER_VARIABLE = "AKAP_EDITOR_STATE"  # environment variable with another folder, e.g. for tests
+STATE_FOLDER_VARIABLE = "AKAP_EDITOR_STATE"  # environment variable with another folder, e.g. for tests
 FIRST_COPY_SECONDS = 3.0  # from the first change to the first copy
 COPY_SECONDS = 60.0  # from a change that is not in the copy to the next one
 STALE_SECONDS = 3600.0  # age of a temporary file that no running program can still be writing
@@ -31,7 +31,9 @@ MAX_ORIGIN_BYTES = 2**16
 
 def state_folder() -> Path:
     """The folder of the recovery copies."""
-    folder = os.environ.get(FOLDER_VARIABLE) or platformdirs.user_state_dir("akap-editor", appauthor=False)
+    folder = os.environ.get(STATE_FOLDER_VARIABLE) or platformdirs.user_state_dir(
+        "akap-editor", appauthor=False
+    )
     return Path(folder) / "autosave"
 
 

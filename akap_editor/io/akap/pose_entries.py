@@ -7,7 +7,7 @@ from ...editor.document.keyframes import NO_ANIMATION, Animation, Keyframe
 from ...editor.document.named_poses import NamedPose
 from ...errors import InputError, error_context
 from ...geometry.validation import Floats, freeze
-from .archive import Archive, Entry
+from .archive import Archive, ArchiveEntry
 from .json_records import Json, numbers, optional, parse_record, require
 from .state_records import read_crossings, write_crossings
 
@@ -20,7 +20,7 @@ _MAX_INDEX_BYTES = 2**24
 # -- named poses ---------------------------------------------------------------------------------------------
 
 
-def named_pose_entries(poses: Sequence[NamedPose]) -> list[Entry]:
+def named_pose_entries(poses: Sequence[NamedPose]) -> list[ArchiveEntry]:
     """The entries for named poses: the index and poses/0, poses/1, ...; none without poses.
 
     Raises InputError for more than `MAX_POINTS` vertices in all.
@@ -71,7 +71,7 @@ def _check_points(count: int) -> None:
 # -- keyframes -----------------------------------------------------------------------------------------------
 
 
-def keyframe_entries(animation: Animation) -> list[Entry]:
+def keyframe_entries(animation: Animation) -> list[ArchiveEntry]:
     """The entries for an animation: the index and animation/0, animation/1, ...; none for the default one.
 
     Keyframes that share a pose share its entry. Raises InputError for more than `MAX_KEYFRAMES` keyframes or
@@ -141,7 +141,7 @@ def _read_keyframe(record: Json, poses: list[Floats]) -> Keyframe:
 # -- arrays --------------------------------------------------------------------------------------------------
 
 
-def _pose_entry(name: str, positions: Floats) -> Entry:
+def _pose_entry(name: str, positions: Floats) -> ArchiveEntry:
     return name, positions.astype("<f8").tobytes(), True
 
 

@@ -17,7 +17,7 @@ from ...geometry.mesh import TriMesh
 from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
 from ..atomic import as_path, read_file, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
-from .archive import Archive, Entry, check_expanded, pack
+from .archive import Archive, ArchiveEntry, check_expanded, pack
 from .json_records import (
     Json,
     file_version,
@@ -45,8 +45,8 @@ DOCUMENT_VERSION = 1
 STIFFNESS_ENTRY = "stiffness"  # a factor for each face
 ORIGINAL_ENTRY = "original.png"  # the picture before its background was removed
 
-MAX_VERTICES = 1_000_000
-MAX_FACES = 2_000_000
+MAX_DOCUMENT_VERTICES = 1_000_000
+MAX_DOCUMENT_FACES = 2_000_000
 MAX_DOCUMENT_BYTES = 2**24
 MAX_PICTURE_BYTES = 2**29
 THUMBNAIL_SIDE = 256
@@ -77,7 +77,7 @@ def load(path: str | Path) -> Document:
     return replace(document, path=Path(path))
 
 
-def encode_document(document: Document, more: Sequence[Entry] = ()) -> bytes:
+def encode_document(document: Document, more: Sequence[ArchiveEntry] = ()) -> bytes:
     """The bytes of an .akap file. Raises InputError if it could not be opened again.
 
     more: additional entries at the end, which readers ignore.
@@ -127,7 +127,7 @@ def _check(document: Document) -> None:
 
 
 def _check_meshing(meshing: Meshing) -> None:
-    as_number(meshing.vertices, "vertices wanted", 0, MAX_VERTICES)
+    as_number(meshing.vertices, "vertices wanted", 0, MAX_DOCUMENT_VERTICES)
     as_number(meshing.expand, "expand", 0.0, MAX_COORDINATE)
     as_number(meshing.threshold, "threshold", 0.0, 1.0)
     if meshing.background is not None:
@@ -141,8 +141,8 @@ def _check_sizes(width: int, height: int, vertices: int, faces: int) -> None:
         )
     limits = (
         (width * height, MAX_PIXELS, "pixels"),
-        (vertices, MAX_VERTICES, "vertices"),
-        (faces, MAX_FACES, "faces"),
+        (vertices, MAX_DOCUMENT_VERTICES, "vertices"),
+        (faces, MAX_DOCUMENT_FACES, "faces"),
     )
     for count, most, name in limits:
         if count > most:
@@ -159,10 +159,10 @@ def _check_vertices(vertices: Floats) -> None:
 
 
 # The pictures of a drawing never change, and encoding them takes longer than the rest of a save.
-_encoded_pictures: WeakKeyDictionary[Drawing, list[Entry]] = WeakKeyDictionary()
+_encoded_pictures: WeakKeyDictionary[Drawing, list[ArchiveEntry]] = WeakKeyDictionary()
 
 
-def _picture_entries(drawing: Drawing) -> list[Entry]:
+def _picture_entries(drawing: Drawing) -> list[ArchiveEntry]:
     if drawing not in _encoded_pictures:
         pictures = {"picture.png": drawing.image, "thumbnail.png": _thumbnail(drawing.image)}
         if drawing.original is not None:
@@ -172,7 +172,7 @@ def _picture_entries(drawing: Drawing) -> list[Entry]:
     return _encoded_pictures[drawing]
 
 
-def _stiffness_entries(state: EditState) -> list[Entry]:
+def _stiffness_entries(state: EditState) -> list[ArchiveEntry]:
     if state.stiffness is None:
         return []
     return [(STIFFNESS_ENTRY, state.stiffness.astype("<f8").tobytes(), True)]

@@ -9,7 +9,7 @@ from ...editor.document.drawing import Drawing
 from ...errors import InputError, file_errors
 from ...geometry.mesh import TriMesh, signed_areas
 from ...geometry.validation import Floats
-from ..akap.project import MAX_VERTICES
+from ..akap.project import MAX_DOCUMENT_VERTICES
 from ..atomic import read_file
 from ..images import read_image
 from .materials import parse_textures
@@ -69,8 +69,8 @@ def _flat_points(vertices: list[list[float]]) -> Floats:
     """The vertices (n, 2) with y down. Raises InputError if they are not flat, finite and few enough."""
     if not vertices:
         raise InputError("expected a mesh with vertices, got none")
-    if len(vertices) > MAX_VERTICES:
-        raise InputError(f"expected at most {MAX_VERTICES} vertices, got {len(vertices)}")
+    if len(vertices) > MAX_DOCUMENT_VERTICES:
+        raise InputError(f"expected at most {MAX_DOCUMENT_VERTICES} vertices, got {len(vertices)}")
     points = np.array(vertices)
     if not np.isfinite(points).all() or np.abs(points).max() > 1e9:
         raise InputError("expected finite coordinates up to 1e9, got others")

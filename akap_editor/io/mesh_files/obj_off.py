@@ -13,7 +13,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
-from ..akap.project import MAX_VERTICES
+from ..akap.project import MAX_DOCUMENT_VERTICES
 from ..atomic import write_atomic
 
 _MAX_CORNERS = 6_000_000
@@ -126,7 +126,7 @@ def parse_off(text: str) -> PolygonMesh:
     elif not _INTEGER.fullmatch(words[0]):  # the header may be absent
         raise InputError(f"line {number}: expected OFF, got {words[0][:20]!r}")
     counts = [_count(word) for word in words[:2]]
-    if len(counts) < 2 or not (0 <= counts[0] <= MAX_VERTICES and 0 <= counts[1] <= _MAX_CORNERS):
+    if len(counts) < 2 or not (0 <= counts[0] <= MAX_DOCUMENT_VERTICES and 0 <= counts[1] <= _MAX_CORNERS):
         actual = " ".join(words)[:60]
         raise InputError(f"line {number}: expected the numbers of vertices and faces, got {actual!r}")
     mesh = PolygonMesh()
