@@ -45,6 +45,10 @@ from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io.akap.pose import decode_pose, encode_pose
 from akap_editor.io.akap.project import decode_document, encode_document
 from akap_editor.io.akap.recording import decode_recording
+from akap_editor.io.images import decode_image, encode_png
+from akap_editor.io.mesh_files.obj_off import PARSERS, decode_text
+from akap_editor.io.mesh_files.polygons import triangulate_polygons
+from akap_editor.io.mesh_files.soundness import decode_mesh, mesh_defects
 
 MAX_CASE_SECONDS = 20.0  # of processor time; the largest allowed pictures take several
 MAX_MEMORY_BYTES = 2**30
@@ -334,6 +338,42 @@ def damaged_recording(rng: Rng, recordings: list[bytes]) -> bytes:
     return b"\n".join(lines)
 
 
+SQUARE = b"mtllib a.mtl\nv 0 0 0\nv 9 0 0\nv 9 5 0\nv 4 2 0\nv 0 5 0\nvt 0 0\nvt 1 1\n"
+MESH_SEEDS = [
+    (".obj", SQUARE + b"usemtl m\nf 1/1 2/2 3/1 4/1 5/2\n"),
+    (".obj", SQUARE + b"f -5 -4 \\\n -3 -2 -1\n"),
+    (".off", b"OFF\n5 2 0\n0 0 0\n9 0 0\n9 5 0\n4 2 0\n0 5 0\n3 0 1 3\n4 0 1 2 3\n"),
+    (".json", b'{"vertices":[[0,0],[9,0],[9,5]],"faces":[[0,1,2]]}'),
+    (".json", b'{"skins":[{"attachments":{"a":{"b":{"vertices":[0,0,9,0,9,5],"triangles":[0,1,2]}}}}]}'),
+]
+WORDS = [
+    b"9" * 5000,
+    b"1e999",
+    b"-1",
+    b"0",
+    b"\xc2\xb2",
+    b"nan",
+    b"1_0",
+    b"2147483648",
+    b"",
+    b"\\",
+    b"f",
+    b"v 1",
+]
+
+
+def damaged_text(rng: Rng, data: bytes) -> bytes:
+    """A mesh file as text with other words, bytes or lengths."""
+    if data.startswith(b"{") and rng.random() < 0.7:
+        return change_json(rng, data)
+    if rng.random() < 0.3:
+        return pick(rng, [change_bytes, cut])(rng, data)
+    words = data.split(b" ")
+    for _ in range(int(rng.integers(1, 3))):
+        words[int(rng.integers(len(words)))] = pick(rng, WORDS)
+    return b" ".join(words)
+
+
 # -- what must hold ------------------------------------------------------------------------------------------
 
 
@@ -360,7 +400,7 @@ class Fuzzer:
     def run(self, seed: int) -> None:
         """Check one case. Raises any exception but an `InputError` whose message is one line."""
         rng = np.random.default_rng(seed)
-        kind = pick(rng, ["akap", "akap", "akap", "pose", "akaprec"])
+        kind = pick(rng, ["akap", "akap", "akap", "pose", "akaprec", "mesh", "picture"])
         started = time.process_time()
         try:
             getattr(self, f"_open_{kind}")(rng)
@@ -378,6 +418,21 @@ class Fuzzer:
         document = decode_document(damaged_drawing(rng, self.files))
         data = encode_document(document)
         assert encode_document(decode_document(data)) == data
+
+    def _open_mesh(self, rng: Rng) -> None:
+        name, data = pick(rng, MESH_SEEDS)
+        data = damaged_text(rng, data)
+        mesh_defects(decode_mesh(data))
+        if name in PARSERS:
+            mesh = PARSERS[name](decode_text(data))
+            with np.errstate(all="ignore"):
+                triangulate_polygons(np.array(mesh.vertices).reshape(-1, 3), mesh.faces)
+
+    def _open_picture(self, rng: Rng) -> None:
+        document = pick(rng, self.documents)
+        data = change_png(rng, encode_png(document.drawing.image))
+        image = decode_image(data, ("PNG",), document.drawing.size)
+        assert (decode_image(encode_png(image)) == image).all()
 
     def _open_pose(self, rng: Rng) -> None:
         document = pick(rng, self.documents)

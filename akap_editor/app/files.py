@@ -14,7 +14,7 @@ from ..io.akap.project import PROJECT_SUFFIX
 from ..io.akap.project import save as save_project
 from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.images import has_transparency, is_animation
-from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document
+from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document, opening_notes
 from ..resources import bundled_drawings
 from .app_state import AppState, error_message
 from .dialogs.file_dialog import FileDialog, FileRequest
@@ -41,7 +41,7 @@ def show_document(state: AppState, document: Document) -> None:
         "This picture has no transparent background, so the whole rectangle bends; "
         "Mesh, at the right, can remove it"
         if opaque
-        else ""
+        else ". ".join(opening_notes(document))
     )
 
 

@@ -13,7 +13,7 @@ from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.open_document import open_document
 from ..resources import bundled_drawings, resource
 from . import replay
-from .options import FILE, bundled
+from .options import FILE, bundled, check_threshold, threshold_option
 
 FIRST_DRAWING = "elephant"
 OUTPUT_FOLDER = Path("out")
@@ -34,7 +34,10 @@ def _complete(context: click.Context, parameter: click.Parameter, incomplete: st
     shell_complete=_complete,
     help=f"Open a drawing that comes with the program instead of FILE, e.g. {FIRST_DRAWING}.",
 )
-def edit(file: Path | None, mask: Path | None, name: str | None = None) -> None:
+@threshold_option
+def edit(
+    file: Path | None, mask: Path | None, name: str | None = None, threshold: float | None = None
+) -> None:
     """Open FILE in a window: a picture, a flat OBJ or OFF mesh, a drawing saved as .akap, or a recording,
     which is then on the timeline.
 
@@ -46,10 +49,15 @@ def edit(file: Path | None, mask: Path | None, name: str | None = None) -> None:
     document, problem, recording = None, None, None
     source = bundled(name) if name is not None else file
     try:
-        if source is not None and source.suffix.lower() == RECORDING_SUFFIX and mask is None:
+        if (
+            source is not None
+            and source.suffix.lower() == RECORDING_SUFFIX
+            and mask is None
+            and threshold is None
+        ):
             recording = source
         elif source is not None:
-            document = open_document(source, mask)
+            document = open_document(source, mask, check_threshold(threshold))
     except InputError as error:
         problem = error
     try:

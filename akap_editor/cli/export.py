@@ -9,8 +9,16 @@ import click
 from ..editor.framing import crop_box, output_size
 from ..errors import InputError
 from ..io.export import EXPORT_FORMATS, ExportOptions, export, format_of
-from ..io.open_document import open_document
-from .options import FILE, append_formats, export_options, framing_options, make_folder_of
+from ..io.open_document import open_document, opening_notes
+from .options import (
+    FILE,
+    append_formats,
+    check_threshold,
+    export_options,
+    framing_options,
+    make_folder_of,
+    threshold_option,
+)
 
 
 @dataclass(frozen=True)
@@ -38,12 +46,16 @@ class ExportResult:
         return {"format": self.label, "files": [str(path) for path in self.files], **size}
 
 
-def export_file(file: Path, output: Path, options: ExportOptions) -> ExportResult:
+def export_file(
+    file: Path, output: Path, options: ExportOptions, threshold: float | None = None
+) -> ExportResult:
     """Export a drawing or picture. Raises InputError."""
     from ..render.offscreen import OffscreenRenderer
 
     chosen = format_of(output)
-    document = open_document(file)
+    document = open_document(file, threshold=check_threshold(threshold))
+    for note in opening_notes(document):
+        click.echo(f"akap-editor: {note}", err=True)
     make_folder_of(output)
     with OffscreenRenderer() as renderer:
         files = export(document, output, options, renderer)
@@ -62,6 +74,7 @@ def export_file(file: Path, output: Path, options: ExportOptions) -> ExportResul
 @click.argument("file", type=FILE)
 @click.option("-o", "--output", type=FILE, required=True, help="File to write; its ending sets the format.")
 @framing_options
+@threshold_option
 @click.option("--rest", is_flag=True, help="Export the rest pose.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def export_command(
@@ -70,6 +83,7 @@ def export_command(
     scale: float | None,
     background: str | None,
     crop: str | None,
+    threshold: float | None,
     rest: bool,
     as_json: bool,
 ) -> None:
@@ -79,7 +93,7 @@ def export_command(
     for name, value in given.items():
         if value is not None and not chosen.uses_framing:
             raise InputError(f"{name}: expected a picture or an outline as output, got {chosen.suffix}")
-    result = export_file(file, output, export_options(scale, background, crop, rest))
+    result = export_file(file, output, export_options(scale, background, crop, rest), threshold)
     click.echo(json.dumps(result.facts, indent=2) if as_json else result.text)
 
 

@@ -16,7 +16,8 @@ from ..errors import FileError, InputError, file_errors
 from ..geometry.validation import as_number
 from ..io.images import has_transparency, read_image, read_mask
 from ..io.mesh_files.obj_off import write_obj
-from ..io.open_document import PICTURE_SUFFIXES
+from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note
+from ..meshing.faint import DEFAULT_THRESHOLD, faint_share, fitting_threshold
 from ..meshing.picture_mesh import mesh_picture
 from ..meshing.quality import mesh_quality
 from ..meshing.triangle_process import TRIANGLE
@@ -30,6 +31,7 @@ MAX_EXPANSION = 1000.0  # pixels
 class MeshRow:
     """The mesh of one picture; see `MeshQuality` for its measures.
 
+    faint: share of the visible pixels that the threshold cuts off, which ``covered`` does not count;
     specks: number of islands that are too small and left out; speck_share: their share of the visible area;
     cut_out: whether the picture has transparency; seconds: from the file to the mesh; mesh: the written file.
     """
@@ -44,6 +46,7 @@ class MeshRow:
     low_angle: float
     worst_angle: float
     covered: float
+    faint: float
     outside: float
     cut_out: bool
     seconds: float
@@ -116,12 +119,16 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
         if shown is not None:
             image = apply_mask(image, shown)
         alpha = np.ascontiguousarray(image[..., 3])
-        meshed = mesh_picture(alpha, meshing.vertices, meshing.expand, meshing.threshold)
+        threshold = meshing.threshold
+        if threshold == DEFAULT_THRESHOLD:
+            threshold = fitting_threshold(alpha)
+        meshed = mesh_picture(alpha, meshing.vertices, meshing.expand, threshold)
     seconds = time.perf_counter() - started
     if output is not None:
         make_folder_of(output)
         write_obj(output, meshed.mesh, (image.shape[1], image.shape[0]))
-    quality = mesh_quality(meshed.mesh, alpha, meshing.threshold)
+    quality = mesh_quality(meshed.mesh, alpha, threshold)
+    faint = faint_share(alpha, meshed.mesh, threshold)
     visible = meshed.mesh.rest_areas.sum() * (1 - quality.outside) / quality.covered
     return MeshRow(
         picture=str(picture),
@@ -130,7 +137,8 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
         cut_out=has_transparency(image),
         seconds=round(seconds, 4),
         mesh=None if output is None else str(output),
-        **asdict(quality),
+        faint=faint,
+        **{**asdict(quality), "covered": quality.covered * (1 - faint)},
     )
 
 
@@ -191,6 +199,8 @@ def _describe(row: MeshRow) -> str:
         f"  covered         {row.covered:.2%} of the visible area; {row.outside:.1%} of the mesh is outside",
         f"  time            {row.seconds:.3f} s",
     ]
+    if row.faint >= MIN_REPORTED_SHARE:
+        lines.append(f"  {faint_note(row.faint)}")
     if row.specks:
         lines.append(
             f"  left out        {_count_noun(row.specks, 'speck')}, {row.speck_share:.2%} of the visible area"
@@ -222,7 +232,10 @@ def _table(rows: list[MeshRow], failed: int) -> list[str]:
     ]
     if rows:
         seconds = [row.seconds for row in rows]
-        worst, least = min(row.worst_angle for row in rows), min(row.covered for row in rows)
+        worst, least = (
+            min(row.worst_angle for row in rows),
+            min(row.covered for row in rows),
+        )
         lines.append(
             f"{_count_noun(len(rows), 'mesh', 'meshes')}, {failed} failed; "
             f"median {np.median(seconds):.3f} s, slowest {max(seconds):.3f} s; "

@@ -29,6 +29,21 @@ _FRAMING = (
 )
 
 
+threshold_option = click.option(
+    "--threshold",
+    type=float,
+    metavar="SHARE",
+    help="Share of full opacity at which a picture ends; by default 0.5, less for faint pictures.",
+)
+
+
+def check_threshold(threshold: float | None) -> float | None:
+    """Return a value of --threshold. Raises InputError if it is not between 0 and 1."""
+    if threshold is not None and not 0 < threshold < 1:
+        raise InputError(f"--threshold: expected a share between 0 and 1, got {threshold:g}")
+    return threshold
+
+
 def framing_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options for scale, background and crop to a command; see `export_options`."""
     for option in reversed(_FRAMING):

@@ -5,14 +5,22 @@ from pathlib import Path
 import click
 
 from .export import export_file
-from .options import FILE, check_png, export_options, framing_options
+from .options import FILE, check_png, export_options, framing_options, threshold_option
 
 
 @click.command(epilog="Example: akap-editor render posed.akap -o pose.png --scale 2 --crop pose")
 @click.argument("file", type=FILE)
 @click.option("-o", "--output", type=FILE, required=True, help="PNG file to write.")
 @framing_options
-def render(file: Path, output: Path, scale: float | None, background: str | None, crop: str | None) -> None:
+@threshold_option
+def render(
+    file: Path,
+    output: Path,
+    scale: float | None,
+    background: str | None,
+    crop: str | None,
+    threshold: float | None,
+) -> None:
     """Write the pose of FILE, a saved drawing or a picture, as a PNG picture."""
     check_png(output)
-    click.echo(export_file(file, output, export_options(scale, background, crop)).text)
+    click.echo(export_file(file, output, export_options(scale, background, crop), threshold).text)

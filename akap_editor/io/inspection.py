@@ -1,5 +1,6 @@
 """Inspects files of all kinds: what they are, by their content, and whether they are sound."""
 
+import reprlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,6 +8,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..geometry.distortion import distortion
+from ..meshing.faint import fitting_threshold
 from ..meshing.picture_mesh import mesh_picture
 from .akap.json_records import pairs, parse_record, require
 from .akap.pose import POSE_FORMAT
@@ -67,6 +69,9 @@ def inspect(path: str | Path) -> Inspection:
         facts, problems = _INSPECTORS[kind](data)
     except InputError as error:
         return Inspection(kind, {}, [str(error)])
+    except Exception as error:  # a defect that no reader names must not end the inspection of a file
+        reason = reprlib.repr(str(error))
+        return Inspection(kind, {}, [f"the file is damaged ({type(error).__name__}: {reason})"])
     return Inspection(kind, facts, problems)
 
 
@@ -89,7 +94,7 @@ def _inspect_picture(data: bytes) -> tuple[Facts, list[str]]:
     facts: Facts = {"format": kind, "width": image.shape[1], "height": image.shape[0]}
     facts["transparent"] = has_transparency(image)
     try:
-        meshed = mesh_picture(image[..., 3])
+        meshed = mesh_picture(image[..., 3], threshold=fitting_threshold(image[..., 3]))
     except InputError as error:
         return facts, [str(error)]
     facts |= {"parts": meshed.parts, "holes": meshed.holes, "specks left out": meshed.specks}
