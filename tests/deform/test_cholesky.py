@@ -24,7 +24,7 @@ def entries(request):
 
 
 def dense(rows, columns, values, size):
-    """The symmetric matrix whose lower triangle is the sum of the entries, mirrored there where above."""
+    """The dense symmetric matrix of entries in either triangle, summed."""
     lower = np.zeros((size, size))
     np.add.at(lower, (np.maximum(rows, columns), np.minimum(rows, columns)), values)
     return lower + np.tril(lower, -1).T

@@ -47,7 +47,7 @@ def shape_name(request):
 
 @pytest.fixture
 def mesh(shape_name):
-    """Each shape in turn; of tied islands, one rides with the body and one with that one."""
+    """Each shape in turn; of the tied islands, one moves with the body, and one with the other island."""
     if shape_name != "tied islands":
         return shapes.SHAPES[shape_name]
     return replace(shapes.blocks("##.#.# ##.#.. ##...#", 50, 3, 0.2), tied=True)
@@ -69,7 +69,7 @@ def stepped(case, mesh, points, positions, targets, steps=1):
 
 
 def scene(mesh, seed=1):
-    """Pins, a pose that is no rigid motion of the rest pose, and targets a few pixels from where pins are.
+    """Pins, a pose that is no rigid motion of the rest pose, and targets a few pixels from the pins.
 
     Where parts are tied, one of them has all the pins.
     """
@@ -149,7 +149,7 @@ def test_renumbering_commutes_with_a_step(case, mesh):
 
 
 def test_choosing_pins_moves_nothing_at_rest(case, mesh):
-    """Pins whose targets are where they are."""
+    """The targets of the pins are their positions."""
     rest = mesh.vertices
     for points in (shapes.random_pins(mesh, 1), shapes.random_pins(mesh, 2, 1)):
         assert np.abs(stepped(case, mesh, points, rest, mesh.evaluate(points, rest)) - rest).max() < 1e-9
@@ -193,7 +193,7 @@ def test_pins_at_their_targets_translate_the_drawing(case, mesh):
 
 @pytest.mark.parametrize("shape_name", ["triangle", "strip", "islands"])
 def test_no_argument_leads_to_numbers_that_are_not_finite(case, mesh):
-    """Targets at odds with one another, very far away, or all in one place."""
+    """Targets that contradict one another, are very far away, or are all at one place."""
     points, pose, targets = scene(mesh)
     opposite = 2 * targets.mean(axis=0) - targets
     for wanted in (opposite, np.repeat(targets[:1], len(targets), axis=0)):
@@ -209,7 +209,7 @@ def test_no_argument_leads_to_numbers_that_are_not_finite(case, mesh):
 @pytest.mark.parametrize("shape_name", ["star", "tied islands"])
 @pytest.mark.parametrize("distance", [30.0, 1e8])
 def test_a_step_ends_however_far_the_targets_are(case, mesh, distance):
-    """All pins in one direction, one of them alone, all in one place, and turned and moved together."""
+    """All pins move in one direction, one moves alone, all move to one place, or all rotate together."""
     points, pose, targets = scene(mesh)
     far = distance * mesh.length
     alone = targets.copy()

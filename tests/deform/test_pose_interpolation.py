@@ -1,4 +1,4 @@
-"""In-betweens: arcs in place of chords, nothing shrinks, and the ends are exact."""
+"""Interpolated poses: arcs instead of chords, nothing shrinks, and the ends are exact."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def bar(length=40, width=4):
 
 
 def curled(mesh, turn, still=10.0):
-    """The bar held still up to ``still``, then bent along a circle by ``turn`` in all."""
+    """A pose of the bar: at rest up to x = ``still``, then bent along a circle by ``turn`` radians."""
     x, y = mesh.vertices.T
     middle = y.max() / 2
     length = x.max() - still
@@ -78,7 +78,7 @@ def test_a_translation_goes_straight(mesh):
 
 @pytest.mark.parametrize("turn", [np.pi, 1.5 * np.pi, 1.95 * np.pi])
 def test_an_arm_sweeps_an_arc_also_beyond_half_a_turn(mesh, turn):
-    """Halfway it is bent by half, the part that stayed stays, and every area is kept."""
+    """Halfway it is bent by half, the part at rest does not move, and areas do not change."""
     end = curled(mesh, turn)
     pose = PoseInterpolation(mesh).between(mesh.vertices, end)
     np.testing.assert_allclose(pose(0.5), curled(mesh, turn / 2), atol=0.25)
@@ -90,7 +90,7 @@ def test_an_arm_sweeps_an_arc_also_beyond_half_a_turn(mesh, turn):
 
 
 def test_a_straight_mix_of_the_two_poses_would_shrink(mesh):
-    """What the spirals are for."""
+    """The reason for spirals."""
     end = curled(mesh, np.pi)
     mixed = distortion(mesh, 0.5 * (mesh.vertices + end)).area
     spiral = distortion(mesh, PoseInterpolation(mesh).between(mesh.vertices, end)(0.5)).area
@@ -116,7 +116,7 @@ def test_pairs_are_prepared_once_and_interpolated_as_without_the_cache(mesh, mon
     assert len(prepared) == 1
     for pair in ((end, other), (start, other), (start, end)):
         cache.pose(mesh, *pair, 0.5)
-    assert len(prepared) == 4, "only the last two are kept"
+    assert len(prepared) == 4, "only the last two pairs are kept"
 
 
 def test_parts_move_each_on_their_own():
@@ -155,7 +155,7 @@ def test_bad_arguments_are_named(mesh, bad, message):
 
 @pytest.mark.parametrize("name", ["cat", "elephant", "t-rex", "gecko", "dancer"])
 def test_real_cartoons_are_distorted_no_more_than_at_the_worse_end(shared_data, name):
-    """Two random poses by hand; the distortion of areas on the way, against the larger end plus 1 %."""
+    """Between two random poses, areas are distorted at most 1 % more than in the worse of the two."""
     drawing = make_drawing(read_image(shared_data / "noto" / f"{name}.png"), vertices=600, name=name)
     mesh = drawing.mesh
     session = Session(new_document(drawing))

@@ -1,4 +1,4 @@
-"""The first drag compiles nothing: all that it needs was made ready."""
+"""After `precompile`, the first drag compiles nothing."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""Compiled loops: the same numbers, wherever they can be kept."""
+"""Compiled functions: the same results with and without a cache on disk."""
 
 import numba
 import numpy as np

@@ -190,7 +190,7 @@ def test_locate_in_a_pose(mesh):
 
 
 def test_vertices_and_edges_belong_to_the_drawing(mesh):
-    """Also on the boundary, where rounding may put a point outside."""
+    """Also on the boundary, although rounding may move a point outside."""
     rng = np.random.default_rng(5)
     share = rng.uniform(0, 1, (len(mesh.edges), 1))
     start, end = mesh.vertices[mesh.edges[:, 0]], mesh.vertices[mesh.edges[:, 1]]

@@ -1,4 +1,4 @@
-"""A plain background made transparent."""
+"""Removal of plain backgrounds."""
 
 import numpy as np
 import pytest

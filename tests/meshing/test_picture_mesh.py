@@ -1,4 +1,4 @@
-"""From pictures to meshes in one step: the number of vertices, and what has to give way for it."""
+"""Meshes of pictures: the number of vertices, and outlines that are simplified to reach it."""
 
 import numpy as np
 import pytest

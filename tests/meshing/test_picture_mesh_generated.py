@@ -1,4 +1,4 @@
-"""What has to hold for the mesh of any outline, on hundreds of them."""
+"""Laws of the mesh of any picture, on hundreds of generated ones."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ CLEAN = ("stars", "rings", "polygons", "blobs")  # everything is wider than a pi
 
 @pytest.fixture(scope="module", params=FAMILIES)
 def family(request):
-    """The pictures of each family in turn, and its name."""
+    """Each family of generated cartoons in turn: its name and pictures."""
     return request.param, list(FAMILIES[request.param]())
 
 
@@ -69,7 +69,7 @@ def test_parts_and_holes_are_those_of_the_pixels():
             parts, _ = label(pixels, np.ones((3, 3)))
             gaps, _ = label(~pixels)
             sizes, empty = np.bincount(parts.flat)[1:], np.bincount(gaps.flat)[1:]
-            # Of those near the smallest that is kept, the contour decides.
+            # Near the area limit, the exact contour decides whether a part stays.
             assert (sizes > 16).sum() <= len(cut.parts) <= (sizes > 6).sum(), (name, number)
             assert (empty > 20).sum() - 1 <= cut.holes <= (empty > 6).sum() - 1, (name, number)
 

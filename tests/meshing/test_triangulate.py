@@ -133,7 +133,7 @@ def test_moved_and_scaled_outline_gives_as_good_a_mesh():
 
 
 def test_a_limb_is_drawn_over_the_body():
-    """Faces come in the order of their way from the middle: a bent limb passes in front as a whole."""
+    """Faces are ordered by their distance from the middle: a bent limb passes in front as a whole."""
     arm = Outline([[0, 0], [100, 0], [100, 40], [300, 40], [300, 60], [100, 60], [100, 100], [0, 100]])
     mesh = triangulate([arm], 400)
     middle = mesh.vertices[mesh.faces].mean(axis=1)[:, 0]

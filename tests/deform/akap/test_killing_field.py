@@ -1,4 +1,4 @@
-"""As-Killing-as-possible fields: what they minimize and reproduce, and a dense implementation beside."""
+"""As-Killing-as-possible fields: their energies, fields they reproduce, and a dense implementation."""
 
 import numpy as np
 import pytest

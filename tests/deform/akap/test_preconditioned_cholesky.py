@@ -1,8 +1,10 @@
+"""Conjugate gradients preconditioned by earlier factors: exact results, few factorizations."""
+
 import numpy as np
 import pytest
 from scipy.sparse import coo_array
 
-from akap_editor.deform.akap import preconditioned_cholesky as reuse
+from akap_editor.deform.akap import preconditioned_cholesky
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
 from akap_editor.deform.cholesky import SymmetricPattern
@@ -32,7 +34,7 @@ class System:
 
 
 def bent(mesh, angle):
-    """The mesh bent to an arc, and how far each vertex is turned by that."""
+    """The mesh bent to an arc, (n, 2), and the rotation of each vertex, (n,) complex."""
     x, y = mesh.vertices.T
     share = (x - x.min()) / np.ptp(x)
     radius = np.ptp(x) / angle - (y - y.mean())
@@ -87,16 +89,16 @@ def test_a_turned_drawing_costs_one_iteration(system):
 
 
 def test_solutions_like_earlier_ones_cost_fewer_iterations(system, monkeypatch):
-    """Of a pull that turns with the drawing and changes its size, with the first factors throughout."""
-    monkeypatch.setattr(reuse, "MAX_WASTED_ITERATIONS", 1000)
+    """A force that rotates with the drawing and changes its size; only the first pose is factorized."""
+    monkeypatch.setattr(preconditioned_cholesky, "MAX_WASTED_ITERATIONS", 1000)
     counts = []
-    for like in ("", "pull"):
+    for key in ("", "force"):
         solver = prepared(system)
         for angle in np.linspace(0.1, 0.3, 11):
             positions, frame = bent(system.mesh, angle)
             solver.prepare(system.nonzeros(positions), frame)
             right = (1 + angle) * frame * right_side(system, 3)
-            found = solver.solve(right, TOLERANCE, like)
+            found = solver.solve(right, TOLERANCE, key)
             assert np.abs(found - solved(system, positions, right)).max() < TOLERANCE
         counts.append(solver.iterations)
     assert counts[1] < 0.7 * counts[0]
@@ -113,7 +115,7 @@ def test_a_pose_too_far_away_is_factorized(system):
 
 
 def test_many_iterations_call_for_a_factorization(system):
-    """Not for each pose, but for one of several, and from then on there are few and no further ones."""
+    """Once for several poses; with the new factors, few iterations are needed."""
     solver = prepared(system)
     positions, frame = system.mesh.vertices * [1.3, 0.8], np.ones(system.size // 2, dtype=complex)
     counts, factorizations = [], []

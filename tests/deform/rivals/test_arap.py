@@ -1,4 +1,4 @@
-"""As-rigid-as-possible deformation: what it minimizes, and a dense implementation beside."""
+"""As-rigid-as-possible deformation: its energy, and a dense implementation to compare with."""
 
 from itertools import pairwise
 

@@ -97,7 +97,7 @@ def test_cage_is_a_simple_polygon_of_few_vertices_around_the_outline(outline, si
 
 
 def test_what_is_left_out_does_not_depend_on_where_a_ring_begins():
-    """Nor on how it is turned."""
+    """Nor on its rotation."""
     outline = ragged(60)
     points = np.array(outline.exterior.coords)[:-1]
     other = shapely.Polygon(np.roll(points, 17, axis=0) @ [[0.6, 0.8], [-0.8, 0.6]])

@@ -1,4 +1,4 @@
-"""As-rigid-as-possible deformation in two solves, and the paper's formulas in dense matrices beside."""
+"""As-rigid-as-possible deformation in two solves, compared with the paper's formulas in dense matrices."""
 
 import numpy as np
 import pytest
@@ -124,7 +124,7 @@ def test_the_pose_so_far_does_not_matter(mesh):
 
 @pytest.mark.parametrize("name", ["elephant", "cat", "noto/dancer"])
 def test_cartoon_is_bent_nearly_as_by_iterations(cartoon_mesh, name):
-    """Comparable if somewhat less desirable than iterative methods, says the paper of 2011."""
+    """Somewhat worse than iterative methods, as the paper of 2011 says."""
     mesh = cartoon_mesh(name)
     points = shapes.random_pins(mesh, 1, 4)
     size = mesh.length

@@ -1,4 +1,4 @@
-"""Moving least squares: what the three kinds of transforms reproduce, and the paper's formulas beside."""
+"""Moving least squares: maps that the three transforms reproduce, and the paper's formulas."""
 
 import numpy as np
 import pytest
