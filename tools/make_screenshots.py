@@ -76,7 +76,7 @@ def editor(window: Window) -> None:
 @shot("mesh")
 def mesh(window: Window) -> None:
     """The mesh over the drawing."""
-    window.state.show_mesh = True
+    window.state.view.show_mesh = True
 
 
 @shot("start")
@@ -173,7 +173,7 @@ def field(window: Window) -> None:
 def heat(window: Window) -> None:
     """The distortion map with its color scale."""
     window.state.view.distortion_measure = "angle"
-    window.state.show_pins = False
+    window.state.view.show_pins = False
 
 
 @shot("ghost")
@@ -185,7 +185,7 @@ def ghost(window: Window) -> None:
 @shot("split")
 def split(window: Window) -> None:
     """Two methods compared on the same pins."""
-    window.state.split = True
+    window.state.view.is_split = True
 
 
 @shot("export")
@@ -219,7 +219,7 @@ def add_keyframes(window: Window) -> None:
 def keyframes(window: Window) -> None:
     """Keyframes on the timeline, with onion skin."""
     add_keyframes(window)
-    window.state.show_pins = False
+    window.state.view.show_pins = False
     window.state.timeline.keyframe_playback.onion_skin.is_shown = True
     window.state.timeline.keyframe_playback.selected = frozenset({0.8})
 

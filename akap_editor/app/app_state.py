@@ -4,10 +4,9 @@ import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 from ..editor import gestures
-from ..editor.animation.pose_blend import PoseBlend
 from ..editor.background_remesh import BackgroundRemesh
 from ..editor.comparison import MethodComparison
 from ..editor.document.document import Document
@@ -24,13 +23,11 @@ from .canvas.view_options import ViewOptions, onion_poses
 from .jobs.background_thread import BackgroundThread, Wake, no_window
 from .jobs.pose_export import PoseExportQueue
 from .jobs.task import Task
-from .panels.measurements import Measurements
-from .pending_values import PendingValues
 from .preferences import Preferences
 from .thumbnails import Thumbnails
 from .timeline.timeline import Timeline
 
-SWITCHES = ("show_mesh", "checker")  # fields that are remembered between runs
+_VIEW_PREFERENCES = {"show_mesh": "show_mesh", "checker": "show_checkerboard"}  # preferences: view options
 
 P = TypeVar("P")
 
@@ -54,17 +51,8 @@ class AppState:
 
     editor: Editor = field(default_factory=Editor)
     wake: Wake = no_window  # lets the window draw a frame; threads call it when they are done
-    show_mesh: bool = False
-    show_pins: bool = True
     timeline: Timeline = field(init=False)
-    pose_blend: PoseBlend = field(default_factory=PoseBlend)
-    grip: Literal["start", "end", "head", "keys", "none"] = "head"  # what the pointer holds of the timeline
-    held_key: float = 0.0  # the time of the keyframe that it holds
     task: Task | None = None
-    renaming: str | None = None  # the pose that is given another name
-    new_name: str = ""
-    checker: bool = True
-    split: bool = False
     comparison: MethodComparison = field(default_factory=MethodComparison)
     notice: str = ""
     error: str = ""
@@ -75,9 +63,7 @@ class AppState:
     thumbnails: Thumbnails = field(default_factory=Thumbnails)
     preferences: Preferences = field(default_factory=Preferences)
     autosave: Autosave | None = None
-    pending_values: PendingValues = field(default_factory=PendingValues)
     view: ViewOptions = field(default_factory=ViewOptions)
-    measurements: Measurements = field(default_factory=Measurements)
     remesher: BackgroundRemesh = field(init=False)
     _jobs: list[Callable[[], None]] = field(default_factory=list)
     _due: list[Callable[[], None]] = field(default_factory=list)
@@ -107,8 +93,8 @@ class AppState:
         """The state that the preferences remember; steps are computed in a thread."""
         editor = Editor(worker=BackgroundThread("engine", wake))
         state = cls(editor, wake, preferences=preferences, notice=preferences.problem)
-        for name in SWITCHES:
-            setattr(state, name, preferences.get(name, getattr(state, name)))
+        for name, option in _VIEW_PREFERENCES.items():
+            setattr(state.view, option, preferences.get(name, getattr(state.view, option)))
         state.timeline.is_shown = preferences.get("show_timeline", False)
         state.view.restore(preferences.get("overlays", {}))
         if state.view.reference_path is not None:
@@ -121,8 +107,8 @@ class AppState:
 
     def remember(self) -> None:
         """Write what has changed to the preferences; if that fails, a notice says so once."""
-        for name in SWITCHES:
-            self.preferences.put(name, getattr(self, name))
+        for name, option in _VIEW_PREFERENCES.items():
+            self.preferences.put(name, getattr(self.view, option))
         self.preferences.put("show_timeline", self.timeline.is_shown)
         self.preferences.put("overlays", self.view.to_json())
         brush = self.editor.brush_tool.brush
@@ -130,7 +116,7 @@ class AppState:
         try:
             self.preferences.write()
         except InputError as error:
-            self.notice = f"Not remembered for the next time: {error}"
+            self.notice = f"Couldn't save the preferences. {error}"
 
     # -- work that may fail ----------------------------------------------------------------------------------
 
@@ -212,7 +198,7 @@ class AppState:
     def overlays(self, scale: float) -> Overlays:
         """What the renderer shows besides the drawing. scale: framebuffer pixels per point of the design."""
         distortion = self.measure() if self.view.distortion_measure is not None else None
-        mesh = self.show_mesh or self.remesher.is_active
+        mesh = self.view.show_mesh or self.remesher.is_active
         overlays = self.view.overlays(self.editor, distortion, mesh, scale)
         if not self.timeline.shows_keyframes:
             return overlays

@@ -38,8 +38,8 @@ def show_document(state: AppState, document: Document) -> None:
         state.timeline.mode, state.timeline.is_shown = "keyframes", True
     opaque = document.path is None and not has_transparency(document.drawing.image)
     state.notice = (
-        "This picture has no transparent background, so the whole rectangle bends; "
-        "Mesh, at the right, can remove it"
+        "This picture has no transparency, so the whole rectangle bends. "
+        "Remove Background in the Mesh section cuts out the drawing."
         if opaque
         else ". ".join(opening_notes(document))
     )
@@ -73,7 +73,7 @@ def open_path(state: AppState, path: Path, notice: str = "") -> None:
             raise
         show_document(state, document)
         if is_animation(path):
-            state.notice = f"{path.name} is an animation; its first frame was opened"
+            state.notice = f"Opened the first frame of the animation {path.name}"
         remember_file(state, path)
         state.notice = notice or state.notice
 
@@ -86,7 +86,7 @@ def _show_recording(state: AppState, path: Path, session: Session, playback: Ses
     state.editor.take_over(session)
     state.timeline.session_playback, state.timeline.mode, state.timeline.is_shown = playback, "session", True
     remember_file(state, path)
-    state.notice = f"Opened {path.name}: {playback.duration:.0f} seconds are on the timeline"
+    state.notice = f"Opened {path.name}; the timeline shows its {playback.duration:.0f} seconds"
 
 
 def remember_file(state: AppState, path: Path) -> None:

@@ -41,7 +41,7 @@ class Preferences:
             self._values = self._read()
         except InputError as error:
             self._values = {}
-            self.problem = f"The preferences are those of a new user: {error}"
+            self.problem = f"Couldn't read the preferences, so the defaults are used. {error}"
 
     @property
     def is_kept(self) -> bool:

@@ -169,7 +169,7 @@ def _recent(state: AppState, column: float) -> None:
         if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
             _open(state, path)
         widgets.show_tooltip(str(path))
-        folder = widgets.shortened(str(path.parent), 0.55 * column, end=True)
+        folder = widgets.shortened(str(path.parent), 0.55 * column, keeps_end=True)
         room_left = imgui.get_content_region_avail().x
         imgui.same_line(imgui.get_cursor_pos_x() + room_left - imgui.calc_text_size(folder).x)
         imgui.text_colored(ImVec4(*QUIET), folder)

@@ -28,7 +28,7 @@ from .canvas.pin_markers import draw_markers
 from .canvas.pointer_input import Canvas
 from .canvas.scene import Scene
 from .commands import registry as commands
-from .commands.focus_navigation import give_keys_to_panels
+from .commands.focus_navigation import handle_focus_keys
 from .commands.palette import Palette
 from .dialogs import dialogs
 from .dialogs.file_dialog import FileDialog, has_native_dialogs
@@ -294,7 +294,7 @@ class Window:
         self._watch_focus()
         while self._dropped:
             files.open_dropped(state, self._dropped.pop(0))
-        give_keys_to_panels(state)
+        handle_focus_keys(state)
         modal = _popup_is_open()  # before as well as after: the key that closes one must not do more
         state.editor.canvas = split_view.draw(state, panels.draw(state, self.scale), self.scale)
         if state.document is None:

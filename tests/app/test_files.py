@@ -18,7 +18,7 @@ from akap_editor.io.open_document import open_document
 from akap_editor.resources import bundled_drawings
 
 OPEN, SAVE = "Open picture or drawing", "Save drawing"
-UNSAVED, MESSAGE = "Unsaved changes", "That did not work"
+UNSAVED, MESSAGE = "Unsaved changes", "Error"
 
 
 @pytest.fixture
@@ -76,7 +76,7 @@ def enter_at(ui, item):
     ui.do(walk)
 
 
-@pytest.mark.parametrize(("button", "left"), [("Discard", False), ("Cancel", True)])
+@pytest.mark.parametrize(("button", "left"), [("Don't Save", False), ("Cancel", True)])
 def test_enter_uses_the_button_that_the_keyboard_is_at(bent, button, left):
     bent.key(CTRL | Key.w)
     assert bent.state.part(UnsavedChangesDialog).is_open
@@ -103,7 +103,7 @@ def test_save_asks_once_and_then_writes_to_the_same_file(bent, tmp_path):
     bent.dialog(SAVE, "Save")
     path = tmp_path / "figure.akap"
     assert bits(load(path).state) == bits(bent.session.state)
-    bent.panel("Reset pose")
+    bent.panel("Reset Pose")
     bent.key(CTRL | Key.s)
     assert bent.file_request is None
     assert bits(load(path).state) == bits(bent.session.state)
@@ -151,7 +151,7 @@ def test_the_file_dialog_goes_through_folders(bent, tmp_path):
     assert request.folder == inner
     assert request.name == ""
     open_("###there.akap")
-    bent.dialog(UNSAVED, "Discard")
+    bent.dialog(UNSAVED, "Don't Save")
     finish(bent)
     assert bent.document.path == inner / "there.akap"
 
@@ -254,7 +254,7 @@ ENDS = [open_other, quit_, close_window]
 def test_discard_goes_on(bent, tmp_path, end):
     end(bent, tmp_path)
     assert not gone_on(bent)
-    bent.dialog(UNSAVED, "Discard")
+    bent.dialog(UNSAVED, "Don't Save")
     finish(bent)
     assert gone_on(bent)
     assert not (tmp_path / "figure.akap").exists()
@@ -385,7 +385,7 @@ def test_a_bad_file_is_told_in_one_sentence_and_changes_nothing(bent, tmp_path, 
     path, part = make(tmp_path, image)
     before, camera = bent.document, bent.editor.camera
     bent.drop(path)
-    bent.dialog(UNSAVED, "Discard")
+    bent.dialog(UNSAVED, "Don't Save")
     finish(bent)
     error = bent.state.error
     assert str(path) in error
@@ -405,7 +405,7 @@ def test_a_picture_without_alpha_opens_with_a_notice(pinned, tmp_path, image):
     pinned.drop(path)
     finish(pinned)
     assert not pinned.state.error
-    assert "no transparent background" in pinned.state.notice
+    assert "no transparency" in pinned.state.notice
     assert pinned.document.drawing.name == "opaque"
     height, width = image.shape[:2]
     assert pinned.document.drawing.mesh.rest_areas.sum() >= 0.98 * width * height

@@ -9,7 +9,7 @@ import pytest
 
 from akap_editor.app import files
 from akap_editor.app import preferences as module
-from akap_editor.app.app_state import SWITCHES, AppState
+from akap_editor.app.app_state import AppState
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES, ViewOptions
 from akap_editor.app.preferences import MOST_RECENT, Preferences, preferences_path
 from akap_editor.app.window import SIZE, SMALLEST, _remembered_place, _remembered_size
@@ -250,8 +250,9 @@ def test_switches_and_folded_sections_come_back(keeping, path):
     keeping.do(lambda hand: [] if not hand.item_exists("//Panel/Mesh") else pytest.fail("View is folded"))
     keeping.window.remember()
     again = AppState.remembering(Preferences(path))
-    assert not again.checker
-    assert [getattr(again, name) for name in SWITCHES] == [getattr(keeping.state, n) for n in SWITCHES]
+    assert not again.view.show_checkerboard
+    assert again.view.show_mesh == keeping.state.view.show_mesh
+    assert again.timeline.is_shown == keeping.state.timeline.is_shown
     assert again.preferences.get("sections", {}) == {"View": False}
     assert again.preferences.get("window", []) == [1280, 800]
 
@@ -287,7 +288,7 @@ def test_preferences_that_cannot_be_written_are_a_notice_and_no_more(ui, tmp_pat
     (tmp_path / "file").write_text("")
     ui.state.preferences = Preferences(tmp_path / "file" / "preferences.json")
     ui.window.remember()
-    assert "Not remembered" in ui.state.notice
+    assert "Couldn't save the preferences." in ui.state.notice
     ui.state.notice = ""
     ui.panel("Mesh")
     ui.window.remember()

@@ -52,7 +52,7 @@ def test_closing_asks_for_unsaved_changes(pinned):
     pinned.dialog("Unsaved changes", "Cancel")
     assert pinned.state.document is not None
     pinned.key(CTRL | Key.w)
-    pinned.dialog("Unsaved changes", "Discard")
+    pinned.dialog("Unsaved changes", "Don't Save")
     assert pinned.state.document is None
 
 
@@ -116,7 +116,7 @@ def test_a_bad_file_leaves_the_start_page(closed, tmp_path):
     closed.settle()
     assert "bad.png" in closed.state.error
     assert closed.state.document is None
-    closed.dialog("That did not work", "OK")
+    closed.dialog("Error", "OK")
     closed.do(lambda hand: hand.item_click(f"{START}bar"))
     closed.settle()
     assert closed.document.drawing.name == "bar"

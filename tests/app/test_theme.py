@@ -8,8 +8,8 @@ from imgui_bundle import imgui
 
 from akap_editor.app import theme
 from akap_editor.app.canvas import vector_field_arrows, view_options
-from akap_editor.app.panels.side_panel import numbers_panel
-from akap_editor.app.timeline import keyframe_track as key_track
+from akap_editor.app.panels import measurements
+from akap_editor.app.timeline import track
 from akap_editor.render import colormaps
 
 GROUNDS = ("PANEL", "DARK", "POPUP", "FRAME", "HOVER")
@@ -115,10 +115,10 @@ TOGETHER = {
     "trails and followed field": (view_options.TRAIL_COLOR, vector_field_arrows.U_OPT_COLOR),
     "trails and other field": (view_options.TRAIL_COLOR, vector_field_arrows.U_SMOOTH_COLOR),
     "trails and chosen pins": (view_options.TRAIL_COLOR, theme.ACCENT),
-    "energies": (numbers_panel.AREA_COLOR, numbers_panel.ANGLE_COLOR),
+    "energies": (measurements.AREA_COLOR, measurements.ANGLE_COLOR),
     "poses before and after": (view_options.BEFORE_TINT, view_options.AFTER_TINT),
     "shrunk and grown": tuple(colormaps.diverging()[[0, -1]]),
-    "recorded and rest of a timeline": (key_track.RED, theme.ACCENT),
+    "recorded and rest of a timeline": (track.RED, theme.ACCENT),
     "chosen keyframes and others": (theme.ACCENT, theme.TEXT),
 }
 

@@ -11,6 +11,7 @@ import pytest
 from akap_editor.app import files, widgets
 from akap_editor.app import window as window_module
 from akap_editor.app.canvas.scene import Scene
+from akap_editor.app.commands.registry import SHORTCUTS
 from akap_editor.app.dialogs.about import AboutDialog
 from akap_editor.app.jobs.task import Progress, Task
 from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES, Window
@@ -39,7 +40,7 @@ def bend(ui):
 def overlays(ui):
     bend(ui)
     view = ui.state.view
-    view.show_vector_fields = view.show_rest_pose = view.show_pin_trails = ui.state.show_mesh = True
+    view.show_vector_fields = view.show_rest_pose = view.show_pin_trails = ui.state.view.show_mesh = True
     view.distortion_measure = "area"
     view.set_reference(np.full((30, 30, 4), 200, dtype=np.uint8))
 
@@ -67,13 +68,13 @@ IDLE = {
     "start page": lambda ui: ui.editor.close(),
     "pose": bend,
     "overlays": overlays,
-    "two methods": lambda ui: setattr(ui.state, "split", True),
+    "two methods": lambda ui: setattr(ui.state.view, "is_split", True),
     "session timeline": session_timeline,
     "keyframe timeline": keyframe_timeline,
     "message": lambda ui: setattr(ui.state, "error", "The file is damaged."),
     "question": unsaved_question,
-    "about": lambda ui: setattr(ui.state, "about", True),
-    "shortcuts": lambda ui: setattr(ui.state, "keys", True),
+    "about": lambda ui: ui.state.part(AboutDialog).open(),
+    "shortcuts": lambda ui: SHORTCUTS.run(ui.state),
     "export": lambda ui: ui.menu("File", "Export..."),
 }
 
@@ -116,7 +117,7 @@ def test_a_step_that_fails_in_its_thread_is_told_and_the_window_sleeps_again(loo
     )
 
     io.add_mouse_button_event(0, False)
-    ui.dialog("That did not work", "OK")
+    ui.dialog("Error", "OK")
     bend(ui)
     assert ui.session.is_posed
     assert not ui.state.error
@@ -159,7 +160,7 @@ def test_input_that_comes_with_the_last_frame_is_taken_in_whole(loop):
 
     loop.on_poll = press
     loop.run()
-    assert loop.ui.state.show_mesh
+    assert loop.ui.state.view.show_mesh
     assert not imgui.is_key_down(imgui.Key.m)
 
 
@@ -334,7 +335,7 @@ def test_an_exception_becomes_a_message_and_the_drawing_stays(pinned, monkeypatc
         assert ui.session.state is state
     monkeypatch.undo()
     if ui.state.error:
-        ui.dialog("That did not work", "OK")
+        ui.dialog("Error", "OK")
     assert not ui.state.error
     assert not ui.state.part(AboutDialog).is_open
     assert "Traceback" in capfd.readouterr().err, "for a bug report"

@@ -49,8 +49,8 @@ def show_error(state):
         ("Save drawing", ask_save),
         ("Export", ask_export),
         ("Unsaved changes", ask_question),
-        ("Keys and mouse", show_keys),
-        ("That did not work", show_error),
+        ("Keyboard shortcuts", show_keys),
+        ("Error", show_error),
     ],
 )
 def test_dialogs_are_wholly_in_the_window(ui, drawing, title, ask):
@@ -131,7 +131,7 @@ def test_all_tools_are_seen_above_the_timeline(ui):
 
 def test_the_captions_of_two_methods_stay_in_their_halves(pinned):
     """Between the captions and the line in the middle nothing is written."""
-    pinned.state.split, pinned.state.show_pins = True, False
+    pinned.state.view.is_split, pinned.state.view.show_pins = True, False
     picture = pinned.screenshot().astype(int)
     left, _, middle, bottom = map(int, pinned.editor.canvas)
     below = picture[bottom - 70 : bottom - 4, left:middle]
@@ -171,7 +171,7 @@ def test_the_pin_that_is_selected_is_seen_in_the_list(ui):
 def test_the_present_step_of_a_long_history_is_seen_below_whole_rows(pinned):
     for depth in range(1, 21):
         gestures.set_depth(pinned.editor, 1, depth)
-    folded = dict.fromkeys(("Drawing", "Pins", "Bending", "Mesh", "Poses", "Numbers"), False)
+    folded = dict.fromkeys(("Drawing", "Pins", "Bending", "Mesh", "Poses", "Measurements"), False)
     pinned.state.preferences.put("sections", folded)
     pinned.editor.undo_or_redo_to(11)
     pinned.settle()

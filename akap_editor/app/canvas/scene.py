@@ -99,7 +99,7 @@ def scene_content(
     state: AppState, size: tuple[int, int], window: tuple[int, int], scale: float
 ) -> SceneContent:
     """The content of the next frame; arguments as in `Scene.draw`."""
-    background = replace(CANVAS, cell=CANVAS.cell * scale) if state.checker else PLAIN
+    background = replace(CANVAS, cell=CANVAS.cell * scale) if state.view.show_checkerboard else PLAIN
     document, density = state.document, size[0] / max(window[0], 1)
     overlays = state.overlays(scale * density)
     if document is None:
@@ -115,7 +115,7 @@ def _comparison(
 ) -> PosedDrawing | None:
     """The second pose in the right half. density: framebuffer pixels per point."""
     session = state.comparison.session
-    if not state.split or session is None:
+    if not state.view.is_split or session is None:
         return None
     canvas = state.editor.canvas
     left, top, right, bottom = (round(density * edge) for edge in right_half(canvas))

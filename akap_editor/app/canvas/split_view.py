@@ -47,7 +47,7 @@ def comparison_camera(camera: Camera, left_half: Rectangle) -> Camera:
 def draw(state: AppState, canvas: Rectangle, scale: float) -> Rectangle:
     """Step the second method and draw the texts of both halves; returns the part of the canvas to edit in."""
     session = state.editor.session
-    if not state.split or session is None:
+    if not state.view.is_split or session is None:
         state.comparison.close()
         return canvas
     left, right = halves(canvas)
@@ -57,7 +57,7 @@ def draw(state: AppState, canvas: Rectangle, scale: float) -> Rectangle:
             state.wake()  # for the next step
 
     if not state.run_reporting_errors(follow):
-        state.split = False
+        state.view.is_split = False
         return canvas
     settings = session.state.settings
     method = nearest_preset(settings.method, dict(settings.parameters)).label
@@ -90,7 +90,7 @@ def _draw_right_half(state: AppState, half: Rectangle, scale: float) -> None:
     background.add_line(ImVec2(left, top), ImVec2(left, bottom), packed((1, 1, 1, 0.16)), scale)
     if comparison.session is not None:
         _draw_caption(half, "", comparison.measure(), comparison.session, scale)
-        if state.show_pins:
+        if state.view.show_pins:
             camera = comparison_camera(state.editor.camera, state.editor.canvas)
             _draw_pins(half, comparison.session, camera, scale)
 

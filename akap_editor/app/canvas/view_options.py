@@ -39,13 +39,17 @@ STORED_SWITCHES = {  # name in the preferences: field
 
 @dataclass
 class ViewOptions:
-    """Which overlays are on.
+    """What is shown besides the drawing.
 
-    show_vector_fields: while a pin is dragged; distortion_measure: of the distortion map, None if it is off;
-    distortion_range: index in `DISTORTION_RANGES`; reference_path: the file of the reference picture, None if
-    it has none.
+    is_split: whether a second method is compared; show_vector_fields: while a pin is dragged;
+    distortion_measure: of the distortion map, None if it is off; distortion_range: index in
+    `DISTORTION_RANGES`; reference_path: the file of the reference picture, None if it has none.
     """
 
+    show_mesh: bool = False
+    show_pins: bool = True
+    show_checkerboard: bool = True
+    is_split: bool = False
     show_vector_fields: bool = False
     show_rest_pose: bool = False
     show_pin_trails: bool = False

@@ -1,1 +1,1 @@
-"""Commands, and every way to run one: keys, menus and the palette."""
+"""Commands and the ways to run one: menus, keys, the palette and the page of shortcuts."""

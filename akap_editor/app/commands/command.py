@@ -1,4 +1,4 @@
-"""What a command is: a name, what it does and when, and its keys."""
+"""Commands and submenus: what menus, toolbar, keyboard and palette run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,8 +10,8 @@ from ..app_state import AppState
 
 CTRL, SHIFT = imgui.Key.mod_ctrl, imgui.Key.mod_shift
 Key = imgui.Key
-MENU_KEYS = (SHIFT | Key.f10, Key.menu)
-_WALKING = frozenset(
+CONTEXT_MENU_KEYS = (SHIFT | Key.f10, Key.menu)
+_NAVIGATION_KEYS = frozenset(
     int(key)
     for key in (
         *(Key.left_arrow, Key.right_arrow, Key.up_arrow, Key.down_arrow),
@@ -19,70 +19,6 @@ _WALKING = frozenset(
         *(Key.f10, Key.menu),
     )
 )
-
-
-def always(_: AppState) -> bool:
-    """Of a command that can be given at any time."""
-    return True
-
-
-def has_drawing(state: AppState) -> bool:
-    """Whether there is something to work on."""
-    return state.document is not None
-
-
-@dataclass(frozen=True)
-class Command:
-    """label: as in menus; chords: keys, the first one is shown; checked: of a switch, whether it is on.
-
-    typed: a character in place of a key, since where it is on the keyboard differs between countries;
-    repeats: whether it is run again and again while its key is held.
-    """
-
-    label: str
-    run: Callable[[AppState], None]
-    chords: tuple[int, ...] = ()
-    icon: str = ""
-    enabled: Callable[[AppState], bool] = always
-    checked: Callable[[AppState], bool] | None = None
-    typed: str = ""
-    repeats: bool = False
-
-    @property
-    def key_name(self) -> str:
-        """The first key in words, e.g. "Ctrl+Shift+S"."""
-        return self.typed or (chord_name(self.chords[0]) if self.chords else "")
-
-    def is_pressed(self) -> bool:
-        """Whether one of its keys was pressed in this frame."""
-        if self.typed and ord(self.typed) in imgui.get_io().input_queue_characters:
-            return True
-        return any(_is_pressed(int(chord), self.repeats) for chord in self.chords)
-
-
-def _is_pressed(chord: int, repeats: bool) -> bool:
-    """Keys that walk through a panel are left to it while one does that."""
-    if chord & ~int(Key.mod_mask_) in _WALKING and imgui.get_io().nav_visible:
-        return False
-    flags = imgui.InputFlags_.repeat if repeats else imgui.InputFlags_.none
-    return imgui.internal.is_key_chord_pressed(chord, int(flags))
-
-
-def menu_key() -> bool:
-    """Whether the menu is asked for by keys of what these have walked to."""
-    return any(imgui.is_key_chord_pressed(int(chord)) for chord in MENU_KEYS)
-
-
-@dataclass(frozen=True)
-class Submenu:
-    """A menu of files to open; files: what each is called, and its path."""
-
-    label: str
-    files: Callable[[AppState], list[tuple[str, Path]]]
-
-
-Menu = tuple[str, tuple[Command | Submenu | None, ...]]  # its name and its lines; None: a separator
-
 _KEY_NAMES = {
     "_0": "0",
     "_1": "1",
@@ -102,12 +38,85 @@ _KEY_NAMES = {
 }
 
 
+def always(_: AppState) -> bool:
+    """Enable a command at any time."""
+    return True
+
+
+def has_drawing(state: AppState) -> bool:
+    """Whether a drawing is open."""
+    return state.document is not None
+
+
+@dataclass(frozen=True)
+class Command:
+    """Something that the user can run.
+
+    label: in menus, "..." at its end if it opens a dialog; chords: keys, the first one is shown; icon: in the
+    toolbar; enabled: whether it can be run now; checked: for a switch, whether it is on; typed: a character
+    that runs it, too, wherever a keyboard has it; repeats: whether it runs repeatedly while its key is held.
+    """
+
+    label: str
+    run: Callable[[AppState], None]
+    chords: tuple[int, ...] = ()
+    icon: str = ""
+    enabled: Callable[[AppState], bool] = always
+    checked: Callable[[AppState], bool] | None = None
+    typed: str = ""
+    repeats: bool = False
+
+    @property
+    def name(self) -> str:
+        """The label without the dots."""
+        return self.label.rstrip(".")
+
+    @property
+    def key_name(self) -> str:
+        """The first key in words, e.g. "Ctrl+Shift+S"; empty if there is none."""
+        return self.typed or (chord_name(self.chords[0]) if self.chords else "")
+
+    def is_checked(self, state: AppState) -> bool:
+        """Whether it is a switch that is on."""
+        return self.checked is not None and self.checked(state)
+
+    def is_pressed(self) -> bool:
+        """Whether one of its keys was pressed in this frame."""
+        if self.typed and ord(self.typed) in imgui.get_io().input_queue_characters:
+            return True
+        return any(_is_chord_pressed(int(chord), self.repeats) for chord in self.chords)
+
+
+@dataclass(frozen=True)
+class Submenu:
+    """A menu of files to open. files: returns the name and the path of each."""
+
+    label: str
+    files: Callable[[AppState], list[tuple[str, Path]]]
+
+
+Menu = tuple[str, tuple[Command | Submenu | None, ...]]  # its name and its lines; None: a separator
+
+
 def chord_name(chord: int) -> str:
-    """A key chord as it is printed on the keys."""
+    """The name of a chord, with key names as on a keyboard."""
     parts = []
-    for mod, name in ((CTRL, "Ctrl"), (SHIFT, "Shift")):
-        if chord & int(mod):
+    for modifier, name in ((CTRL, "Ctrl"), (SHIFT, "Shift")):
+        if chord & int(modifier):
             parts.append(name)
-            chord &= ~int(mod)
+            chord &= ~int(modifier)
     name = str(Key(chord).name)
     return "+".join([*parts, _KEY_NAMES.get(name, name.upper() if len(name) == 1 else name.capitalize())])
+
+
+def context_menu_pressed() -> bool:
+    """Whether a key was pressed that opens the context menu of the focused item."""
+    return any(imgui.is_key_chord_pressed(int(chord)) for chord in CONTEXT_MENU_KEYS)
+
+
+def _is_chord_pressed(chord: int, repeats: bool) -> bool:
+    """Whether a chord was pressed in this frame, except for keys that are moving the focus in a panel."""
+    if chord & ~int(Key.mod_mask_) in _NAVIGATION_KEYS and imgui.get_io().nav_visible:
+        return False
+    flags = imgui.InputFlags_.repeat if repeats else imgui.InputFlags_.none
+    return imgui.internal.is_key_chord_pressed(chord, int(flags))

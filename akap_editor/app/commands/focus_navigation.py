@@ -1,10 +1,11 @@
-"""Keys that lead from the canvas to the panels around it, and from one of these to the next."""
+"""Keys that move the keyboard focus from the canvas to the panels and from panel to panel."""
 
 from imgui_bundle import imgui
 
 from ..app_state import AppState
 
-_PANES = (
+_CANVAS = ""
+_PANELS = (
     "Start",
     "Panel",
     "Tools",
@@ -12,33 +13,35 @@ _PANES = (
     "Comparison",
     "##legend",
     "First steps",
-)  # windows, as F6 goes
+)  # names of ImGui windows, in the order of F6
 
 
-def give_keys_to_panels(state: AppState) -> None:
-    """With Tab to the side panel or the start page, with Shift+Tab to the tools; before these are drawn.
+def handle_focus_keys(state: AppState) -> None:
+    """Move the focus if one of the keys was pressed; to be called before the panels are drawn.
 
-    F6 goes on to the next pane, and in the end back to the canvas; Shift+F6 the other way.
+    Tab: from the canvas to the side panel or the start page; Shift+Tab: to the toolbar; F6 and Shift+F6: to
+    the next and the previous panel, the canvas among them.
     """
     context, io = imgui.get_current_context(), imgui.get_io()
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup) or io.key_ctrl or io.key_alt:
         return
-    here = context.nav_window.name if context.nav_window is not None and io.nav_visible else ""
     if imgui.is_key_pressed(imgui.Key.f6, False):
-        stops = ["", *(name for name in _PANES if _is_shown(name))]
-        at = stops.index(here) if here in stops else 0
-        _enter(stops[(at + (-1 if io.key_shift else 1)) % len(stops)])
+        has_focus = context.nav_window is not None and io.nav_visible
+        focused = context.nav_window.name if has_focus else _CANVAS
+        stops = [_CANVAS, *(name for name in _PANELS if _can_be_focused(name))]
+        index = stops.index(focused) if focused in stops else 0
+        _focus(stops[(index + (-1 if io.key_shift else 1)) % len(stops)])
     elif not (io.want_text_input or io.nav_visible) and imgui.is_key_pressed(imgui.Key.tab, False):
-        _enter("Start" if state.document is None else "Tools" if io.key_shift else "Panel")
+        _focus("Start" if state.document is None else "Tools" if io.key_shift else "Panel")
 
 
-def _is_shown(name: str) -> bool:
+def _can_be_focused(name: str) -> bool:
     window = imgui.internal.find_window_by_name(name)
     return window is not None and window.was_active and not window.flags & imgui.WindowFlags_.no_nav_inputs
 
 
-def _enter(name: str) -> None:
-    """Give the keys to a window, or without a name to the canvas."""
+def _focus(name: str) -> None:
+    """Give the keyboard focus to a window, or to the canvas if there is no such window."""
     window = imgui.internal.find_window_by_name(name) if name else None
     if window is None:
         imgui.set_window_focus(None)

@@ -1,4 +1,4 @@
-"""What a mouse does on the canvas, by keys: point, go from pin to pin, ask for menus, look around."""
+"""Commands that replace the mouse on the canvas: point, select pins, open menus, pan."""
 
 from collections.abc import Callable
 
@@ -7,57 +7,59 @@ from imgui_bundle import imgui
 
 from ...editor.events import ARROWS
 from ..app_state import AppState
-from . import keying
-from .command import CTRL, MENU_KEYS, SHIFT, Command, Key, has_drawing
+from .command import CONTEXT_MENU_KEYS, CTRL, SHIFT, Command, Key, has_drawing
+from .timeline import has_keyframes
 
-_ARROWS = {"left": Key.left_arrow, "right": Key.right_arrow, "up": Key.up_arrow, "down": Key.down_arrow}
-_PAN = 60.0  # points of the design by which the canvas moves
+_ARROW_KEYS = {"left": Key.left_arrow, "right": Key.right_arrow, "up": Key.up_arrow, "down": Key.down_arrow}
+_PAN_STEP = 60.0  # design points
 
 
 def _has_pins(state: AppState) -> bool:
     return state.document is not None and bool(state.document.state.pins)
 
 
-def _point(state: AppState) -> None:
-    """Keys belong to the canvas then, and the status bar says what they do."""
+def _toggle_crosshair(state: AppState) -> None:
+    """Show or hide the crosshair; the canvas gets the keyboard focus, the status bar shows the hint."""
     state.notice = ""
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
     state.editor.toggle_keyboard_pointer()
 
 
-def _points(state: AppState) -> bool:
+def _has_crosshair(state: AppState) -> bool:
     return state.editor.tool.is_keyboard_driven
 
 
-def _one_pin(state: AppState) -> bool:
-    return len(state.editor.selection) == 1 and not _points(state)
+def _has_one_selected_pin(state: AppState) -> bool:
+    return len(state.editor.selection) == 1 and not _has_crosshair(state)
 
 
-def _menu(state: AppState) -> None:
-    """Of the pin that was selected, or of a keyframe."""
-    imgui.set_nav_cursor_visible(True)  # so that arrows walk through it
+def _open_context_menu(state: AppState) -> None:
+    """Open the menu of the selected pin; if there is none, of the selected keyframe."""
+    imgui.set_nav_cursor_visible(True)  # lets the arrow keys move through the menu
     if state.editor.selection:
         state.editor.request_pin_popup("menu", max(state.editor.selection))
     else:
         state.timeline.keyframe_menu_requested = True
 
 
-def _can_ask(state: AppState) -> bool:
-    return bool(state.editor.selection) or keying.shown(state)
+def _has_context_menu(state: AppState) -> bool:
+    return bool(state.editor.selection) or has_keyframes(state)
 
 
-def _look(x: int, y: int) -> Callable[[AppState], None]:
-    """Shows what is farther that way, as if one looked there."""
+def _pan(x: int, y: int) -> Callable[[AppState], None]:
+    """Moves the view over the drawing in a direction."""
 
-    def look(state: AppState) -> None:
-        way = _PAN * state.editor.ui_scale
-        state.editor.camera = state.editor.camera.panned(-way * x, -way * y)
+    def pan(state: AppState) -> None:
+        step = _PAN_STEP * state.editor.ui_scale
+        state.editor.camera = state.editor.camera.panned(-step * x, -step * y)
 
-    return look
+    return pan
 
 
-CROSSHAIR = Command("Crosshair", _point, (Key.c,), icons.ICON_FA_CROSSHAIRS, has_drawing, _points)
+CROSSHAIR = Command(
+    "Crosshair", _toggle_crosshair, (Key.c,), icons.ICON_FA_CROSSHAIRS, has_drawing, _has_crosshair
+)
 NEXT_PIN = Command("Next Pin", lambda state: state.editor.select_next(), (Key.j,), "", _has_pins)
 PREVIOUS_PIN = Command(
     "Previous Pin", lambda state: state.editor.select_next(False), (SHIFT | Key.j,), "", _has_pins
@@ -67,17 +69,12 @@ PIN_VALUES = Command(
     lambda state: state.editor.request_pin_popup("values", *state.editor.selection),
     (Key.enter, Key.keypad_enter),
     "",
-    _one_pin,
+    _has_one_selected_pin,
 )
-MENU_HERE = Command("Menu of Pin or Keyframe", _menu, MENU_KEYS, "", _can_ask)
+CONTEXT_MENU = Command("Context Menu", _open_context_menu, CONTEXT_MENU_KEYS, "", _has_context_menu)
 PANNING = tuple(
     Command(
-        f"Look {name.capitalize()}",
-        _look(*way),
-        (CTRL | _ARROWS[name],),
-        "",
-        has_drawing,
-        repeats=True,
+        f"Pan {name.capitalize()}", _pan(x, y), (CTRL | _ARROW_KEYS[name],), "", has_drawing, repeats=True
     )
-    for name, way in ARROWS.items()
+    for name, (x, y) in ARROWS.items()
 )

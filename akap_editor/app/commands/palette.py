@@ -1,4 +1,4 @@
-"""The command palette: every command and bundled drawing, found by a few of its letters."""
+"""The command palette: finds commands and files by a few of their letters."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -13,22 +13,22 @@ from .command import Command, Submenu
 
 _NAME = "##palette"
 _FLAGS = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
-_WIDTH, _ROWS = 500, 10
+_WIDTH, _ROWS = 500, 10  # design points; lines that are visible at once
 _HINT = "Type a few letters of a command"
-_STEPS = {
+_SELECTION_STEPS = {
     imgui.Key.up_arrow: -1,
     imgui.Key.down_arrow: 1,
     imgui.Key.page_up: -_ROWS,
     imgui.Key.page_down: _ROWS,
 }
 
-# What a letter of the query is worth in a label.
-_MATCH, _WORD_START, _IN_A_ROW, _SKIPPED = 1.0, 1.5, 1.7, 0.02
+# Scores of a letter of the query in a label, and the cost of a letter of the label.
+_MATCH, _WORD_START, _CONSECUTIVE, _LENGTH_COST = 1.0, 1.5, 1.7, 0.02
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One line of the palette: what it is called, how it is run, its key, whether that makes sense now."""
+    """A line of the palette. key: of its command; enabled: whether it can be run now."""
 
     label: str
     run: Callable[[AppState], None]
@@ -36,68 +36,65 @@ class Entry:
     enabled: bool = True
 
 
-Found = tuple[Entry, tuple[int, ...]]
+Match = tuple[Entry, tuple[int, ...]]  # an entry, and the indices of the query's letters in its label
 
 
 def entries(state: AppState, items: Iterable[Command | Submenu]) -> list[Entry]:
-    """An entry for each command and each file of a submenu; only the last one of a label."""
-    found = []
+    """An entry for each command and for each file of a submenu; one per label."""
+    listed = []
     for item in items:
         if isinstance(item, Submenu):
             for name, path in item.files(state):
-                found.append(Entry(f"{item.label}: {name}", _opens(path)))
+                listed.append(Entry(f"{item.label}: {name}", _opens(path)))
         else:
-            found.append(_entry(item, state))
-    return list({entry.label: entry for entry in found}.values())
+            listed.append(Entry(item.name, item.run, item.key_name, item.enabled(state)))
+    return list({entry.label: entry for entry in listed}.values())
 
 
 def _opens(path: Path) -> Callable[[AppState], None]:
     return lambda state: files.open_path(state, path)
 
 
-def _entry(command: Command, state: AppState) -> Entry:
-    return Entry(command.label.rstrip("."), command.run, command.key_name, command.enabled(state))
-
-
 def match(query: str, label: str) -> tuple[float, tuple[int, ...]] | None:
-    """How well a label fits, and the places of the query's letters in it; None where they are not all there.
+    """The score of a label and the indices of the query's letters in it; None if it does not match.
 
-    The letters must come in order, case and spaces aside. Starts of words and letters in a row count more, so
-    "sa" prefers "Save As" to "Deselect All". The best of all ways to place them is found, letter by letter.
+    The letters must occur in this order; case and spaces are ignored. Starts of words and consecutive letters
+    score higher, so that "sa" prefers "Save As" to "Deselect All". Dynamic programming, letter by letter,
+    finds the indices with the highest score.
     """
     letters, text = query.replace(" ", "").lower(), label.lower()
-    best: list[tuple[float, tuple[int, ...]]] = [(0.0, ())]  # of the letters so far, by the last one's place
+    best: list[tuple[float, tuple[int, ...]]] = [(0.0, ())]  # for each index of the letter before
     for letter in letters:
-        ways = []
-        for place in (index for index, other in enumerate(text) if other == letter):
-            worth = _MATCH + (_WORD_START if place == 0 or not text[place - 1].isalnum() else 0.0)
+        candidates = []
+        for index in (index for index, other in enumerate(text) if other == letter):
+            score = _MATCH + (_WORD_START if index == 0 or not text[index - 1].isalnum() else 0.0)
             earlier = [
-                (score + (_IN_A_ROW if places and place == places[-1] + 1 else 0.0), places)
-                for score, places in best
-                if not places or places[-1] < place
+                (total + (_CONSECUTIVE if indices and index == indices[-1] + 1 else 0.0), indices)
+                for total, indices in best
+                if not indices or indices[-1] < index
             ]
             if earlier:
-                score, places = max(earlier)
-                ways.append((score + worth, (*places, place)))
-        if not ways:
+                total, indices = max(earlier)
+                candidates.append((total + score, (*indices, index)))
+        if not candidates:
             return None
-        best = ways
-    score, places = max(best)
-    return score - _SKIPPED * len(text), places
+        best = candidates
+    total, indices = max(best)
+    return total - _LENGTH_COST * len(text), indices
 
 
-def ranked(query: str, found: list[Entry]) -> list[Found]:
-    """The entries that fit, the best first, disabled ones last; with the places of the query's letters."""
-    fitting = [(match(query, entry.label), entry) for entry in found]
-    scored = [(fit[0], fit[1], entry) for fit, entry in fitting if fit is not None]
+def ranked(query: str, candidates: list[Entry]) -> list[Match]:
+    """The entries that match, the highest score first, disabled ones last."""
+    matching = [(match(query, entry.label), entry) for entry in candidates]
+    scored = [(result[0], result[1], entry) for result, entry in matching if result is not None]
     if query.strip():
         scored.sort(key=lambda each: -each[0])
     scored.sort(key=lambda each: not each[2].enabled)
-    return [(entry, places) for _, places, entry in scored]
+    return [(entry, indices) for _, indices, entry in scored]
 
 
 class Palette:
-    """The window's palette: what is typed, and which line is selected."""
+    """Knows what is typed and which line is selected."""
 
     def __init__(self) -> None:
         self.is_open = False
@@ -107,12 +104,12 @@ class Palette:
         self._is_new = False  # in its first frame, the key that opened it may still be pressed
 
     def open(self, items: Sequence[Command | Submenu], query: str = "") -> None:
-        """Show the palette. items: all that it lists, in this order; query: the letters in its field."""
+        """Show the palette. items: what it lists, in this order; query: the letters in its field."""
         self.is_open = self._is_new = True
         self.query, self._items, self._selected = query, items, 0
 
     def draw(self, state: AppState, scale: float) -> None:
-        """Draw one frame, if it is open. scale: points per design point."""
+        """Draw one frame if it is open. scale: points per design point."""
         if not self.is_open:
             return
         is_new, self._is_new = self._is_new, False
@@ -134,18 +131,18 @@ class Palette:
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(-1)
         is_changed, self.query = imgui.input_text_with_hint("##query", _HINT, self.query)
-        found = ranked(self.query, entries(state, self._items))
-        steps = [step for key, step in _STEPS.items() if imgui.is_key_pressed(key)]
+        matches = ranked(self.query, entries(state, self._items))
+        steps = [step for key, step in _SELECTION_STEPS.items() if imgui.is_key_pressed(key)]
         selected = 0 if is_changed else self._selected + sum(steps)
-        self._selected = max(0, min(selected, len(found) - 1))
-        entry = _list(found, self._selected, is_new or is_changed or bool(steps), scale)
-        if found and widgets.enter_key_pressed() and not is_new:
-            entry = found[self._selected][0]
+        self._selected = max(0, min(selected, len(matches) - 1))
+        entry = _draw_list(matches, self._selected, is_new or is_changed or bool(steps), scale)
+        if matches and widgets.enter_key_pressed() and not is_new:
+            entry = matches[self._selected][0]
         return entry if entry is not None and entry.enabled else None
 
 
 def _begin(is_new: bool, scale: float) -> bool:
-    """A box in the upper half of the window; False where a click beside it has closed it."""
+    """Begin a popup in the upper half of the window; False after a click outside has closed it."""
     if is_new:
         imgui.open_popup(_NAME)
     viewport = imgui.get_main_viewport()
@@ -155,33 +152,33 @@ def _begin(is_new: bool, scale: float) -> bool:
     return bool(imgui.begin_popup(_NAME, _FLAGS))
 
 
-def _list(found: list[Found], chosen: int, scroll: bool, scale: float) -> Entry | None:
-    """The lines; the one that was clicked, if any."""
+def _draw_list(matches: list[Match], selected: int, scrolls: bool, scale: float) -> Entry | None:
+    """Draw the lines; return the one that was clicked, if any. scrolls: to the selected line."""
     clicked = None
-    line = imgui.get_text_line_height_with_spacing()
-    imgui.begin_child("##found", ImVec2(0, _ROWS * line), 0, imgui.WindowFlags_.no_nav)
-    imgui.set_cursor_pos_y(imgui.get_style().item_spacing.y / 2)  # room for the light around the first line
-    if not found:
+    height = _ROWS * imgui.get_text_line_height_with_spacing()
+    imgui.begin_child("##found", ImVec2(0, height), 0, imgui.WindowFlags_.no_nav)
+    imgui.set_cursor_pos_y(imgui.get_style().item_spacing.y / 2)  # room for the highlight of the first line
+    if not matches:
         widgets.secondary_text("No command has these letters in this order.")
-    for index, (entry, places) in enumerate(found):
-        at, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
+    for index, (entry, letters) in enumerate(matches):
+        corner, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
         flags = 0 if entry.enabled else imgui.SelectableFlags_.disabled
-        if imgui.selectable(f"##{entry.label}", index == chosen, flags)[0]:
+        if imgui.selectable(f"##{entry.label}", index == selected, flags)[0]:
             clicked = entry
-        if index == chosen and scroll:
+        if index == selected and scrolls:
             imgui.set_scroll_here_y(0.5)
-        _text(ImVec2(at.x + 6 * scale, at.y), entry, places)
+        _draw_label(ImVec2(corner.x + 6 * scale, corner.y), entry, letters)
         width = imgui.calc_text_size(entry.key).x
-        draw = imgui.get_window_draw_list()
-        draw.add_text(ImVec2(at.x + room - width - 8 * scale, at.y), packed(QUIET), entry.key)
+        key_corner = ImVec2(corner.x + room - width - 8 * scale, corner.y)
+        imgui.get_window_draw_list().add_text(key_corner, packed(QUIET), entry.key)
     imgui.end_child()
     return clicked
 
 
-def _text(at: ImVec2, entry: Entry, places: tuple[int, ...]) -> None:
-    """A label, the letters that were asked for in the accent color."""
-    draw, x = imgui.get_window_draw_list(), at.x
-    plain = TEXT if entry.enabled else QUIET
+def _draw_label(corner: ImVec2, entry: Entry, letters: tuple[int, ...]) -> None:
+    """Draw a label with the letters at these indices in the accent color."""
+    draw, x = imgui.get_window_draw_list(), corner.x
+    color = TEXT if entry.enabled else QUIET
     for index, letter in enumerate(entry.label):
-        draw.add_text(ImVec2(x, at.y), packed(ACCENT if index in places else plain), letter)
-        x = at.x + imgui.calc_text_size(entry.label[: index + 1]).x
+        draw.add_text(ImVec2(x, corner.y), packed(ACCENT if index in letters else color), letter)
+        x = corner.x + imgui.calc_text_size(entry.label[: index + 1]).x

@@ -1,4 +1,4 @@
-"""All keys and what the mouse does, on one page."""
+"""The page of shortcuts: all keys, and what the mouse does."""
 
 from collections.abc import Sequence
 
@@ -9,54 +9,52 @@ from ..app_state import AppState
 from ..theme import ACTIVE, QUIET, TEXT, packed
 from .command import Command, Key, Menu
 
-_MOUSE = (
-    ("Click on the drawing", "add a pin"),
-    ("Drag a pin", "bend the drawing"),
-    ("Press and drag", "add a pin and bend"),
-    ("Shift-click, drag a box", "select several pins"),
-    ("Double-click a pin", "its numbers"),
-    ("Right-click a pin", "its menu"),
-    ("Alt-click a pin", "remove it"),
-    ("Alt-drag its ring", "turn the drawing there"),
-    ("Arrows", "nudge; with Shift by 10"),
-    ("C, arrows, Enter", "point without a mouse"),
-    ("Middle-drag, Space-drag", "move the canvas"),
-    ("Wheel", "zoom at the pointer"),
-    ("H", "hide pins while held"),
-    ("Esc", "back to before the drag"),
+Line = tuple[str, str]  # keys or mouse, and what they do
+Group = tuple[str, list[Line]]  # a title and its lines
+
+_MOUSE: tuple[Line, ...] = (
+    ("Click on the drawing", "Add a pin"),
+    ("Drag a pin", "Bend the drawing"),
+    ("Press and drag", "Add a pin and bend"),
+    ("Shift-click, drag a box", "Select several pins"),
+    ("Double-click a pin", "Edit its values"),
+    ("Right-click a pin", "Open its menu"),
+    ("Alt-click a pin", "Delete it"),
+    ("Alt-drag its ring", "Rotate around it"),
+    ("Arrows", "Nudge; with Shift by 10"),
+    ("C, arrows, Enter", "Point without a mouse"),
+    ("Middle-drag, Space-drag", "Pan"),
+    ("Wheel", "Zoom at the pointer"),
+    ("H", "Hide pins while held"),
+    ("Esc", "Cancel the drag"),
 )
-_MENUS = (
-    ("F10, Alt+letter", "open a menu"),
-    ("F6, Shift+F6", "to another panel"),
-    ("Tab, arrows, Enter", "walk and use a panel"),
+_FOCUS: tuple[Line, ...] = (
+    ("F10, Alt+letter", "Open a menu"),
+    ("F6, Shift+F6", "Next, previous panel"),
+    ("Tab, arrows, Enter", "Use a panel"),
 )
-Group = tuple[str, list[tuple[str, str]]]  # a title and its lines: keys, and what they do
-_COLUMN, _KEYS = 302, 158  # widths in design points
-_MOST_COLUMNS = 4
-_TOOLS_AT = 3  # among the groups: there the columns are of about one height
-_LINES = {Key.up_arrow: -1, Key.down_arrow: 1, Key.page_up: -10, Key.page_down: 10}  # that keys scroll
+_COLUMN_WIDTH, _KEYS_WIDTH = 302, 158  # design points
+_MAX_COLUMNS = 4
+_TOOLS_INDEX = 3  # among the groups: there, all columns have about the same height
+_SCROLL_LINES = {Key.up_arrow: -1, Key.down_arrow: 1, Key.page_up: -10, Key.page_down: 10}
 
 
 def groups(menus: Sequence[Menu], commands: Sequence[Command]) -> list[Group]:
-    """Titles, each with its lines: keys, and what they do. commands: those of the menus and others."""
-    found = [("Mouse", list(_MOUSE))]
+    """The groups of the page: mouse, one for each menu, and the commands that are in no menu."""
+    listed = [("Mouse", list(_MOUSE))]
     in_menus: set[int] = set()
     for name, items in menus:
-        listed = [item for item in items if isinstance(item, Command) and item.chords]
-        in_menus.update(map(id, listed))
-        found.append((name, [_line(command) for command in listed]))
-    tools = [command for command in commands if command.chords and id(command) not in in_menus]
-    found[-1][1].extend(_MENUS)
-    found.insert(_TOOLS_AT, ("Tools", [_line(command) for command in tools]))
-    return [(title, lines) for title, lines in found if lines]
-
-
-def _line(command: Command) -> tuple[str, str]:
-    return command.key_name, command.label.rstrip(".")
+        with_keys = [item for item in items if isinstance(item, Command) and item.chords]
+        in_menus.update(map(id, with_keys))
+        listed.append((name, [(command.key_name, command.name) for command in with_keys]))
+    listed[-1][1].extend(_FOCUS)
+    others = [command for command in commands if command.chords and id(command) not in in_menus]
+    listed.insert(_TOOLS_INDEX, ("Tools", [(command.key_name, command.name) for command in others]))
+    return [(title, lines) for title, lines in listed if lines]
 
 
 class ShortcutsPage:
-    """The page as a dialog; Esc, Enter or the key that opened it closes it."""
+    """Shows the page as a dialog; Esc, Enter or the key that opened it closes it."""
 
     def __init__(self) -> None:
         self.is_open = False
@@ -69,7 +67,7 @@ class ShortcutsPage:
 
     def draw(self, state: AppState, scale: float) -> None:
         """Draw one frame. scale: points per design point."""
-        if not widgets.begin_dialog("Keys and mouse"):
+        if not widgets.begin_dialog("Keyboard shortcuts"):
             return
         _draw_groups(self._groups, scale)
         is_closed = widgets.button("Close", primary=True) or widgets.cancel_pressed()
@@ -83,21 +81,22 @@ class ShortcutsPage:
 def _draw_groups(groups: list[Group], scale: float) -> None:
     """Draw all groups in as many columns as the window has room for; keys scroll them."""
     room = imgui.get_main_viewport().size  # ImGui makes no dialog larger
-    count = max(1, min(_MOST_COLUMNS, int((room.x - 40 * scale) / (_COLUMN * scale))))
+    count = max(1, min(_MAX_COLUMNS, int((room.x - 40 * scale) / (_COLUMN_WIDTH * scale))))
     columns = columns_of(groups, count)
-    lines = max(sum(len(lines) + 2 for _, lines in column) for column in columns)
-    height = min(lines * imgui.get_text_line_height_with_spacing(), room.y - 140 * scale)
-    width = len(columns) * _COLUMN * scale + imgui.get_style().scrollbar_size
+    line_count = max(sum(len(lines) + 2 for _, lines in column) for column in columns)
+    height = min(line_count * imgui.get_text_line_height_with_spacing(), room.y - 140 * scale)
+    width = len(columns) * _COLUMN_WIDTH * scale + imgui.get_style().scrollbar_size
     imgui.begin_child("##all", ImVec2(width, height), 0, imgui.WindowFlags_.no_nav_inputs)
-    scrolled = sum(lines for key, lines in _LINES.items() if imgui.is_key_pressed(key))
-    if scrolled:
-        imgui.set_scroll_y(imgui.get_scroll_y() + scrolled * imgui.get_text_line_height_with_spacing())
+    scrolled_lines = sum(count for key, count in _SCROLL_LINES.items() if imgui.is_key_pressed(key))
+    if scrolled_lines:
+        scrolled = scrolled_lines * imgui.get_text_line_height_with_spacing()
+        imgui.set_scroll_y(imgui.get_scroll_y() + scrolled)
     if imgui.begin_table("##columns", len(columns)):
         imgui.table_next_row()
         for column in columns:
             imgui.table_next_column()
-            for title, rows in column:
-                _group(title, rows, scale)
+            for title, lines in column:
+                _draw_group(title, lines, scale)
         imgui.end_table()
     imgui.end_child()
 
@@ -119,24 +118,26 @@ def columns_of(groups: list[Group], count: int) -> list[list[Group]]:
     return [groups]
 
 
-def _group(title: str, rows: list[tuple[str, str]], scale: float) -> None:
+def _draw_group(title: str, lines: list[Line], scale: float) -> None:
+    """Draw a title and its lines. scale: points per design point."""
     imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
     imgui.text_colored(ImVec4(*QUIET), title.upper())
     imgui.pop_font()
     left = imgui.get_cursor_pos_x()
-    for keys, what in rows:
-        _caps(keys, scale)
+    for keys, action in lines:
+        _draw_keys(keys, scale)
         imgui.same_line()
-        imgui.set_cursor_pos_x(left + _KEYS * scale)
-        imgui.text(what)
+        imgui.set_cursor_pos_x(left + _KEYS_WIDTH * scale)
+        imgui.text(action)
     imgui.dummy(ImVec2(0, 0.4 * imgui.get_font_size()))
 
 
-def _caps(keys: str, scale: float) -> None:
-    """Keys on a small plate."""
-    at, size = imgui.get_cursor_screen_pos(), imgui.calc_text_size(keys)
-    draw, rim = imgui.get_window_draw_list(), 5 * scale
-    end = ImVec2(at.x + size.x + 2 * rim, at.y + size.y + 1 * scale)
-    draw.add_rect_filled(ImVec2(at.x, at.y - 1 * scale), end, packed(ACTIVE, 0.6), 4 * scale)
-    draw.add_text(ImVec2(at.x + rim, at.y), packed(TEXT), keys)
-    imgui.dummy(ImVec2(size.x + 2 * rim, size.y))
+def _draw_keys(keys: str, scale: float) -> None:
+    """Draw the name of keys on a plate."""
+    corner, size = imgui.get_cursor_screen_pos(), imgui.calc_text_size(keys)
+    draw, margin = imgui.get_window_draw_list(), 5 * scale
+    low = ImVec2(corner.x, corner.y - 1 * scale)
+    high = ImVec2(corner.x + size.x + 2 * margin, corner.y + size.y + 1 * scale)
+    draw.add_rect_filled(low, high, packed(ACTIVE, 0.6), 4 * scale)
+    draw.add_text(ImVec2(corner.x + margin, corner.y), packed(TEXT), keys)
+    imgui.dummy(ImVec2(size.x + 2 * margin, size.y))

@@ -1,132 +1,199 @@
-"""The commands of the menu Animation: the timeline, what it plays, and its keyframes."""
+"""The commands of the Animation menu: playback, range and keyframes."""
 
 from collections.abc import Callable
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...editor.animation.keyframe_playback import TIME_STEP
+from ...editor.animation.keyframe_playback import TIME_STEP, KeyframePlayback
+from ...editor.animation.playback import Playback
 from ..app_state import AppState
 from ..dialogs.export_animation import ExportAnimationDialog
-from . import keying
+from ..timeline.timeline import snap_time
 from .command import CTRL, SHIFT, Command, Key, has_drawing
 
-_ZOOM = 1.5
+_ZOOM_FACTOR = 1.5
 
 
-def _shown(state: AppState) -> bool:
+def _is_shown(state: AppState) -> bool:
     return has_drawing(state) and state.timeline.is_shown
 
 
-def _can_cut(state: AppState) -> bool:
-    return _shown(state) and state.timeline.playback.duration > 0
+def _has_duration(state: AppState) -> bool:
+    return _is_shown(state) and state.timeline.playback.duration > 0
 
 
-def _end(state: AppState) -> None:
-    state.timeline.playback.stop_at(state.timeline.playback.played_range[1])
+def _has_marked_range(state: AppState) -> bool:
+    return state.timeline.playback.marked_range is not None
 
 
-def _zoom(factor: float) -> Callable[[AppState], None]:
-    return lambda state: state.timeline.playback.visible_range.zoom(factor, state.timeline.playback.playhead)
+def _can_play(state: AppState) -> bool:
+    start, end = state.timeline.playback.played_range
+    return has_drawing(state) and end > start
 
 
-def _clear_range(state: AppState) -> None:
-    state.timeline.playback.marked_range = None
+def has_keyframes(state: AppState) -> bool:
+    """Whether the timeline is visible and shows keyframes."""
+    has_any = bool(state.timeline.keyframe_playback.animation.keyframes)
+    return has_drawing(state) and state.timeline.shows_keyframes and has_any
 
 
-KEY_HERE = Command("Keyframe Here", keying.keyframe_here, (Key.k,), icons.ICON_FA_DIAMOND, has_drawing)
-KEY_REMOVE = Command(
-    "Remove Keyframe",
-    lambda state: state.timeline.keyframe_playback.delete_keyframes(),
-    (SHIFT | Key.k,),
-    "",
-    keying.shown,
-)
-KEY_COPY = Command(
-    "Duplicate Keyframe",
-    lambda state: state.timeline.keyframe_playback.duplicate_keyframes(),
-    (CTRL | SHIFT | Key.k,),
-    "",
-    keying.shown,
-)
-KEY_NEXT = Command(
-    "Next Keyframe",
-    lambda state: state.timeline.keyframe_playback.go_to_keyframe(True),
-    (Key.period,),
-    "",
-    keying.shown,
-)
-KEY_PREVIOUS = Command(
-    "Previous Keyframe",
-    lambda state: state.timeline.keyframe_playback.go_to_keyframe(False),
-    (Key.comma,),
-    "",
-    keying.shown,
-)
-KEY_LATER = Command("Move Keyframe Later", keying.nudging(TIME_STEP), (SHIFT | Key.period,), "", keying.shown)
-KEY_EARLIER = Command(
-    "Move Keyframe Earlier", keying.nudging(-TIME_STEP), (SHIFT | Key.comma,), "", keying.shown
-)
-PLAY = Command("Play", keying.play, (Key.l,), icons.ICON_FA_PLAY, keying.can_play)
-ONION = Command(
-    "Onion Skin",
-    keying.toggle_onion,
-    (Key.o,),
-    icons.ICON_FA_LAYER_GROUP,
-    keying.shown,
-    lambda state: state.timeline.keyframe_playback.onion_skin.is_shown,
-)
+def has_selected_keyframes(state: AppState) -> bool:
+    """Whether the timeline is visible and shows selected keyframes."""
+    return has_keyframes(state) and bool(state.timeline.keyframe_playback.selected)
+
+
+def _on_playback(action: Callable[[Playback], None]) -> Callable[[AppState], None]:
+    return lambda state: action(state.timeline.playback)
+
+
+def _on_keyframes(action: Callable[[KeyframePlayback], None]) -> Callable[[AppState], None]:
+    return lambda state: action(state.timeline.keyframe_playback)
+
+
+def _play(state: AppState) -> None:
+    state.timeline.is_shown = True
+    state.timeline.playback.toggle_playing()
+
+
+def _step(seconds: float) -> Callable[[AppState], None]:
+    """Moves the playhead; on the keyframe track to times where a drag would move it, too."""
+
+    def step(state: AppState) -> None:
+        time = state.timeline.playback.playhead + seconds
+        state.timeline.playback.stop_at(snap_time(time) if state.timeline.mode == "keyframes" else time)
+
+    return step
+
+
+def _zoom(factor: float) -> Callable[[Playback], None]:
+    return lambda playback: playback.visible_range.zoom(factor, playback.playhead)
+
+
+def _clear_range(playback: Playback) -> None:
+    playback.marked_range = None
+
+
+def _toggle_onion_skin(playback: KeyframePlayback) -> None:
+    playback.onion_skin.is_shown = not playback.onion_skin.is_shown
+
+
+def _select_all(playback: KeyframePlayback) -> None:
+    playback.selected = frozenset(playback.stored_animation.times)
+
+
+PLAY = Command("Play", _play, (Key.l,), icons.ICON_FA_PLAY, _can_play)
 EXPORT_ANIMATION = Command(
     "Export Animation...",
     lambda state: state.part(ExportAnimationDialog).open(state),
     (CTRL | SHIFT | Key.e,),
     icons.ICON_FA_FILM,
-    keying.can_play,
+    _can_play,
 )
 
-STEP_ON = Command("Step Forward", keying.going(TIME_STEP), (Key.page_down,), "", _shown, repeats=True)
-STEP_BACK = Command("Step Back", keying.going(-TIME_STEP), (Key.page_up,), "", _shown, repeats=True)
-SECOND_ON = Command(
-    "One Second Forward", keying.going(1.0), (SHIFT | Key.page_down,), "", _shown, repeats=True
+STEP_FORWARD = Command("Step Forward", _step(TIME_STEP), (Key.page_down,), "", _is_shown, repeats=True)
+STEP_BACK = Command("Step Back", _step(-TIME_STEP), (Key.page_up,), "", _is_shown, repeats=True)
+SECOND_FORWARD = Command(
+    "One Second Forward", _step(1.0), (SHIFT | Key.page_down,), "", _is_shown, repeats=True
 )
-SECOND_BACK = Command("One Second Back", keying.going(-1.0), (SHIFT | Key.page_up,), "", _shown, repeats=True)
-GO_START = Command(
+SECOND_BACK = Command("One Second Back", _step(-1.0), (SHIFT | Key.page_up,), "", _is_shown, repeats=True)
+GO_TO_START = Command(
     "Go to Start",
-    lambda state: state.timeline.playback.stop_at(state.timeline.playback.played_range[0]),
+    _on_playback(lambda playback: playback.stop_at(playback.played_range[0])),
     (Key.home,),
     "",
-    _shown,
+    _is_shown,
 )
-GO_END = Command("Go to End", _end, (Key.end,), "", _shown)
-RANGE_START = Command(
-    "Start Range Here",
-    lambda state: state.timeline.playback.mark_range(start=state.timeline.playback.playhead),
+GO_TO_END = Command(
+    "Go to End",
+    _on_playback(lambda playback: playback.stop_at(playback.played_range[1])),
+    (Key.end,),
+    "",
+    _is_shown,
+)
+
+SET_RANGE_START = Command(
+    "Set Range Start",
+    _on_playback(lambda playback: playback.mark_range(start=playback.playhead)),
     (SHIFT | Key.home,),
     "",
-    _can_cut,
+    _has_duration,
 )
-RANGE_END = Command(
-    "End Range Here",
-    lambda state: state.timeline.playback.mark_range(end=state.timeline.playback.playhead),
+SET_RANGE_END = Command(
+    "Set Range End",
+    _on_playback(lambda playback: playback.mark_range(end=playback.playhead)),
     (SHIFT | Key.end,),
     "",
-    _can_cut,
+    _has_duration,
 )
-RANGE_ALL = Command(
-    "Range Is Everything",
-    _clear_range,
-    (),
+CLEAR_RANGE = Command("Clear Range", _on_playback(_clear_range), (), "", _has_marked_range)
+
+ADD_KEYFRAME = Command(
+    "Add Keyframe",
+    lambda state: state.timeline.add_keyframe(),
+    (Key.k,),
+    icons.ICON_FA_DIAMOND,
+    has_drawing,
+)
+DELETE_KEYFRAME = Command(
+    "Delete Keyframe",
+    _on_keyframes(KeyframePlayback.delete_keyframes),
+    (SHIFT | Key.k,),
     "",
-    lambda state: state.timeline.playback.marked_range is not None,
+    has_keyframes,
 )
-ZOOM_IN = Command("Zoom into Timeline", _zoom(_ZOOM), (), "", _shown)
-ZOOM_OUT = Command("Zoom out of Timeline", _zoom(1 / _ZOOM), (), "", _shown)
-KEY_ALL = Command("Select All Keyframes", keying.choose_all, (), "", keying.shown)
+DUPLICATE_KEYFRAME = Command(
+    "Duplicate Keyframe",
+    _on_keyframes(KeyframePlayback.duplicate_keyframes),
+    (CTRL | SHIFT | Key.k,),
+    "",
+    has_keyframes,
+)
+SELECT_ALL_KEYFRAMES = Command("Select All Keyframes", _on_keyframes(_select_all), (), "", has_keyframes)
+PREVIOUS_KEYFRAME = Command(
+    "Previous Keyframe",
+    _on_keyframes(lambda playback: playback.go_to_keyframe(False)),
+    (Key.comma,),
+    "",
+    has_keyframes,
+)
+NEXT_KEYFRAME = Command(
+    "Next Keyframe",
+    _on_keyframes(lambda playback: playback.go_to_keyframe(True)),
+    (Key.period,),
+    "",
+    has_keyframes,
+)
+MOVE_EARLIER = Command(
+    "Move Keyframe Earlier",
+    _on_keyframes(lambda playback: playback.shift_keyframes(-TIME_STEP)),
+    (SHIFT | Key.comma,),
+    "",
+    has_keyframes,
+)
+MOVE_LATER = Command(
+    "Move Keyframe Later",
+    _on_keyframes(lambda playback: playback.shift_keyframes(TIME_STEP)),
+    (SHIFT | Key.period,),
+    "",
+    has_keyframes,
+)
+
+ONION_SKIN = Command(
+    "Onion Skin",
+    _on_keyframes(_toggle_onion_skin),
+    (Key.o,),
+    icons.ICON_FA_LAYER_GROUP,
+    has_keyframes,
+    lambda state: state.timeline.keyframe_playback.onion_skin.is_shown,
+)
+ZOOM_IN_TIMELINE = Command("Zoom In Timeline", _on_playback(_zoom(_ZOOM_FACTOR)), (), "", _is_shown)
+ZOOM_OUT_TIMELINE = Command("Zoom Out Timeline", _on_playback(_zoom(1 / _ZOOM_FACTOR)), (), "", _is_shown)
 
 ANIMATION: tuple[Command | None, ...] = (
     *(PLAY, EXPORT_ANIMATION, None),
-    *(STEP_BACK, STEP_ON, SECOND_BACK, SECOND_ON, GO_START, GO_END, None),
-    *(RANGE_START, RANGE_END, RANGE_ALL, None),
-    *(KEY_HERE, KEY_REMOVE, KEY_COPY, KEY_ALL, None),
-    *(KEY_PREVIOUS, KEY_NEXT, KEY_EARLIER, KEY_LATER, None),
-    *(ONION, ZOOM_IN, ZOOM_OUT),
+    *(STEP_BACK, STEP_FORWARD, SECOND_BACK, SECOND_FORWARD, GO_TO_START, GO_TO_END, None),
+    *(SET_RANGE_START, SET_RANGE_END, CLEAR_RANGE, None),
+    *(ADD_KEYFRAME, DELETE_KEYFRAME, DUPLICATE_KEYFRAME, SELECT_ALL_KEYFRAMES, None),
+    *(PREVIOUS_KEYFRAME, NEXT_KEYFRAME, MOVE_EARLIER, MOVE_LATER, None),
+    *(ONION_SKIN, ZOOM_IN_TIMELINE, ZOOM_OUT_TIMELINE),
 )

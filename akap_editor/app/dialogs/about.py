@@ -26,13 +26,13 @@ class AboutDialog:
             return
         imgui.text(f"akap-editor {__version__}")
         widgets.paragraph(
-            "Bends cartoons with as-Killing-as-possible vector fields and logarithmic spirals, after "
-            "Solomon, Ben-Chen, Butscher and Guibas, Symposium on Geometry Processing 2011.",
+            "A puppet-warp editor for cartoons. Method: Solomon, Ben-Chen, Butscher and Guibas, "
+            "“As-Killing-As-Possible Vector Fields for Planar Deformation”, SGP 2011.",
             _WIDTH * scale,
         )
         widgets.paragraph(
-            "Free software under the GNU General Public License, version 3 or later. Meshes are made by "
-            "Triangle, whose own terms allow non-commercial use only.",
+            "Free software under the GNU General Public License, version 3 or later. The included mesh "
+            "generator Triangle may only be used non-commercially.",
             _WIDTH * scale,
             QUIET,
         )

@@ -131,7 +131,7 @@ class FileDialog:
         _, request.name = imgui.input_text("##name", request.name)
         replaces = request.saving and bool(request.name.strip()) and os.path.isfile(request.path)
         if replaces:
-            warning = " is there already and would be replaced"
+            warning = " already exists and will be replaced"
             room = _WIDTH * scale - imgui.calc_text_size(warning).x
             imgui.text_colored(ImVec4(*ACCENT), widgets.shortened(request.path.name, room) + warning)
         imgui.spacing()
@@ -174,7 +174,7 @@ def _draw_folder(request: FileRequest, scale: float) -> None:
     widgets.show_tooltip("Parent folder")
     imgui.same_line()
     imgui.align_text_to_frame_padding()
-    folder = widgets.shortened(str(request.folder), (_WIDTH - 50) * scale, end=True)
+    folder = widgets.shortened(str(request.folder), (_WIDTH - 50) * scale, keeps_end=True)
     imgui.text_colored(ImVec4(*QUIET), folder)
 
 

@@ -10,7 +10,7 @@ _WIDTH = 420  # design points
 
 def draw(state: AppState, scale: float) -> None:
     """Draw one frame of the dialog for `AppState.error`. scale: points per design point."""
-    if widgets.begin_dialog("That did not work"):
+    if widgets.begin_dialog("Error"):
         widgets.paragraph(state.error, _WIDTH * scale)
         imgui.spacing()
         if widgets.button("OK", primary=True) or widgets.cancel_pressed() or widgets.confirm_pressed():

@@ -22,7 +22,7 @@ def draw(state: AppState, task: Task, scale: float) -> None:
     imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - imgui.calc_text_size(done).x)
     imgui.text(done)
     imgui.spacing()
-    if task.finish_early is not None and widgets.button("Stop here", primary=True):
+    if task.finish_early is not None and widgets.button("Stop Here", primary=True):
         task.finish_early()
     if task.finish_early is not None:
         imgui.same_line()
@@ -30,5 +30,5 @@ def draw(state: AppState, task: Task, scale: float) -> None:
         task.cancel()
         state.task = None
         widgets.close_popup()
-        state.notice = f"{task.title}: cancelled"
+        state.notice = f"{task.title}: canceled"
     imgui.end_popup()

@@ -75,7 +75,7 @@ class RecoveryDialog:
         except AkapError as error:
             self.copies.remove(copy)
             copy.release()
-            state.error = f"Unsaved work could not be recovered: {error}"
+            state.error = f"Couldn't recover an unsaved drawing. {error}"
             return None
         return copy, document, picture
 
@@ -116,10 +116,10 @@ def _draw_facts(copy: RecoveryCopy, document: Document, count: int, width: float
     widgets.paragraph("The program ended before this drawing was saved.", width)
     imgui.spacing()
     widgets.paragraph(
-        f"As it was on {time.strftime('%d %B, %H:%M', time.localtime(copy.time))}", width, QUIET
+        f"Last change: {time.strftime('%d %B, %H:%M', time.localtime(copy.time))}", width, QUIET
     )
-    origin = f"Belongs to {document.path}" if document.path is not None else "Was never saved to a file"
+    origin = f"File: {document.path}" if document.path is not None else "Not saved to a file yet"
     widgets.paragraph(origin, width, QUIET)
     if count > 1:
-        widgets.paragraph(f"{count - 1} more to come", width, QUIET)
+        widgets.paragraph(f"{count - 1} more to recover", width, QUIET)
     imgui.dummy(ImVec2(width, 0))

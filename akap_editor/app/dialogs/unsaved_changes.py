@@ -46,14 +46,14 @@ class UnsavedChangesDialog:
             return
         if not widgets.begin_dialog("Unsaved changes"):
             return
-        text = f"Save the changes to {question.name} before it is closed?"
+        text = f"Save changes to “{question.name}” before closing?"
         widgets.paragraph(text, min(imgui.calc_text_size(text).x + 1, _WIDTH * scale))
         imgui.spacing()
         if widgets.button("Save", primary=True) or widgets.confirm_pressed():
             self._close()
             question.save()
         imgui.same_line()
-        if widgets.button("Discard"):
+        if widgets.button("Don't Save"):
             self._close()
             question.discard()
         imgui.same_line()

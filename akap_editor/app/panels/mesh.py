@@ -1,4 +1,4 @@
-"""The section of the side panel for how the picture is cut out and meshed."""
+"""The Mesh section: how the picture is cut out and meshed, and figures of the mesh."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -13,109 +13,110 @@ from .. import widgets
 from ..app_state import AppState
 from ..theme import QUIET
 
-FEWEST, MOST = 200, 50_000
-WIDEST = 20.0  # pixels of expansion
-_LABEL = 6.4  # width of the labels, in heights of the font
+MIN_VERTICES, MAX_VERTICES = 200, 50_000
+MAX_MARGIN = 20.0  # pixels
+MAX_TOLERANCE = 60.0  # percent
+_LABEL_WIDTH = 7.6  # times the font size
 
 
 def draw(state: AppState, scale: float) -> None:
-    """Sliders, the background, and the mesh in numbers."""
-    wanted = state.remesher.meshing
+    """Draw the section. scale: points per design point."""
+    meshing = state.remesher.meshing
     assert state.document is not None
-    assert wanted is not None
-    _background(state, wanted)
-    logarithmic = imgui.SliderFlags_.logarithmic
+    assert meshing is not None
+    _draw_background(state, meshing)
     vertices = _slider(
         state,
-        "Vertices",
-        float(min(max(wanted.vertices, FEWEST), MOST)),
-        (FEWEST, MOST, "%.0f"),
-        "More bend more smoothly, fewer bend faster. The outline may need more than are wanted.",
-        logarithmic,
+        "Detail",
+        float(min(max(meshing.vertices, MIN_VERTICES), MAX_VERTICES)),
+        (MIN_VERTICES, MAX_VERTICES, "%.0f"),
+        "Number of vertices. More bend more smoothly, fewer bend faster. The outline may need more.",
+        imgui.SliderFlags_.logarithmic,
     )
     if vertices is not None:
-        state.remesher.request(replace(wanted, vertices=_rounded(vertices)), dragging=True)
-    expand = _slider(
+        state.remesher.request(replace(meshing, vertices=_two_digits(vertices)), dragging=True)
+    margin = _slider(
         state,
-        "Expansion",
-        wanted.expand,
-        (0.0, WIDEST, "%.1f px"),
-        "How far the mesh goes beyond the outline. Parts that are nearer to one another become one.",
+        "Margin",
+        meshing.expand,
+        (0.0, MAX_MARGIN, "%.1f px"),
+        "How far the mesh extends beyond the outline. Parts that are closer to each other are joined.",
     )
-    if expand is not None:
-        state.remesher.request(replace(wanted, expand=round(expand, 1)), dragging=True)
+    if margin is not None:
+        state.remesher.request(replace(meshing, expand=round(margin, 1)), dragging=True)
     threshold = _slider(
         state,
-        "Edge",
-        100 * wanted.threshold,
+        "Alpha threshold",
+        100 * meshing.threshold,
         (1.0, 99.0, "%.0f %%"),
-        "How opaque the picture must be to belong to the drawing. Lower it to keep what is faint.",
+        "How opaque a pixel must be to belong to the drawing. Lower it to include faint parts.",
     )
     if threshold is not None:
-        state.remesher.request(replace(wanted, threshold=round(threshold) / 100), dragging=True)
-    _numbers(state.document.drawing.mesh)
+        state.remesher.request(replace(meshing, threshold=round(threshold) / 100), dragging=True)
+    for label, value, tooltip in _figures(state.document.drawing.mesh):
+        widgets.row(label, value, tooltip)
 
 
-def _background(state: AppState, wanted: Meshing) -> None:
+def _draw_background(state: AppState, meshing: Meshing) -> None:
+    """Draw what removes or restores the background of an opaque picture."""
     assert state.document is not None
-    if wanted.background is not None:
+    if meshing.background is not None:
         tolerance = _slider(
             state,
-            "Background",
-            100 * wanted.background,
-            (0.0, 60.0, "%.0f %%"),
-            "How far a color may be from that of the border and still be background.",
+            "Tolerance",
+            100 * meshing.background,
+            (0.0, MAX_TOLERANCE, "%.0f %%"),
+            "How different from the border's color the background may be.",
         )
         if tolerance is not None:
-            state.remesher.request(replace(wanted, background=round(tolerance) / 100), dragging=True)
-        if imgui.button("Keep the background", ImVec2(widgets.FULL, 0)):
-            state.remesher.request(replace(wanted, background=None))
+            state.remesher.request(replace(meshing, background=round(tolerance) / 100), dragging=True)
+        if imgui.button("Restore Background", ImVec2(widgets.FULL, 0)):
+            state.remesher.request(replace(meshing, background=None))
     elif state.document.drawing.is_opaque:
-        widgets.secondary_text("This picture has no transparency, so all of its rectangle bends.")
-        if imgui.button("Remove background", ImVec2(widgets.FULL, 0)):
+        widgets.secondary_text("This picture has no transparency, so the whole rectangle bends.")
+        if imgui.button("Remove Background", ImVec2(widgets.FULL, 0)):
             state.notice = ""
-            state.remesher.request(replace(wanted, background=DEFAULT_TOLERANCE))
-        widgets.show_tooltip("Makes transparent what has the color of the border and is joined to it.")
+            state.remesher.request(replace(meshing, background=DEFAULT_TOLERANCE))
+        widgets.show_tooltip("Makes the area transparent that touches the border and has its color.")
 
 
 def _slider(
-    state: AppState, label: str, value: float, scope: tuple[float, float, str], tooltip: str, flags: int = 0
+    state: AppState, label: str, value: float, limits: tuple[float, float, str], tooltip: str, flags: int = 0
 ) -> float | None:
-    """A slider below its label; the new value while it is moved, else None."""
-    low, high, text = scope
+    """Draw a label and a slider; return the new value while it is moved, otherwise None.
+
+    limits: lowest and highest value, and the printf format.
+    """
+    low, high, text_format = limits
     imgui.align_text_to_frame_padding()
     imgui.text_colored(ImVec4(*QUIET), label)
     widgets.show_tooltip(tooltip)
-    imgui.same_line(_LABEL * imgui.get_font_size())
-    moved, chosen, released = widgets.slider(f"##{label}", value, (low, high), text, flags)
-    if released:
+    imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
+    is_moved, value, is_released = widgets.slider(f"##{label}", value, (low, high), text_format, flags)
+    if is_released:
         state.remesher.end_drag()
-    if moved:
+    if is_moved:
         state.notice = ""
-    return chosen if moved else None
+    return value if is_moved else None
 
 
-def _rounded(count: float) -> int:
-    """To two digits: nobody means 2,013 vertices."""
+def _two_digits(count: float) -> int:
+    """Round to a multiple of 100, below 1,000 of 10: a slider is no more precise."""
     return int(round(count, -2 if count >= 1000 else -1))
 
 
 @lru_cache(maxsize=1)
-def _facts(mesh: TriMesh) -> tuple[tuple[str, str, str], ...]:
+def _figures(mesh: TriMesh) -> tuple[tuple[str, str, str], ...]:
+    """Label, value and tooltip of each figure."""
     parts = int(mesh.component.max()) + 1
     holes = len(mesh.boundary_loops) - parts
     return (
-        ("Parts", f"{parts:,}", "Pieces of the mesh. One without a pin rides with the one nearest to it."),
-        ("Holes", f"{holes:,}", "Openings within the outline."),
-        ("Vertices made", f"{len(mesh.vertices):,}", "The drawing bends at the vertices of its mesh."),
+        ("Parts", f"{parts:,}", "Pieces of the mesh. A piece without a pin moves with the nearest one."),
+        ("Holes", f"{holes:,}", "Openings inside the outline."),
+        ("Vertices", f"{len(mesh.vertices):,}", "The drawing bends at the vertices of its mesh."),
         (
             "Smallest angle",
             f"{smallest_angles(mesh).min():.0f}°",
-            "Of all triangles. Thin ones bend badly; below 25° the outline is so sharp there.",
+            "Of all triangles. Thin triangles bend badly; less than 25° means a sharp corner in the outline.",
         ),
     )
-
-
-def _numbers(mesh: TriMesh) -> None:
-    for label, value, tooltip in _facts(mesh):
-        widgets.row(label, value, tooltip)

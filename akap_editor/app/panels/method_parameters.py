@@ -1,4 +1,4 @@
-"""The parameters of the current method, in the side panel."""
+"""The parameters of the current method, a foldable part of the Bending section."""
 
 from functools import partial
 from typing import Any
@@ -9,10 +9,11 @@ from ...deform.methods import Choice, NumberRange, Parameter, Switch, default_pa
 from ...editor.document.settings import Settings
 from .. import widgets
 from ..app_state import AppState
+from ..pending_values import PendingValues
 from ..theme import QUIET
 
 _TITLE = "Parameters"
-_LABELS = 8.3  # times the font's size: width of the labels
+_LABEL_WIDTH = 8.3  # times the font size
 
 
 def default_value(method: str, name: str) -> Any:
@@ -28,20 +29,20 @@ def with_default_values(settings: Settings) -> Settings:
 
 
 def draw_value(kind: Switch | Choice | NumberRange, value: Any) -> tuple[bool, Any]:
-    """Draw the item that edits a value of a parameter; whether it has changed, and the new value."""
+    """Draw the item that edits a parameter; return whether its value has changed, and the value."""
     match kind:
         case Switch():
             imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
             return widgets.switch("##value", bool(value))
         case Choice(labels):
             names = list(labels)
-            changed, index = imgui.combo("##value", names.index(value), list(labels.values()))
-            return changed, names[index]
+            is_changed, index = imgui.combo("##value", names.index(value), list(labels.values()))
+            return is_changed, names[index]
     limits, flags = (kind.low, kind.high), imgui.SliderFlags_.logarithmic if kind.is_logarithmic else 0
     if value is None:
         return widgets.slider("##value", kind.low, limits, kind.format, flags, word="auto")[:2]
-    changed, number, _ = widgets.slider("##value", float(value), limits, kind.format, flags)
-    return changed, round(number) if kind.is_whole else number
+    is_changed, number, _ = widgets.slider("##value", float(value), limits, kind.format, flags)
+    return is_changed, round(number) if kind.is_whole else number
 
 
 def draw(state: AppState) -> None:
@@ -51,13 +52,13 @@ def draw(state: AppState) -> None:
     parameters = get_method(settings.method).parameters
     if not parameters:
         return
-    remembered: dict[str, object] = state.preferences.get("sections", {})
-    was_open = remembered.get(_TITLE) is True
+    sections: dict[str, object] = state.preferences.get("sections", {})
+    was_open = sections.get(_TITLE) is True
     imgui.set_next_item_open(was_open)
     imgui.push_style_var(imgui.StyleVar_.indent_spacing, 0.0)
     is_open = imgui.tree_node_ex(_TITLE, imgui.TreeNodeFlags_.span_avail_width)
     if is_open != was_open:
-        state.preferences.put("sections", {**remembered, _TITLE: is_open})
+        state.preferences.put("sections", {**sections, _TITLE: is_open})
     if is_open:
         for parameter in parameters:
             _draw_parameter(state, settings, parameter)
@@ -67,22 +68,22 @@ def draw(state: AppState) -> None:
 
 def _draw_parameter(state: AppState, settings: Settings, parameter: Parameter) -> None:
     """Draw label and item of a parameter. Its value is applied when the edit of the item ends."""
-    standard = default_value(settings.method, parameter.name)
-    value = settings.get(parameter.name, standard)
+    default = default_value(settings.method, parameter.name)
+    value = settings.get(parameter.name, default)
     imgui.push_id(parameter.name)
     imgui.align_text_to_frame_padding()
-    if value == standard:
+    if value == default:
         imgui.text_colored(ImVec4(*QUIET), parameter.label)
     else:
         imgui.text(parameter.label)
     widgets.show_tooltip(f"{parameter.tooltip} Double-click to reset.")
-    reset = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0)
-    imgui.same_line(_LABELS * imgui.get_font_size())
+    is_reset = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0)
+    imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
     imgui.set_next_item_width(widgets.FULL)
     item = partial(draw_value, parameter.kind)
-    edited = state.pending_values.edit((settings.method, parameter.name), value, item)
+    new_value = state.part(PendingValues).edit((settings.method, parameter.name), value, item)
     imgui.pop_id()
-    if reset and value != standard:
-        widgets.change(state, settings.with_parameter(parameter.name, standard))
-    elif edited is not None and edited != value:
-        widgets.change(state, settings.with_parameter(parameter.name, edited))
+    if is_reset and value != default:
+        widgets.change_settings(state, settings.with_parameter(parameter.name, default))
+    elif new_value is not None and new_value != value:
+        widgets.change_settings(state, settings.with_parameter(parameter.name, new_value))

@@ -1,7 +1,8 @@
-"""What opens at a pin: its menu on a right click, its values on a double click."""
+"""The popups of a pin: its menu on a right-click, its values on a double-click."""
 
 import math
 from collections.abc import Callable
+from typing import TypeVar
 
 from imgui_bundle import ImVec2, imgui
 
@@ -10,34 +11,39 @@ from ...editor.document.pin import Pin
 from ...editor.events import PinRequest
 from .. import widgets
 from ..app_state import AppState
-from ..commands import registry as commands
 from ..commands.command import Command
-from ..pending_values import T
+from ..commands.registry import (
+    DELETE_SELECTED,
+    HOLD_ANGLE,
+    LIMB_TO_BACK,
+    LIMB_TO_FRONT,
+    LOWER_DEPTH,
+    RAISE_DEPTH,
+    SELECT_ALL,
+)
+from ..pending_values import PendingValues
 
-_OFFSET = 14.0  # points from a pin's center to the popup's corner, so that the pin is still seen
-_LABELS = 3.6  # times the font's size: width of the labels
+T = TypeVar("T")
+
+_OFFSET = 14.0  # design points from the pin's center to the popup's corner, so that the pin stays visible
+_LABEL_WIDTH = 3.6  # times the font size
+_FIELD_WIDTH = 126  # design points
 _MENU: tuple[Command | None, ...] = (
-    commands.LIMB_TO_FRONT,
-    commands.LIMB_TO_BACK,
-    commands.RAISE_DEPTH,
-    commands.LOWER_DEPTH,
-    commands.HOLD_ANGLE,
+    *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE),
     None,
-    commands.REMOVE,
-    commands.SELECT_ALL,
+    *(DELETE_SELECTED, SELECT_ALL),
 )
 
 
 class PinPopup:
-    """Shows the editor's request as a popup and takes it back when that is closed."""
+    """Shows the editor's request as a popup, and withdraws the request when the popup is closed."""
 
     def __init__(self) -> None:
         self._shown: PinRequest | None = None
 
     def draw(self, state: AppState, scale: float) -> None:
-        """Draw what is asked for, if anything."""
-        editor = state.editor
-        request = editor.request
+        """Draw one frame if there is a request. scale: points per design point."""
+        editor, request = state.editor, state.editor.request
         if request is None or editor.session is None:
             self._shown = None
             return
@@ -52,13 +58,67 @@ class PinPopup:
             return
         pin = editor.session.state.pin(request.pin)
         if request.kind == "menu":
-            _menu(state, pin)
+            _draw_menu(state, pin)
         else:
-            _values(state, pin, scale)
+            _draw_values(state, pin, scale)
         imgui.end_popup()
 
 
-def _menu(state: AppState, pin: Pin) -> None:
+def _draw_values(state: AppState, pin: Pin, scale: float) -> None:
+    """Draw fields for target, depth and angle; each is applied when its edit ends."""
+    x, y = pin.target.tolist()
+    widgets.secondary_text(f"Pin {pin.id}")
+    imgui.push_item_width(_FIELD_WIDTH * scale)
+    if imgui.is_window_appearing():
+        imgui.set_keyboard_focus_here()
+    new_x = _field(state, pin, "X", x, lambda value: imgui.input_double("##X", value, 0, 0, "%.2f"))
+    new_y = _field(state, pin, "Y", y, lambda value: imgui.input_double("##Y", value, 0, 0, "%.2f"))
+    depth = _field(state, pin, "Depth", pin.depth, lambda value: imgui.input_int("##Depth", value, 0, 0))
+    widgets.show_tooltip("Where limbs overlap, the higher number is in front.")
+    _draw_angle(state, pin)
+    imgui.pop_item_width()
+    if widgets.cancel_pressed():  # ImGui would only leave the field
+        widgets.close_popup()
+    if depth is not None:
+        state.run_reporting_errors(lambda: gestures.set_depth(state.editor, pin.id, depth))
+    if new_x is not None or new_y is not None:
+        target = x if new_x is None else new_x, y if new_y is None else new_y
+        state.run_reporting_errors(lambda: gestures.move_pin(state.editor, pin.id, target))
+
+
+def _draw_angle(state: AppState, pin: Pin) -> None:
+    """Draw a field for the angle in degrees, and a switch for whether the pin holds it."""
+    session = state.editor.session
+    assert session is not None
+    imgui.begin_disabled(not session.supports_rotation)
+    degrees = math.degrees(session.pin_angle(pin.id) if pin.angle is None else pin.angle)
+    degrees = 0.0 if abs(degrees) < 0.05 else degrees  # not -0.0°
+    new_degrees = _field(
+        state, pin, "Angle", degrees, lambda value: imgui.input_double("##Angle", value, 0, 0, "%.1f°")
+    )
+    widgets.show_tooltip("Rotation of the drawing around the pin, clockwise.")
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + _LABEL_WIDTH * imgui.get_font_size())
+    is_clicked, is_held = widgets.switch(
+        "Hold angle", pin.angle is not None, "Off: the drawing can rotate freely around the pin."
+    )
+    imgui.end_disabled()
+    if new_degrees is not None:
+        angle: float | None = math.radians(new_degrees)
+    elif is_clicked:
+        angle = math.radians(degrees) if is_held else None
+    else:
+        return
+    state.run_reporting_errors(lambda: gestures.set_pin_angle(state.editor, pin.id, angle))
+
+
+def _field(state: AppState, pin: Pin, name: str, value: T, item: Callable[[T], tuple[bool, T]]) -> T | None:
+    """Draw a label and a field; return the new value in the frame in which its edit ends."""
+    widgets.label(name, imgui.get_style().window_padding.x + _LABEL_WIDTH * imgui.get_font_size())
+    return state.part(PendingValues).edit((pin.id, name), value, item)
+
+
+def _draw_menu(state: AppState, pin: Pin) -> None:
+    """Draw the content of a pin's context menu."""
     if imgui.menu_item_simple("Values..."):
         state.editor.request_pin_popup("values", pin.id)
     if len(state.editor.selection) > 1 and imgui.menu_item_simple("Select Only This Pin"):
@@ -67,55 +127,6 @@ def _menu(state: AppState, pin: Pin) -> None:
         if command is None:
             imgui.separator()
         else:
-            on = command.checked is not None and command.checked(state)
-            if imgui.menu_item(command.label, command.key_name, on, command.enabled(state))[0]:
+            is_checked, is_enabled = command.is_checked(state), command.enabled(state)
+            if imgui.menu_item(command.label, command.key_name, is_checked, is_enabled)[0]:
                 widgets.run(state, command)
-
-
-def _field(state: AppState, pin: Pin, name: str, value: T, draw: Callable[[T], tuple[bool, T]]) -> T | None:
-    """A value of the pin behind its name; another one once the field is left."""
-    widgets.label(name, imgui.get_style().window_padding.x + _LABELS * imgui.get_font_size())
-    return state.pending_values.edit((pin.id, name), value, draw)
-
-
-def _angle(state: AppState, pin: Pin) -> None:
-    """Whether the pin holds an angle, and in degrees which one."""
-    session = state.editor.session
-    assert session is not None
-    imgui.begin_disabled(not session.supports_rotation)
-    shown = math.degrees(session.pin_angle(pin.id) if pin.angle is None else pin.angle)
-    shown = 0.0 if abs(shown) < 0.05 else shown  # not -0.0°
-    angle = _field(
-        state, pin, "Angle", shown, lambda draft: imgui.input_double("##Angle", draft, 0, 0, "%.1f°")
-    )
-    widgets.show_tooltip("By how many degrees the drawing around the pin is turned, clockwise.")
-    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + _LABELS * imgui.get_font_size())
-    held = widgets.switch("Hold this angle", pin.angle is not None, "Off: the drawing turns as it will here.")
-    imgui.end_disabled()
-    if angle is not None:
-        state.run_reporting_errors(lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(angle)))
-    elif held[0]:
-        state.run_reporting_errors(
-            lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(shown) if held[1] else None)
-        )
-
-
-def _values(state: AppState, pin: Pin, scale: float) -> None:
-    x, y = pin.target.tolist()
-    widgets.secondary_text(f"Pin {pin.id}")
-    imgui.push_item_width(126 * scale)
-    if imgui.is_window_appearing():
-        imgui.set_keyboard_focus_here()
-    new_x = _field(state, pin, "X", x, lambda draft: imgui.input_double("##X", draft, 0, 0, "%.2f"))
-    new_y = _field(state, pin, "Y", y, lambda draft: imgui.input_double("##Y", draft, 0, 0, "%.2f"))
-    depth = _field(state, pin, "Depth", pin.depth, lambda draft: imgui.input_int("##Depth", draft, 0, 0))
-    widgets.show_tooltip("Where limbs cross, the higher number passes in front.")
-    _angle(state, pin)
-    imgui.pop_item_width()
-    if widgets.cancel_pressed():  # ImGui would only leave the field
-        widgets.close_popup()
-    if depth is not None:
-        state.run_reporting_errors(lambda: gestures.set_depth(state.editor, pin.id, depth))
-    if new_x is not None or new_y is not None:
-        to = x if new_x is None else new_x, y if new_y is None else new_y
-        state.run_reporting_errors(lambda: gestures.move_pin(state.editor, pin.id, to))

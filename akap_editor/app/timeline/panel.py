@@ -1,148 +1,105 @@
-"""A slim timeline under the canvas: the whole session or the keyframes, to be played, cut and exported."""
+"""The timeline panel under the canvas: shows the session or the keyframes, plays and exports them."""
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...render.overlays import Rgba
 from .. import widgets
 from ..app_state import AppState
 from ..dialogs.export_animation import ExportAnimationDialog
-from ..theme import ACCENT, FRAME, QUIET, TEXT, packed
-from . import keyframe_track as key_track
-from .keyframe_track import RED
+from ..theme import ACCENT, QUIET, TEXT
+from . import keyframe_menus
+from .keyframe_track import KeyframeTrack
+from .session_track import SessionTrack
+from .timeline import TimelineMode
+from .track import RED
 
-HEIGHT, KEYED_HEIGHT = 44, 64  # design points, as all sizes here
+_SESSION_HEIGHT, _KEYFRAMES_HEIGHT = 44, 64  # design points, as all sizes here
+_BUTTON_WIDTH, _BUTTON_HEIGHT = 30, 28
+_TRACK_RISE = 10  # the top of the keyframe track above that of the buttons
+_MODES: tuple[tuple[TimelineMode, str, str], ...] = (
+    ("session", icons.ICON_FA_CLOCK_ROTATE_LEFT, "Session: look back at what was done, and continue there"),
+    ("keyframes", icons.ICON_FA_DIAMOND, "Keyframes: poses at times, and the motion between them"),
+)
 
 
 def draw(state: AppState, scale: float) -> None:
-    """The bar; nothing without a drawing, or where it is switched off."""
-    if state.document is None or not state.timeline.is_shown:
-        state.timeline.show_present()
+    """Draw the panel if it is visible and a drawing is open. scale: points per design point."""
+    timeline = state.timeline
+    if state.document is None or not timeline.is_shown:
+        timeline.show_present()
         return
-    keyed = state.timeline.mode == "keyframes"
-    if keyed:
-        state.timeline.keyframe_playback.update()
-    state.timeline.playback.advance()
-    height = (KEYED_HEIGHT if keyed else HEIGHT) * scale
-    if widgets.side_bar("Timeline", imgui.Dir.down, height, ImVec2(10 * scale, 8 * scale)):
-        if keyed:
-            imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + 10 * scale)
-        _which(state, scale)
-        imgui.same_line(0, 12 * scale)
-        _buttons(state, scale)
-        imgui.same_line(0, 12 * scale)
-        if keyed:
-            imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 10 * scale)
-            key_track.draw(state, scale)
-        else:
-            _track(state, scale)
+    if timeline.mode == "keyframes":
+        timeline.keyframe_playback.update()
+    timeline.playback.advance()
+    height = _KEYFRAMES_HEIGHT if timeline.mode == "keyframes" else _SESSION_HEIGHT
+    if widgets.side_bar("Timeline", imgui.Dir.down, height * scale, ImVec2(10 * scale, 8 * scale)):
+        _draw_content(state, scale)
     imgui.end()
 
 
-def _which(state: AppState, scale: float) -> None:
-    """Two buttons that choose what the timeline holds."""
-    if _button(icons.ICON_FA_CLOCK_ROTATE_LEFT, "session", scale, state.timeline.mode == "session"):
-        state.timeline.set_mode("session")
-    widgets.show_tooltip("Session: all that was done, to look back and go on from there")
-    imgui.same_line(0, 2 * scale)
-    if _button(icons.ICON_FA_DIAMOND, "keyframes", scale, state.timeline.mode == "keyframes"):
-        state.timeline.set_mode("keyframes")
-    widgets.show_tooltip("Keyframes: poses at times, and the motion between them")
-
-
-def _button(icon: str, name: str, scale: float, on: bool, color: tuple[float, ...] = ACCENT) -> bool:
-    """A square button with a picture; on: in a color."""
-    imgui.push_style_color(imgui.Col_.text, ImVec4(*(color if on else QUIET)))
-    pressed = imgui.button(f"{icon}##{name}", ImVec2(30 * scale, 28 * scale))
-    imgui.pop_style_color()
-    return bool(pressed)
-
-
-def _buttons(state: AppState, scale: float) -> None:
-    playback, playing = state.timeline.session_playback, state.timeline.playback
-    if state.timeline.mode == "session":
-        recording = playback.take_start is not None
-        icon = icons.ICON_FA_STOP if recording else icons.ICON_FA_CIRCLE
-        if _button(icon, "record", scale, True, ACCENT if recording else RED):
-            (playback.end_take if recording else playback.start_take)()
-        widgets.show_tooltip(
-            "Record: what you do from here to the next click is the part that is played and exported"
-        )
+def _draw_content(state: AppState, scale: float) -> None:
+    shows_keyframes = state.timeline.mode == "keyframes"
+    rise = _TRACK_RISE * scale if shows_keyframes else 0.0
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + rise)
+    _draw_mode_buttons(state, scale)
+    imgui.same_line(0, 12 * scale)
+    if shows_keyframes:
+        keyframe_menus.draw_buttons(state, scale)
     else:
-        key_track.buttons(state, scale)
+        _draw_record_button(state, scale)
     imgui.same_line(0, 4 * scale)
-    if _button(icons.ICON_FA_PAUSE if playing.is_playing else icons.ICON_FA_PLAY, "play", scale, True, TEXT):
-        playing.toggle_playing()
+    _draw_playback_buttons(state, scale)
+    imgui.same_line(0, 12 * scale)
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - rise)
+    if shows_keyframes:
+        state.part(KeyframeTrack).draw(state, scale)
+    else:
+        state.part(SessionTrack).draw(state, scale)
+
+
+def _draw_mode_buttons(state: AppState, scale: float) -> None:
+    """Draw a button for each mode."""
+    for number, (mode, icon, tooltip) in enumerate(_MODES):
+        if number:
+            imgui.same_line(0, 2 * scale)
+        if _icon_button(icon, mode, scale, ACCENT if state.timeline.mode == mode else QUIET):
+            state.timeline.set_mode(mode)
+        widgets.show_tooltip(tooltip)
+
+
+def _draw_record_button(state: AppState, scale: float) -> None:
+    """Draw the button that starts and ends a take."""
+    playback = state.timeline.session_playback
+    is_recording = playback.take_start is not None
+    icon = icons.ICON_FA_STOP if is_recording else icons.ICON_FA_CIRCLE
+    if _icon_button(icon, "record", scale, ACCENT if is_recording else RED):
+        (playback.end_take if is_recording else playback.start_take)()
+    widgets.show_tooltip("Record a take: what you do until the next click becomes the range")
+
+
+def _draw_playback_buttons(state: AppState, scale: float) -> None:
+    """Draw the buttons that play, loop and export the range."""
+    playback = state.timeline.playback
+    icon = icons.ICON_FA_PAUSE if playback.is_playing else icons.ICON_FA_PLAY
+    if _icon_button(icon, "play", scale, TEXT):
+        playback.toggle_playing()
     widgets.show_tooltip("Play (L)")
     imgui.same_line(0, 4 * scale)
-    if _button(icons.ICON_FA_REPEAT, "loop", scale, playing.loop):
-        playing.loop = not playing.loop
-    widgets.show_tooltip("Play over and over")
+    if _icon_button(icons.ICON_FA_REPEAT, "loop", scale, ACCENT if playback.loop else QUIET):
+        playback.loop = not playback.loop
+    widgets.show_tooltip("Loop")
     imgui.same_line(0, 4 * scale)
-    imgui.begin_disabled(playing.played_range[1] <= playing.played_range[0])
-    if _button(icons.ICON_FA_FILM, "export", scale, True, TEXT):
+    imgui.begin_disabled(playback.played_range[1] <= playback.played_range[0])
+    if _icon_button(icons.ICON_FA_FILM, "export", scale, TEXT):
         state.part(ExportAnimationDialog).open(state)
     imgui.end_disabled()
-    widgets.show_tooltip("Export the part between the marks as an animation, a video or sprites")
+    widgets.show_tooltip("Export the range as an animation, video or sprite sheet")
 
 
-def _track(state: AppState, scale: float) -> None:
-    """The time from start to end: what is played in amber, two marks that cut it, and where one is."""
-    playback, drawer = state.timeline.session_playback, imgui.get_window_draw_list()
-    label = (
-        f"{playback.time if playback.time is not None else playback.duration:.1f} / {playback.duration:.1f} s"
-    )
-    room = imgui.calc_text_size("000.0 / 000.0 s").x + 12 * scale
-    corner, rim = imgui.get_cursor_screen_pos(), 8 * scale  # so that both ends can be taken hold of
-    width, height = max(imgui.get_content_region_avail().x - room, 40 * scale), 28 * scale
-    imgui.invisible_button("##track", ImVec2(width, height))
-    corner.x, width = corner.x + rim, width - 2 * rim
-    held, hovered = imgui.is_item_active(), imgui.is_item_hovered()
-    playback.visible_range.fit(playback.duration or 1.0)
-    track = key_track.TimeScale(corner.x, width, playback.visible_range)
-    if hovered and not held:
-        key_track.zoom(playback.visible_range, track)
-    moment = track.time(imgui.get_mouse_pos().x)
-    if imgui.is_item_activated():
-        near, below = 8 * scale, imgui.get_mouse_pos().y > corner.y + 0.6 * height
-        start, end = (abs(imgui.get_mouse_pos().x - track.x(mark)) for mark in playback.played_range)
-        on_mark = below and min(start, end) < near
-        state.grip = ("start" if start < end else "end") if on_mark else "head"
-    if held and playback.snapshots:
-        if state.grip == "start":
-            playback.mark_range(start=moment)
-        elif state.grip == "end":
-            playback.mark_range(end=moment)
-        else:
-            playback.scrub(moment)
-    middle = corner.y + height / 2
-    low, high = (track.x(mark) for mark in playback.played_range)
-    drawer.push_clip_rect(
-        ImVec2(corner.x - rim, corner.y), ImVec2(corner.x + width + rim, corner.y + height), True
-    )
-    key_track.draw_part(drawer, playback.visible_range, corner, width, scale)
-    _bar(drawer, corner.x, corner.x + width, middle, scale, packed(FRAME))
-    _bar(drawer, low, high, middle, scale, packed(ACCENT, 0.55))
-    key_track.draw_marks(drawer, [low, high], corner.y + height, scale)
-    if playback.take_start is not None:
-        _bar(
-            drawer,
-            track.x(playback.take_start),
-            track.x(playback.duration),
-            middle,
-            scale,
-            packed(RED),
-        )
-    head = track.x(playback.time if playback.time is not None else playback.visible_range.total)
-    thickness = (2.5 if held or hovered else 2) * scale
-    drawer.add_line(ImVec2(head, corner.y), ImVec2(head, corner.y + height), packed(TEXT), thickness)
-    drawer.pop_clip_rect()
-    imgui.same_line(0, 12 * scale)
-    imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*QUIET), label)
-
-
-def _bar(
-    drawer: imgui.ImDrawList, left: float, right: float, middle: float, scale: float, color: int
-) -> None:
-    low, high = ImVec2(left, middle - 3 * scale), ImVec2(right, middle + 3 * scale)
-    drawer.add_rect_filled(low, high, color, 3 * scale)
+def _icon_button(icon: str, name: str, scale: float, color: Rgba) -> bool:
+    """Draw a button with an icon; return whether it was pressed."""
+    imgui.push_style_color(imgui.Col_.text, ImVec4(*color))
+    is_pressed = imgui.button(f"{icon}##{name}", ImVec2(_BUTTON_WIDTH * scale, _BUTTON_HEIGHT * scale))
+    imgui.pop_style_color()
+    return bool(is_pressed)

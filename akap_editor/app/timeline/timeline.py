@@ -2,9 +2,10 @@
 
 from typing import Literal
 
-from ...editor.animation.keyframe_playback import KeyframePlayback
+from ...editor.animation.keyframe_playback import TIME_STEP, KeyframePlayback
 from ...editor.animation.playback import Playback
 from ...editor.animation.session_playback import SessionPlayback
+from ...editor.document.named_poses import NamedPose
 from ...editor.editor import Editor
 
 TimelineMode = Literal["session", "keyframes"]
@@ -18,6 +19,7 @@ class Timeline:
     """
 
     def __init__(self, editor: Editor) -> None:
+        self._editor = editor
         self.is_shown = False
         self.mode: TimelineMode = "session"
         self.session_playback = SessionPlayback()
@@ -45,9 +47,29 @@ class Timeline:
         self.set_mode("keyframes")
         self.is_shown = True
 
+    def add_keyframe(self, pose: NamedPose | None = None) -> None:
+        """Set a keyframe at the playhead and show the keyframes.
+
+        pose: by default, the one on the canvas.
+        """
+        session = self._editor.session
+        shown = session.state if session is not None and session.is_previewing else None
+        self.keyframe_playback.update()
+        self.show_keyframes()
+        source = pose or shown
+        if source is None:
+            self.keyframe_playback.set_keyframe()
+        else:
+            self.keyframe_playback.set_keyframe(None, source.positions, source.crossings)
+
     def show_present(self) -> None:
         """Show the present pose on the canvas instead of another moment's."""
         if self.session_playback.time is not None:
             self.session_playback.show_present()
         if self.keyframe_playback.is_previewing:
             self.keyframe_playback.show_present()
+
+
+def snap_time(time: float) -> float:
+    """The nearest multiple of `TIME_STEP`; seconds."""
+    return round(time / TIME_STEP) * TIME_STEP

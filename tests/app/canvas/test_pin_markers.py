@@ -25,11 +25,11 @@ def test_h_hides_the_pins_while_it_is_held(pinned):
         pinned.window.after_draw.clear()
 
     pinned.do(hold)
-    pinned.state.show_pins = False
+    pinned.state.view.show_pins = False
     hidden = pinned.screenshot()
     canvas = slice(0, round(pinned.editor.canvas[2]))
     assert (snapshots[0][:, canvas] == hidden[:, canvas]).all()
-    pinned.state.show_pins = True
+    pinned.state.view.show_pins = True
     assert (pinned.screenshot() == shown).all()
 
 
@@ -42,7 +42,7 @@ def marker_pixels(shot, at, radius):
 def test_pins_are_drawn_where_they_are_and_only_when_shown(pinned):
     at = pinned.screen(pinned.pin_place(2))
     shown = pinned.screenshot()
-    pinned.state.show_pins = False
+    pinned.state.view.show_pins = False
     hidden = pinned.screenshot()
     on_canvas = slice(0, round(pinned.editor.canvas[2]))
     changed = np.argwhere((shown != hidden).any(axis=2)[:, on_canvas])

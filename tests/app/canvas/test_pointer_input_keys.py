@@ -24,7 +24,7 @@ def test_arrows_nudge_also_after_a_click_on_a_panel(pinned):
     pinned.do(nudge)
     np.testing.assert_allclose(pinned.session.state.pin(3).target, np.add(before, (-10, -2)), atol=1e-9)
     assert pinned.session.history.labels == ["Nudge Pin"]
-    assert pinned.state.show_mesh
+    assert pinned.state.view.show_mesh
 
 
 def test_backspace_removes_the_last_pin(pinned):
@@ -46,7 +46,7 @@ def test_alt_click_cuts_a_pin_off_and_the_keyboard_stays_with_the_canvas(pinned)
     assert [pin.id for pin in pinned.pins] == [1, 3]
     assert not pinned.editor.held
     pinned.key(Key.m)
-    assert pinned.state.show_mesh
+    assert pinned.state.view.show_mesh
 
 
 def test_an_alt_drag_of_the_ring_rotates_and_holds(pinned):

@@ -38,16 +38,16 @@ def test_a_cached_picture_shows_every_change(pinned, monkeypatch):
     changes = [
         lambda: hover(pinned.screen(pinned.pin_place(2))),
         lambda: setattr(pinned.editor, "camera", pinned.editor.camera.zoomed(1.3, pinned.empty_place)),
-        lambda: setattr(pinned.state, "checker", False),
-        lambda: setattr(pinned.state, "show_mesh", True),
+        lambda: setattr(pinned.state.view, "show_checkerboard", False),
+        lambda: setattr(pinned.state.view, "show_mesh", True),
         lambda: setattr(pinned.state.view, "show_rest_pose", True),
         lambda: setattr(pinned.state.view, "show_pin_trails", True),
         lambda: setattr(pinned.state.view, "distortion_measure", "area"),
         lambda: gestures.move_pin(pinned.editor, 3, (x, y - 30)),
         lambda: setattr(pinned.state.view, "distortion_range", 0),
         lambda: gestures.set_depth(pinned.editor, 3, 2),
-        lambda: setattr(pinned.state, "split", True),
-        lambda: setattr(pinned.state, "split", False),
+        lambda: setattr(pinned.state.view, "is_split", True),
+        lambda: setattr(pinned.state.view, "is_split", False),
         pinned.editor.undo,
     ]
     pictures = set()
@@ -152,7 +152,7 @@ def test_a_large_mesh_at_rest_is_drawn_once(large, draws):
     large.frame()
     large.frame()
     assert len(draws) == count
-    large.state.show_mesh = True
+    large.state.view.show_mesh = True
     large.frame()
     large.frame()
     assert len(draws) == count + 1

@@ -11,7 +11,7 @@ from akap_editor.editor.document.drawing import Drawing
 from akap_editor.editor.session.edits import SetPose, SetSettings
 from akap_editor.geometry.mesh import TriMesh
 
-MENU = ("View", "Two Methods Side by Side")
+MENU = ("View", "Compare Methods")
 
 
 @pytest.fixture
@@ -61,7 +61,7 @@ def test_every_method_can_be_seen_beside(split):
 
 def test_right_half_shows_the_second_pose(split):
     """The same picture as the left half shows once both methods are one."""
-    split.state.show_pins = False
+    split.state.view.show_pins = False
     split.session.begin("Method")
     split.session.apply(SetSettings(split.state.comparison.session.state.settings))
     split.session.commit()
@@ -118,7 +118,7 @@ def test_a_drawing_that_the_second_method_refuses_closes_the_half(ui):
     ui.reset(new_document(Drawing(image, mesh, (mesh.vertices / 120).astype(np.float32))))
     ui.state.comparison.spec = "cauchy-green"
     ui.menu(*MENU)
-    assert not ui.state.split
+    assert not ui.state.view.is_split
     assert "does not overlap itself" in ui.state.error
     ui.state.error = ""
     ui.settle()

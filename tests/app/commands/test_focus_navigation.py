@@ -206,7 +206,7 @@ def pane():
 
 
 def test_f6_goes_to_every_pane_and_back_to_the_canvas(keyed):
-    keyed.state.split, keyed.state.part(FirstSteps).is_open = True, True
+    keyed.state.view.is_split, keyed.state.part(FirstSteps).is_open = True, True
     keyed.state.view.distortion_measure = "area"
     keyed.settle()
     panes = ["Panel", "Tools", "Timeline", "Comparison", "##legend", "First steps", ""]
@@ -219,7 +219,7 @@ def test_f6_stops_nowhere_else(ui):
 
 
 def test_the_second_method_is_chosen_by_keys(pinned):
-    pinned.state.split = True
+    pinned.state.view.is_split = True
     pinned.settle()
     before = pinned.state.comparison.spec
     keys(pinned, *[Key.f6] * 3, Key.space, Key.down_arrow, Key.space)

@@ -53,12 +53,12 @@ def test_arrows_walk_through_all_menus(pinned):
 
 
 def test_a_command_is_run_from_a_menu_by_keys(pinned):
-    assert not pinned.state.show_mesh
+    assert not pinned.state.view.show_mesh
     place = [item.label for item in dict(MENUS)["View"] if item is not None and item.enabled(pinned.state)]
     down = [Key.down_arrow] * place.index("Show Mesh")
     seen = after_each(pinned, ALT | Key.v, *down, Key.enter)
     assert seen[-2:] == [["View"], []]
-    assert pinned.state.show_mesh
+    assert pinned.state.view.show_mesh
 
 
 def test_arrows_in_a_menu_of_files_stay_there(pinned):
@@ -149,9 +149,9 @@ def type_into_palette(ui, chord, text, *keys):
 def test_a_command_is_found_and_run(pinned, chord):
     type_into_palette(pinned, chord, "shmesh", Key.enter)
     assert not pinned.state.part(Palette).is_open
-    assert pinned.state.show_mesh
+    assert pinned.state.view.show_mesh
     pinned.key(Key.m)
-    assert not pinned.state.show_mesh, "the keys are the canvas' again"
+    assert not pinned.state.view.show_mesh, "the keys are the canvas' again"
 
 
 def test_arrows_choose_another_line(pinned):
@@ -159,7 +159,7 @@ def test_arrows_choose_another_line(pinned):
     pinned.editor.select({2})
     assert lines.index("Select All Pins") == 0
     lines = [entry.label for entry, _ in ranked("sel", entries(pinned.state, PALETTE_ITEMS))]
-    wanted = lines.index("Remove Selected Pins")
+    wanted = lines.index("Delete Selected Pins")
     assert 0 < wanted < len(lines) - 1
     keys = (Key.up_arrow, *[Key.down_arrow] * (wanted + 1), Key.up_arrow)
     type_into_palette(pinned, CTRL | Key.k, "sel", *keys, Key.enter)

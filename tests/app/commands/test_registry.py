@@ -181,11 +181,11 @@ CASES = {
     "One Second Back": (looked_at, look_is(0.5)),
     "Go to Start": (looked_at, look_is(1.0)),
     "Go to End": (looked_at, look_is(2.5)),
-    "Start Range Here": (looked_at, range_is(1.5, 2.5)),
-    "End Range Here": (looked_at, range_is(1.0, 1.5)),
-    "Range Is Everything": (looked_at, range_is(0.0, 3.0)),
-    "Zoom into Timeline": (keyed, lambda ui: ui.state.timeline.keyframe_playback.visible_range.is_zoomed),
-    "Zoom out of Timeline": (
+    "Set Range Start": (looked_at, range_is(1.5, 2.5)),
+    "Set Range End": (looked_at, range_is(1.0, 1.5)),
+    "Clear Range": (looked_at, range_is(0.0, 3.0)),
+    "Zoom In Timeline": (keyed, lambda ui: ui.state.timeline.keyframe_playback.visible_range.is_zoomed),
+    "Zoom Out Timeline": (
         lambda ui: [keyed(ui), ui.state.timeline.keyframe_playback.visible_range.zoom(1.4, 0.0)],
         lambda ui: not ui.state.timeline.keyframe_playback.visible_range.is_zoomed,
     ),
@@ -194,19 +194,19 @@ CASES = {
     "Next Pin": (one_selected, lambda ui: ui.editor.selection == {3}),
     "Previous Pin": (one_selected, lambda ui: ui.editor.selection == {1}),
     "Pin Values...": (watch_requests, asked_for("values")),
-    "Menu of Pin or Keyframe": (watch_requests, asked_for("menu")),
-    "Look Left": (moved_camera, looks(-1, 0)),
-    "Look Right": (moved_camera, looks(1, 0)),
-    "Look Up": (moved_camera, looks(0, -1)),
-    "Look Down": (moved_camera, looks(0, 1)),
-    "Next Range of Distortion": (
+    "Context Menu": (watch_requests, asked_for("menu")),
+    "Pan Left": (moved_camera, looks(-1, 0)),
+    "Pan Right": (moved_camera, looks(1, 0)),
+    "Pan Up": (moved_camera, looks(0, -1)),
+    "Pan Down": (moved_camera, looks(0, 1)),
+    "Next Distortion Range": (
         lambda ui: setattr(ui.state.view, "distortion_measure", "area"),
         lambda ui: DISTORTION_RANGES[ui.state.view.distortion_range] == 2.0,
     ),
     "Play": (once_keyed, lambda ui: ui.state.timeline.keyframe_playback.time == 0.2),
     "Export Animation...": (keyed, lambda ui: ui.state.part(ExportAnimationDialog).is_open),
-    "Keyframe Here": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
-    "Remove Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
+    "Add Keyframe": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
+    "Delete Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
     "Duplicate Keyframe": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5)),
     "Next Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.time == 1.0),
     "Previous Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.time == 0.0),
@@ -225,18 +225,18 @@ CASES = {
     "Quit": (nothing, lambda ui: ui.state.closing),
     "Undo": (bent, is_rest),
     "Redo": (undone, lambda ui: ui.session.is_posed),
-    "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
+    "Delete Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
     "Raise Depth": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, 1, 0]),
     "Lower Depth": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, -1, 0]),
     "Bring Limb to Front": (folded_behind, last_entry("Bring Limb to Front")),
     "Send Limb to Back": (folded, last_entry("Send Limb to Back")),
-    "Remove Last Pin": (nothing, lambda ui: [pin.id for pin in ui.pins] == [1, 2]),
+    "Delete Last Pin": (nothing, lambda ui: [pin.id for pin in ui.pins] == [1, 2]),
     "Select All Pins": (nothing, lambda ui: ui.editor.selection == {1, 2, 3}),
     "Deselect": (one_selected, lambda ui: not ui.editor.selection),
     "Reset Pose": (bent, lambda ui: not ui.session.is_posed and len(ui.pins) == 3),
-    "Make Pose the Rest Pose": (bent, lambda ui: not ui.session.is_posed and ui.editor.is_modified),
-    "Remember the Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
-    "Default Parameters": (
+    "Set Rest Pose from Current": (bent, lambda ui: not ui.session.is_posed and ui.editor.is_modified),
+    "Remember Rest Shape": (nothing, lambda ui: ui.session.state.settings.get("memory") == 0.0),
+    "Reset Parameters": (
         lambda ui: ui.state.change_settings(
             ui.session.state.settings.with_parameter("memory", 0.25).with_parameter("exact", True)
         ),
@@ -245,40 +245,46 @@ CASES = {
         ),
     ),
     "Fit in Window": (moved_camera, lambda ui: ui.editor.camera == fitted(ui)),
-    "100 %": (moved_camera, lambda ui: ui.editor.camera.zoom == pytest.approx(1.0)),
+    "Actual Size": (moved_camera, lambda ui: ui.editor.camera.zoom == pytest.approx(1.0)),
     "Zoom In": (moved_camera, zoom_is(1.25)),
     "Zoom Out": (moved_camera, zoom_is(0.8)),
-    "Show Mesh": (nothing, lambda ui: ui.state.show_mesh),
-    "Show Pins": (nothing, lambda ui: not ui.state.show_pins),
-    "Checkerboard": (nothing, lambda ui: not ui.state.checker),
-    "Vector Field of the Drag": (nothing, lambda ui: ui.state.view.show_vector_fields),
-    "Distortion of Areas": (nothing, lambda ui: ui.state.view.distortion_measure == "area"),
-    "Distortion of Angles": (
+    "Show Mesh": (nothing, lambda ui: ui.state.view.show_mesh),
+    "Show Pins": (nothing, lambda ui: not ui.state.view.show_pins),
+    "Show Checkerboard": (nothing, lambda ui: not ui.state.view.show_checkerboard),
+    "Show Vector Field": (nothing, lambda ui: ui.state.view.show_vector_fields),
+    "Show Area Distortion": (nothing, lambda ui: ui.state.view.distortion_measure == "area"),
+    "Show Angle Distortion": (
         lambda ui: setattr(ui.state.view, "distortion_measure", "area"),
         lambda ui: ui.state.view.distortion_measure == "angle",
     ),
-    "Rest Pose": (nothing, lambda ui: ui.state.view.show_rest_pose),
-    "Pin Trails": (nothing, lambda ui: ui.state.view.show_pin_trails),
+    "Show Rest Pose": (nothing, lambda ui: ui.state.view.show_rest_pose),
+    "Show Pin Trails": (nothing, lambda ui: ui.state.view.show_pin_trails),
     "Reference Picture...": (nothing, lambda ui: ui.file_request is not None),
     "Show Reference Picture": (
         lambda ui: ui.state.view.set_reference(ui.document.drawing.image),
         lambda ui: not ui.state.view.show_reference,
     ),
-    "Save Pose...": (nothing, lambda ui: ui.file_request is not None and ui.file_request.saving),
-    "Apply Pose...": (nothing, lambda ui: ui.file_request is not None and not ui.file_request.saving),
+    "Export Pose File...": (nothing, lambda ui: ui.file_request is not None and ui.file_request.saving),
+    "Apply Pose File...": (nothing, lambda ui: ui.file_request is not None and not ui.file_request.saving),
     "Save Recording...": (nothing, lambda ui: ui.file_request is not None and ui.file_request.saving),
-    "Two Methods Side by Side": (nothing, lambda ui: ui.state.split),
-    "Timeline": (nothing, lambda ui: ui.state.timeline.is_shown),
+    "Compare Methods": (nothing, lambda ui: ui.state.view.is_split),
+    "Show Timeline": (nothing, lambda ui: ui.state.timeline.is_shown),
     "Find Command...": (watch_palette, lambda ui: any(ui.palettes)),
-    "Keys and Mouse": (nothing, lambda ui: ui.state.part(ShortcutsPage).is_open),
+    "Keyboard Shortcuts": (nothing, lambda ui: ui.state.part(ShortcutsPage).is_open),
     "About akap-editor": (nothing, lambda ui: ui.state.part(AboutDialog).is_open),
-    "Pins": (with_tool("hand_tool"), lambda ui: ui.editor.chosen_tool is ui.editor.pins_tool),
-    "Move Canvas": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.hand_tool),
+    "Pin Tool": (with_tool("hand_tool"), lambda ui: ui.editor.chosen_tool is ui.editor.pins_tool),
+    "Hand Tool": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.hand_tool),
     "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.brush_tool),
     "Erase Stiffness": (with_tool("brush_tool"), lambda ui: ui.editor.brush_tool.brush.erasing),
-    "Smaller Brush": (with_tool("brush_tool"), lambda ui: ui.editor.brush_tool.brush.radius < Brush().radius),
-    "Larger Brush": (with_tool("brush_tool"), lambda ui: ui.editor.brush_tool.brush.radius > Brush().radius),
-    "Remove All Stiffness": (stiffened, lambda ui: ui.session.state.stiffness is None),
+    "Decrease Brush Size": (
+        with_tool("brush_tool"),
+        lambda ui: ui.editor.brush_tool.brush.radius < Brush().radius,
+    ),
+    "Increase Brush Size": (
+        with_tool("brush_tool"),
+        lambda ui: ui.editor.brush_tool.brush.radius > Brush().radius,
+    ),
+    "Clear Stiffness": (stiffened, lambda ui: ui.session.state.stiffness is None),
     "Hold Angle": (one_selected, lambda ui: [pin.angle is None for pin in ui.pins] == [True, False, True]),
 }
 
@@ -322,7 +328,7 @@ BUTTONS = [
     commands.BRUSH_TOOL,
     commands.UNDO,
     commands.REDO,
-    commands.REMOVE,
+    commands.DELETE_SELECTED,
     commands.FIT,
     commands.SHOW_MESH,
 ]
@@ -352,7 +358,9 @@ def test_chord_name(chord, name):
     assert chord_name(chord) == name
 
 
-@pytest.mark.parametrize("command", [commands.UNDO, commands.REDO, commands.REMOVE, commands.RESET_POSE])
+@pytest.mark.parametrize(
+    "command", [commands.UNDO, commands.REDO, commands.DELETE_SELECTED, commands.RESET_POSE]
+)
 def test_commands_that_have_nothing_to_do_are_disabled(pinned, command):
     assert not command.enabled(pinned.state)
     revision = pinned.document.revision
@@ -393,7 +401,7 @@ def test_space_presses_no_button_that_was_clicked_before(pinned):
     camera = pinned.editor.camera
     pinned.drag(start, (start[0] + 30, start[1]), held=Key.space)
     assert pinned.editor.camera != camera
-    assert pinned.state.show_mesh
+    assert pinned.state.view.show_mesh
 
 
 def test_keys_do_nothing_while_a_name_is_typed(pinned):
@@ -402,7 +410,7 @@ def test_keys_do_nothing_while_a_name_is_typed(pinned):
     pinned.type_name("Open picture or drawing", "mfb", enter=False)
     pinned.key(Key.delete)
     assert pinned.file_request.name == "mfb"
-    assert not pinned.state.show_mesh
+    assert not pinned.state.view.show_mesh
     assert len(pinned.pins) == 3
     pinned.key(Key.escape)
     assert pinned.file_request is None
@@ -412,24 +420,24 @@ def test_keys_do_nothing_while_a_name_is_typed(pinned):
 
 
 @pytest.mark.parametrize(
-    ("label", "name"), [("Mesh", "show_mesh"), ("Pins", "show_pins"), ("Checkerboard", "checker")]
+    ("label", "name"), [("Mesh", "show_mesh"), ("Pins", "show_pins"), ("Checkerboard", "show_checkerboard")]
 )
 def test_view_switches(pinned, label, name):
-    before = getattr(pinned.state, name)
+    before = getattr(pinned.state.view, name)
     picture = pinned.screenshot()
     pinned.panel(label)
-    assert getattr(pinned.state, name) != before
+    assert getattr(pinned.state.view, name) != before
     left, top, right, bottom = map(round, pinned.editor.canvas)
     assert (pinned.screenshot() != picture)[top:bottom, left:right].any()
     pinned.panel(label)
-    assert getattr(pinned.state, name) == before
+    assert getattr(pinned.state.view, name) == before
     assert not pinned.editor.is_modified
 
 
 def test_the_rest_shape_switch_is_an_edit(pinned):
-    pinned.panel("Remember the rest shape")
+    pinned.panel("Remember rest shape")
     assert pinned.session.state.settings.get("memory") == 0.0
-    pinned.panel("Remember the rest shape")
+    pinned.panel("Remember rest shape")
     assert pinned.session.state.settings.get("memory") == 1.0
     pinned.key(CTRL | Key.z)
     assert pinned.session.state.settings.get("memory") == 0.0
@@ -437,7 +445,7 @@ def test_the_rest_shape_switch_is_an_edit(pinned):
 
 def test_reset_pose_by_the_panel(pinned):
     bend(pinned)
-    pinned.panel("Reset pose")
+    pinned.panel("Reset Pose")
     assert not pinned.session.is_posed
 
 
@@ -464,7 +472,7 @@ def test_the_pin_list_selects(pinned):
     pin_in_list(pinned, 1)
     assert pinned.editor.selection == {1}
     assert not pinned.editor.is_modified
-    pinned.panel("Remove selected")
+    pinned.panel("Delete Selected")
     assert [pin.id for pin in pinned.pins] == [2, 3]
 
 
@@ -485,7 +493,7 @@ def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd
         assert pinned.state.error == message
     assert ("Traceback" in capfd.readouterr().err) == isinstance(error, KeyError)
     pinned.settle()
-    pinned.dialog("That did not work", "OK")
+    pinned.dialog("Error", "OK")
     assert not pinned.state.error
     bend(pinned)
     pinned.menu("Edit", "Undo")
@@ -498,7 +506,7 @@ def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd
 @pytest.mark.parametrize(
     ("label", "page", "title"),
     [
-        ("Keys and Mouse", ShortcutsPage, "Keys and mouse"),
+        ("Keyboard Shortcuts", ShortcutsPage, "Keyboard shortcuts"),
         ("About akap-editor", AboutDialog, "About akap-editor"),
     ],
 )

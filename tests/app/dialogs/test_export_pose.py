@@ -11,7 +11,7 @@ from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import read_image
 from akap_editor.render.offscreen import OffscreenRenderer
 
-EXPORT, FILE, MESSAGE = "Export", "Export to", "That did not work"
+EXPORT, FILE, MESSAGE = "Export", "Export to", "Error"
 BY_SUFFIX = {each.suffix: each for each in EXPORT_FORMATS}
 
 

@@ -118,10 +118,10 @@ def test_a_damaged_copy_is_told_and_kept(bent, crash, restart, tmp_path):
     (path,) = tmp_path.glob("*.akap")
     path.write_bytes(path.read_bytes()[:-100])
     ui = restart()
-    assert ui.state.error.startswith("Unsaved work could not be recovered: ")
+    assert ui.state.error.startswith("Couldn't recover an unsaved drawing. ")
     assert not ui.state.part(RecoveryDialog).copies
     assert path.exists()
-    ui.dialog("That did not work", "OK")
+    ui.dialog("Error", "OK")
 
 
 def test_a_crash_of_the_program_itself_keeps_the_work(bent, ui, tmp_path):

@@ -104,11 +104,11 @@ def test_a_bad_recording_is_refused_with_its_line_and_nothing_is_lost(ui, tmp_pa
     (tmp_path / "bad.akaprec").write_text("\n".join([*lines[:5], '{"t": 0, "do": "dance"}', *lines[5:]]))
     ui.drop(tmp_path / "bad.akaprec")
     assert "bad.akaprec”. Recording line 6: expected one of" in ui.state.error
-    ui.dialog("That did not work", "OK")
+    ui.dialog("Error", "OK")
     number = 1 + next(k for k, line in enumerate(lines) if '"targets"' in line)
     lines[number - 1] = lines[number - 1].replace('"targets":{"3"', '"targets":{"9"')
     (tmp_path / "bad.akaprec").write_text("\n".join(lines))
     ui.drop(tmp_path / "bad.akaprec")
     assert f"bad.akaprec”. Recording line {number}: cannot be replayed" in ui.state.error
-    ui.dialog("That did not work", "OK")
+    ui.dialog("Error", "OK")
     assert ui.session is session

@@ -2,7 +2,7 @@
 
 import pytest
 
-from akap_editor.app.panels.measurements import KEPT, Measurements
+from akap_editor.app.panels.measurements import HISTORY_LENGTH, Measurements
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.editor import Editor
@@ -34,7 +34,7 @@ def frames(measurements, session, clock, measure, count, step=1 / 60):
     for _ in range(count):
         session.step()
         session.apply(SetTargets({2: session.state.pin(2).target}))  # goes on moving, wherever the pins are
-        measurements.look(session, measure)
+        measurements.update(session, measure)
         clock.now += step
 
 
@@ -57,7 +57,7 @@ def test_the_pose_at_rest_is_measured_at_once_and_only_once(session, clock):
     session.stop_motion()
     before = len(calls)
     for _ in range(5):
-        measurements.look(session, measure)
+        measurements.update(session, measure)
     assert len(calls) == before + 1
     expected = distortion(session.drawing.mesh, session.state.positions)
     assert measurements.distortion.area == expected.area
@@ -82,10 +82,10 @@ def test_it_forgets_what_is_old_and_begins_anew_with_a_drawing(session, clock, d
     measurements = Measurements(clock)
     session.begin("Drag Pin")
     session.apply(SetTargets({2: (190.0, 60.0)}))
-    frames(measurements, session, clock, measure, KEPT + 9)
-    assert len(measurements.areas) == len(measurements.angles) == KEPT
+    frames(measurements, session, clock, measure, HISTORY_LENGTH + 9)
+    assert len(measurements.areas) == len(measurements.angles) == HISTORY_LENGTH
     other = Editor()
     other.open(new_document(drawing))
-    measurements.look(other.session, measure)
+    measurements.update(other.session, measure)
     assert len(measurements.areas) == 1
     assert measurements.frame_rate is None

@@ -44,7 +44,7 @@ def opened(pinned):
 def test_vertices_slider_gives_another_mesh_as_one_entry(opened):
     places, before = opened.session.pin_positions(), opened.document
     depth = opened.session.history.depth
-    slide(opened, "##Vertices", 0.2, 0.4, 0.6)
+    slide(opened, "##Detail", 0.2, 0.4, 0.6)
     assert not opened.state.remesher.is_active
     drawing = opened.document.drawing
     assert len(drawing.mesh.vertices) > 3 * len(before.drawing.mesh.vertices)
@@ -58,15 +58,15 @@ def test_vertices_slider_gives_another_mesh_as_one_entry(opened):
 
 def test_two_drags_are_two_entries(opened):
     depth = opened.session.history.depth
-    slide(opened, "##Expansion", 0.1, 0.5)
-    *_, wanted = slide(opened, "##Expansion", 0.5, 0.2)
+    slide(opened, "##Margin", 0.1, 0.5)
+    *_, wanted = slide(opened, "##Margin", 0.5, 0.2)
     assert opened.session.history.depth == depth + 2
     assert opened.document.drawing.meshing == wanted
     assert 2.0 < wanted.expand < 6.0
 
 
 def test_a_pin_can_be_dragged_right_after(opened):
-    slide(opened, "##Vertices", 0.2, 0.5)
+    slide(opened, "##Detail", 0.2, 0.5)
     start = opened.screen(tuple(opened.pin_place(3)))
     opened.drag(start, (start[0], start[1] - 40))
     assert opened.session.history.undo_label == "Move Pin" or opened.session.is_posed
@@ -79,7 +79,7 @@ def test_nothing_left_is_a_notice_and_all_stays(opened):
     files.show_document(opened.state, new_document(make_drawing(faint, vertices=200)))
     opened.settle()
     before = opened.document
-    slide(opened, "##Edge", 0.5, 0.97)
+    slide(opened, "##Alpha threshold", 0.5, 0.97)
     assert "transparent" in opened.state.notice
     assert not opened.state.error
     assert opened.document.state.positions.shape == before.state.positions.shape
@@ -92,12 +92,12 @@ def test_the_background_goes_and_comes_back(opened):
     opened.settle()
     area = 160 * 240
     assert opened.document.drawing.mesh.rest_areas.sum() == pytest.approx(area)
-    opened.panel("Remove background")
+    opened.panel("Remove Background")
     assert opened.document.drawing.mesh.rest_areas.sum() == pytest.approx(84 * 124, rel=0.02)
-    *_, wanted = slide(opened, "##Background", 0.2, 0.5)
+    *_, wanted = slide(opened, "##Tolerance", 0.2, 0.5)
     assert opened.document.drawing.meshing == wanted
     assert 0.2 < wanted.background < 0.4
-    opened.panel("Keep the background")
+    opened.panel("Restore Background")
     assert opened.document.drawing.image.tolist() == image.tolist()
     assert opened.session.history.depth == 3
 
@@ -109,5 +109,5 @@ def test_a_mesh_from_a_file_that_is_not_on_its_picture_says_so(opened, tmp_path)
     )
     files.show_document(opened.state, new_document(read_mesh(tmp_path / "a.obj")))
     opened.settle()
-    slide(opened, "##Expansion", 0.1, 0.5)
+    slide(opened, "##Margin", 0.1, 0.5)
     assert "cannot be made anew" in opened.state.notice

@@ -80,7 +80,7 @@ def test_a_double_click_on_the_drawing_adds_one_pin(ui):
 @pytest.mark.parametrize(
     ("label", "request_after", "pins", "selected"),
     [
-        ("Remove Selected Pins", None, 2, 0),
+        ("Delete Selected Pins", None, 2, 0),
         ("Select All Pins", None, 3, 3),
         ("Values...", PinRequest("values", 2), 3, 1),
     ],

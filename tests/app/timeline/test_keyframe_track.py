@@ -6,6 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from akap_editor.app import files
+from akap_editor.app.panels.poses import PosesSection
 from akap_editor.editor import gestures
 from akap_editor.editor.session.replay import replay
 from akap_editor.io.akap.project import load, save
@@ -200,7 +201,7 @@ def test_a_pose_is_renamed_with_a_double_click(keyed):
 
     keyed.do(rename)
     assert [pose.name for pose in keyed.session.present.poses] == ["Wave"]
-    assert keyed.state.renaming is None
+    assert keyed.state.part(PosesSection).renamed is None
 
 
 def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):

@@ -1,0 +1,29 @@
+"""The View section: what is shown besides the drawing."""
+
+from imgui_bundle import imgui
+
+from .. import widgets
+from ..app_state import AppState
+from ..canvas.view_options import DISTORTION_RANGES
+from ..commands.registry import OVERLAYS, SHOW_CHECKERBOARD, SHOW_MESH, SHOW_PINS, SHOW_REFERENCE
+
+_SWITCHES = (SHOW_MESH, SHOW_PINS, SHOW_CHECKERBOARD, *OVERLAYS, SHOW_REFERENCE)
+
+
+def draw(state: AppState, scale: float) -> None:
+    """Draw the section. scale: points per design point."""
+    for command in _SWITCHES:
+        if command.enabled(state):
+            label = command.label.removeprefix("Show ").capitalize()
+            if widgets.switch(label, command.is_checked(state), f"Key: {command.key_name}")[0]:
+                widgets.run(state, command)
+    if state.view.distortion_measure is not None:
+        imgui.align_text_to_frame_padding()
+        imgui.text("Scale ends at")
+        imgui.same_line()
+        imgui.set_next_item_width(-1)
+        ends = [f"× {limit:g}" for limit in DISTORTION_RANGES]
+        _, state.view.distortion_range = imgui.combo("##range", state.view.distortion_range, ends)
+        widgets.show_tooltip(
+            "Change of area or shape at the ends of the color scale. R selects the next one."
+        )
