@@ -75,8 +75,8 @@ def _can_redo(state: AppState) -> bool:
     return state.editor.session is not None and state.editor.session.history.redo_label is not None
 
 
-def _delete_selected(state: AppState) -> None:
-    """Delete the selected pins; if there are none, the selected keyframes."""
+def _remove_selected(state: AppState) -> None:
+    """Remove the selected pins; if there are none, delete the selected keyframes."""
     if state.editor.selection:
         gestures.remove_selected_pins(state.editor)
     else:
@@ -145,11 +145,11 @@ REDO = Command(
     icons.ICON_FA_ARROW_ROTATE_RIGHT,
     _can_redo,
 )
-DELETE_SELECTED = Command(
-    "Delete Selected Pins", _delete_selected, (Key.delete,), icons.ICON_FA_TRASH_CAN, _has_selection
+REMOVE_SELECTED = Command(
+    "Remove Selected Pins", _remove_selected, (Key.delete,), icons.ICON_FA_TRASH_CAN, _has_selection
 )
-DELETE_LAST_PIN = Command(
-    "Delete Last Pin", _on_editor(gestures.remove_last_pin), (Key.backspace,), "", _has_pins
+REMOVE_LAST_PIN = Command(
+    "Remove Last Pin", _on_editor(gestures.remove_last_pin), (Key.backspace,), "", _has_pins
 )
 SELECT_ALL = Command("Select All Pins", _on_editor(Editor.select_all), (CTRL | Key.a,), "", has_drawing)
 DESELECT = Command(
@@ -357,7 +357,7 @@ MENUS: tuple[Menu, ...] = (
         "Edit",
         (
             *(UNDO, REDO, None),
-            *(DELETE_SELECTED, DELETE_LAST_PIN, SELECT_ALL, DESELECT),
+            *(REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT),
             *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, None),
             *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE, None),
             *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS, CLEAR_STIFFNESS),

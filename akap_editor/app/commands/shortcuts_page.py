@@ -19,7 +19,7 @@ _MOUSE: tuple[Line, ...] = (
     ("Shift-click, drag a box", "Select several pins"),
     ("Double-click a pin", "Edit its values"),
     ("Right-click a pin", "Open its menu"),
-    ("Alt-click a pin", "Delete it"),
+    ("Alt-click a pin", "Remove it"),
     ("Alt-drag its ring", "Rotate around it"),
     ("Arrows", "Nudge; with Shift by 10"),
     ("C, arrows, Enter", "Point without a mouse"),

@@ -13,12 +13,12 @@ from .. import widgets
 from ..app_state import AppState
 from ..commands.command import Command
 from ..commands.registry import (
-    DELETE_SELECTED,
     HOLD_ANGLE,
     LIMB_TO_BACK,
     LIMB_TO_FRONT,
     LOWER_DEPTH,
     RAISE_DEPTH,
+    REMOVE_SELECTED,
     SELECT_ALL,
 )
 from ..pending_values import PendingValues
@@ -31,7 +31,7 @@ _FIELD_WIDTH = 126  # design points
 _MENU: tuple[Command | None, ...] = (
     *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE),
     None,
-    *(DELETE_SELECTED, SELECT_ALL),
+    *(REMOVE_SELECTED, SELECT_ALL),
 )
 
 

@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from .. import widgets
 from ..app_state import AppState
-from ..commands.registry import DELETE_SELECTED
+from ..commands.registry import REMOVE_SELECTED
 from ..theme import QUIET
 
 _ROWS = 6  # pins that are visible at once
@@ -35,6 +35,6 @@ def draw(state: AppState, scale: float) -> None:
         imgui.text_colored(ImVec4(*QUIET), target)
     imgui.end_child()
     imgui.begin_disabled(not editor.selection)
-    if imgui.button("Delete Selected", ImVec2(widgets.FULL, 0)):
-        widgets.run(state, DELETE_SELECTED)
+    if imgui.button("Remove Selected", ImVec2(widgets.FULL, 0)):
+        widgets.run(state, REMOVE_SELECTED)
     imgui.end_disabled()

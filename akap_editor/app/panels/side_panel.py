@@ -12,11 +12,11 @@ from ..commands import menu_bar
 from ..commands.command import Command, has_drawing
 from ..commands.registry import (
     BRUSH_TOOL,
-    DELETE_SELECTED,
     FIT,
     HAND_TOOL,
     PIN_TOOL,
     REDO,
+    REMOVE_SELECTED,
     SHOW_MESH,
     UNDO,
 )
@@ -28,7 +28,7 @@ from . import bending, drawing, history, measurements, mesh, pins, poses, stiffn
 _TOOLBAR: tuple[Command | None, ...] = (
     *(PIN_TOOL, HAND_TOOL, BRUSH_TOOL),
     None,
-    *(UNDO, REDO, DELETE_SELECTED),
+    *(UNDO, REDO, REMOVE_SELECTED),
     None,
     *(FIT, SHOW_MESH),
 )

@@ -231,7 +231,7 @@ class KeyframePlayback(Playback):
         """Delete the selected keyframes, or the one at the playhead."""
         times = self._affected_times()
         if times:
-            self._edit(_counted("Remove", times), DeleteKeyframes(times))
+            self._edit(_counted("Delete", times), DeleteKeyframes(times))
             self.selected = frozenset()
 
     def duplicate_keyframes(self) -> None:

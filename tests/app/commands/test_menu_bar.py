@@ -159,7 +159,7 @@ def test_arrows_choose_another_line(pinned):
     pinned.editor.select({2})
     assert lines.index("Select All Pins") == 0
     lines = [entry.label for entry, _ in ranked("sel", entries(pinned.state, PALETTE_ITEMS))]
-    wanted = lines.index("Delete Selected Pins")
+    wanted = lines.index("Remove Selected Pins")
     assert 0 < wanted < len(lines) - 1
     keys = (Key.up_arrow, *[Key.down_arrow] * (wanted + 1), Key.up_arrow)
     type_into_palette(pinned, CTRL | Key.k, "sel", *keys, Key.enter)

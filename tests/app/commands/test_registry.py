@@ -225,12 +225,12 @@ CASES = {
     "Quit": (nothing, lambda ui: ui.state.closing),
     "Undo": (bent, is_rest),
     "Redo": (undone, lambda ui: ui.session.is_posed),
-    "Delete Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
+    "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
     "Raise Depth": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, 1, 0]),
     "Lower Depth": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, -1, 0]),
     "Bring Limb to Front": (folded_behind, last_entry("Bring Limb to Front")),
     "Send Limb to Back": (folded, last_entry("Send Limb to Back")),
-    "Delete Last Pin": (nothing, lambda ui: [pin.id for pin in ui.pins] == [1, 2]),
+    "Remove Last Pin": (nothing, lambda ui: [pin.id for pin in ui.pins] == [1, 2]),
     "Select All Pins": (nothing, lambda ui: ui.editor.selection == {1, 2, 3}),
     "Deselect": (one_selected, lambda ui: not ui.editor.selection),
     "Reset Pose": (bent, lambda ui: not ui.session.is_posed and len(ui.pins) == 3),
@@ -328,7 +328,7 @@ BUTTONS = [
     commands.BRUSH_TOOL,
     commands.UNDO,
     commands.REDO,
-    commands.DELETE_SELECTED,
+    commands.REMOVE_SELECTED,
     commands.FIT,
     commands.SHOW_MESH,
 ]
@@ -359,7 +359,7 @@ def test_chord_name(chord, name):
 
 
 @pytest.mark.parametrize(
-    "command", [commands.UNDO, commands.REDO, commands.DELETE_SELECTED, commands.RESET_POSE]
+    "command", [commands.UNDO, commands.REDO, commands.REMOVE_SELECTED, commands.RESET_POSE]
 )
 def test_commands_that_have_nothing_to_do_are_disabled(pinned, command):
     assert not command.enabled(pinned.state)
@@ -472,7 +472,7 @@ def test_the_pin_list_selects(pinned):
     pin_in_list(pinned, 1)
     assert pinned.editor.selection == {1}
     assert not pinned.editor.is_modified
-    pinned.panel("Delete Selected")
+    pinned.panel("Remove Selected")
     assert [pin.id for pin in pinned.pins] == [2, 3]
 
 

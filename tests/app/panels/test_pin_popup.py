@@ -80,7 +80,7 @@ def test_a_double_click_on_the_drawing_adds_one_pin(ui):
 @pytest.mark.parametrize(
     ("label", "request_after", "pins", "selected"),
     [
-        ("Delete Selected Pins", None, 2, 0),
+        ("Remove Selected Pins", None, 2, 0),
         ("Select All Pins", None, 3, 3),
         ("Values...", PinRequest("values", 2), 3, 1),
     ],
@@ -130,5 +130,5 @@ def test_the_values_of_a_pin_have_its_angle_in_degrees(pinned):
     open_values(pinned, 2, type_angle)
     assert pinned.session.state.pin(2).angle == pytest.approx(math.radians(30))
     assert pinned.session.pin_angle(2) == pytest.approx(math.radians(30), abs=0.02)
-    open_values(pinned, 2, lambda hand: hand.item_click("//$FOCUSED/Hold this angle"))
+    open_values(pinned, 2, lambda hand: hand.item_click("//$FOCUSED/Hold angle"))
     assert pinned.session.state.pin(2).angle is None

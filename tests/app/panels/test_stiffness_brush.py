@@ -12,7 +12,7 @@ def test_the_options_of_the_brush(pinned):
     pinned.panel("Erase")
     assert pinned.editor.brush_tool.brush.erasing
     pinned.editor.apply("Paint Stiffness", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
-    pinned.panel(commands.SOFTEN_ALL.label.capitalize())
+    pinned.panel(commands.CLEAR_STIFFNESS.label)
     assert pinned.session.state.stiffness is None
 
     def slide(hand):

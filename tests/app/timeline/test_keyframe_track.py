@@ -6,7 +6,6 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from akap_editor.app import files
-from akap_editor.app.panels.poses import PosesSection
 from akap_editor.editor import gestures
 from akap_editor.editor.session.replay import replay
 from akap_editor.io.akap.project import load, save
@@ -171,37 +170,6 @@ def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
     np.testing.assert_array_equal(keyed.session.present.animation.keyframes[-1].positions, kept)
     keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Down", "//Panel/pose Up"))
     assert [pose.name for pose in keyed.session.present.poses] == ["Down", "Up"]
-
-
-def test_a_pose_is_renamed_with_f2(keyed):
-    gestures.add_pose(keyed.editor, "Up")
-    keyed.settle()
-
-    def rename(hand):
-        hand.mouse_move("//Panel/pose Up")
-        hand.key_press(imgui.Key.f2)
-        hand.key_chars_replace_enter("Wave")
-
-    keyed.do(rename)
-    assert [pose.name for pose in keyed.session.present.poses] == ["Wave"]
-    assert keyed.session.history.labels[-1] == "Rename Up"
-
-
-def test_a_pose_is_renamed_with_a_double_click(keyed):
-    gestures.add_pose(keyed.editor, "Up")
-    keyed.settle()
-
-    def rename(hand):
-        hand.mouse_move("//Panel/pose Up")
-        picture = hand.item_info("//Panel/pose Up").rect_full
-        hand.mouse_move_to_pos(imgui.ImVec2(picture.min.x + 8, picture.max.y + 12))
-        hand.mouse_double_click(0)
-        hand.yield_(5)
-        hand.key_chars_replace_enter("Wave")
-
-    keyed.do(rename)
-    assert [pose.name for pose in keyed.session.present.poses] == ["Wave"]
-    assert keyed.state.part(PosesSection).renamed is None
 
 
 def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):

@@ -8,7 +8,6 @@ from imgui_bundle import imgui
 from PIL import Image
 
 from akap_editor.app.dialogs.export_animation import AnimationExportOptions, export_animation
-from akap_editor.editor import gestures
 from akap_editor.editor.session.replay import replay
 
 
@@ -116,11 +115,3 @@ def test_the_range_is_exported(bent, tmp_path):
     export_animation(bent.state, AnimationExportOptions(), tmp_path / "wave.avi")
     bent.settle()
     assert ".avi" in bent.state.error
-
-
-def test_poses_are_kept_and_applied_with_a_click(bent):
-    gestures.add_pose(bent.editor, "Up")
-    gestures.reset_pose(bent.editor)
-    bent.panel("pose Up")
-    np.testing.assert_array_equal(bent.session.state.positions, bent.session.state.poses[0].positions)
-    assert bent.session.history.labels[-1] == "Apply Up"
