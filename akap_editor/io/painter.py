@@ -7,6 +7,7 @@ from ..editor.animation.frames import Frame
 from ..editor.document.drawing import Drawing
 from ..editor.framing import Box, Color, frame_box, output_size, union_of_boxes
 from ..geometry.validation import Floats, Ints
+from ..overlap.seams import CutMesh
 from .images import Picture
 
 
@@ -20,12 +21,12 @@ class Painter(Protocol):
         box: Box,
         scale: float,
         background: Color | None,
-        order: Ints | None,
+        order: Ints | CutMesh | None,
     ) -> Picture:
         """The pose ``positions`` (n, 2) as a picture (h, w, 4) uint8, straight alpha.
 
         box: the part of the drawing plane that is shown; scale: pixels per drawing unit; background: None for
-        transparent; order (m,): of the faces, from back to front, or None for that of the mesh.
+        transparent; order: what is drawn from back to front, see `Document.draw_order`.
         """
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -43,6 +44,15 @@ class Overlaps:
 
     def __len__(self) -> int:
         return len(self.pairs)
+
+    @cached_property
+    def has_seam(self) -> bool:
+        """Whether there is a region in which not all pairs have the same sign."""
+        if not len(self):
+            return False
+        begins = np.searchsorted(self.pairs.regions, np.arange(self.pairs.region_count))
+        least, most = (choose.reduceat(self.signs, begins) for choose in (np.minimum, np.maximum))
+        return bool((least != most).any())
 
     @property
     def low_and_high(self) -> tuple[Ints, Ints]:

@@ -12,6 +12,7 @@ from ..editor.document.drawing import Drawing
 from ..editor.framing import Box, Color, frame_box, output_size
 from ..errors import GraphicsError
 from ..geometry.validation import Ints, as_points
+from ..overlap.seams import CutMesh
 from .renderer import Background, Renderer
 from .shaders import load_program
 
@@ -67,14 +68,14 @@ class OffscreenRenderer:
         box: Box | None = None,
         scale: float = 1.0,
         background: Color | None = None,
-        order: Ints | None = None,
+        order: Ints | CutMesh | None = None,
     ) -> NDArray[np.uint8]:
         """Render the drawing in a pose to (h, w, 4) uint8, straight alpha; transparent pixels are black.
 
         positions: (n, 2) drawing units; box: the part of the drawing plane to show, by default `frame_box` of
         the pose; scale: pixels per drawing unit, the size is rounded up (see `output_size`); background: None
         for transparent; order: (m,) the faces in drawing order, the last one in front, see
-        `Document.face_order`. In the rest pose the result equals the drawing's picture wherever the mesh
+        `Document.draw_order`. In the rest pose the result equals the drawing's picture wherever the mesh
         covers it. The picture may be larger than the driver's limit. Raises InputError for a bad argument or
         a picture that is too large, GraphicsError without OpenGL 3.3.
         """

@@ -11,6 +11,7 @@ from ..editor.document.drawing import Drawing
 from ..editor.framing import Color
 from ..errors import InputError
 from ..geometry.validation import Floats, Ints
+from ..overlap.seams import CutMesh
 from .overlays import NO_OVERLAYS, FaceColorPainter, LinePainter, Overlays, Reference, Rgba
 from .shaders import View, load_program
 
@@ -55,16 +56,19 @@ class Renderer:
         self._drawing: Drawing | None = None
         self._positions: Floats | None = None
         self._order: Ints | None = None
+        self._cut: CutMesh | None = None
+        self._cut_positions: Floats | None = None
+        self._cut_objects: list[moderngl.Buffer | moderngl.VertexArray] = []
         self._drawing_objects: list[moderngl.Buffer | moderngl.Texture | moderngl.VertexArray] = []
         self._reference: Reference | None = None
         self._reference_objects: list[moderngl.Buffer | moderngl.Texture | moderngl.VertexArray] = []
 
-    def show(self, drawing: Drawing, positions: Floats, order: Ints | None = None) -> None:
+    def show(self, drawing: Drawing, positions: Floats, order: Ints | CutMesh | None = None) -> None:
         """Upload the drawing in the pose ``positions``, (n, 2) float64 in drawing units.
 
-        order: (m,) the faces in drawing order, the last one in front; by default that of the mesh. Arguments
-        are compared by identity with those of the last call, and only what changed is uploaded. Raises
-        InputError if the shape of ``positions`` does not fit the drawing.
+        order: (m,) the faces in drawing order, the last one in front, or the mesh cut along seams; by default
+        the order of the mesh. Arguments are compared by identity with those of the last call, and only what
+        changed is uploaded. Raises InputError if the shape of ``positions`` does not fit the drawing.
         """
         expected = drawing.mesh.vertices.shape
         if positions.shape != expected:
@@ -75,10 +79,32 @@ class Renderer:
             self._position_buffer.orphan()  # otherwise the driver waits until the last frame is drawn
             self._position_buffer.write(np.ascontiguousarray(positions, dtype=np.float32))
             self._positions = positions
+        cut = order if isinstance(order, CutMesh) else None
+        if cut is not None and (cut is not self._cut or positions is not self._cut_positions):
+            self._upload_cut(drawing, positions, cut)
+        self._cut, self._cut_positions = cut, positions if cut is not None else None
+        order = order.order if isinstance(order, CutMesh) else order
         if order is not self._order:
             faces = drawing.mesh.faces if order is None else drawing.mesh.faces[order]
             self._face_buffer.write(faces.astype(np.uint32))
             self._order = order
+
+    def _upload_cut(self, drawing: Drawing, positions: Floats, cut: CutMesh) -> None:
+        """Upload a mesh cut along seams; it differs in every pose, so nothing of it is kept."""
+        self._release_cut()
+        ctx = self._ctx
+        places = ctx.buffer(np.ascontiguousarray(cut.values(positions), dtype=np.float32))
+        uv = ctx.buffer(np.ascontiguousarray(cut.values(drawing.uv.astype(np.float64)), dtype=np.float32))
+        faces = ctx.buffer(cut.faces.astype(np.uint32))
+        self._cut_mesh = ctx.vertex_array(
+            self._mesh_program, [(places, "2f", "in_position"), (uv, "2f", "in_uv")], faces
+        )
+        self._cut_objects = [self._cut_mesh, places, uv, faces]
+
+    def _release_cut(self) -> None:
+        for item in self._cut_objects:
+            item.release()
+        self._cut_objects, self._cut, self._cut_positions = [], None, None
 
     def hide(self) -> None:
         """Draw no drawing until the next `show`."""
@@ -122,7 +148,7 @@ class Renderer:
         if overlays.face_colors is not None:
             self._face_colors.draw(self._face_color_mesh, overlays.face_colors, self._order, view)
         else:
-            self._draw_textured(self._mesh, 1.0, view)
+            self._draw_textured(self._mesh if self._cut is None else self._cut_mesh, 1.0, view)
         if overlays.mesh_lines:
             self._edge_program["view"] = view
             self._edge_program["viewport"] = size
@@ -233,6 +259,7 @@ class Renderer:
         for item in self._drawing_objects:
             item.release()
         self._drawing_objects = []
+        self._release_cut()
         self._drawing = self._positions = self._order = None
 
     def _make_texture(self, image: NDArray[np.uint8]) -> moderngl.Texture:

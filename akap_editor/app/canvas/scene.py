@@ -6,6 +6,7 @@ import moderngl
 
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
+from ...overlap.seams import CutMesh
 from ...render.frame_cache import FrameCache
 from ...render.overlays import NO_OVERLAYS, Overlays
 from ...render.renderer import CANVAS, Background, Renderer
@@ -29,7 +30,7 @@ class PosedDrawing:
 
     drawing: Drawing
     positions: Floats
-    order: Ints | None
+    order: Ints | CutMesh | None
     view: View
     region: tuple[int, int, int, int] | None = None
 
@@ -105,7 +106,7 @@ def scene_content(
     if document is None:
         return SceneContent(size, background)
     view = state.editor.camera.view(*window)
-    main = PosedDrawing(document.drawing, document.state.positions, document.face_order, view)
+    main = PosedDrawing(document.drawing, document.state.positions, document.draw_order, view)
     comparison = _comparison(state, size, window, density)
     return SceneContent(size, background, main, comparison, overlays)
 
@@ -122,7 +123,7 @@ def _comparison(
     return PosedDrawing(
         session.drawing,
         session.state.positions,
-        session.document.face_order,
+        session.document.draw_order,
         comparison_camera(state.editor.camera, canvas).view(*window),
         region=(left, size[1] - bottom, right - left, bottom - top),
     )

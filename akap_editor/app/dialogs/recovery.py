@@ -70,7 +70,7 @@ class RecoveryDialog:
             low_x, low_y, high_x, high_y = frame_box(document.drawing, [positions])
             scale = pixels / max(high_x - low_x, high_y - low_y)
             picture = state.exporter.render(
-                document.drawing, positions, scale=scale, order=document.face_order
+                document.drawing, positions, scale=scale, order=document.draw_order
             )
         except AkapError as error:
             self.copies.remove(copy)

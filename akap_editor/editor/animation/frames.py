@@ -7,6 +7,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints, as_number
+from ...overlap.seams import CutMesh
 from ..document.drawing import Drawing
 from ..document.easing import easing_function
 from ..session.recording import MAX_TIME
@@ -18,11 +19,11 @@ T = TypeVar("T")
 
 
 class Frame(NamedTuple):
-    """A drawing in a pose (n, 2); order (m,): of its faces from back to front, or None for the mesh's own."""
+    """A drawing in a pose (n, 2); order: what is drawn from back to front, see `Document.draw_order`."""
 
     drawing: Drawing
     pose: Floats
-    order: Ints | None = None
+    order: Ints | CutMesh | None = None
 
 
 def frame_times(start: float, end: float, fps: float, speed: float = 1.0, ease: str = "none") -> list[float]:

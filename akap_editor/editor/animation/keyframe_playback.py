@@ -8,7 +8,7 @@ from typing import Literal
 from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
-from ..document.crossings import face_order
+from ..document.crossings import draw_order
 from ..document.document import Document
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
 from ..document.pin import Pin
@@ -131,7 +131,7 @@ class KeyframePlayback(Playback):
         session, pose = self._editor.session, self._pose_and_crossings(time)
         assert session is not None
         assert pose is not None, "expected keyframes"
-        order = face_order(session.drawing.mesh, session.present.pins, *pose)
+        order = draw_order(session.drawing.mesh, session.present.pins, *pose)
         return Frame(session.drawing, pose[0], order)
 
     def onion_poses(self) -> tuple[list[Floats], list[Floats]]:
@@ -338,7 +338,7 @@ def animation_frame(
     pose, crossings = animation_crossings(
         interpolation, blend or CrossingBlend(), mesh, pins, animation, time
     )
-    return Frame(document.drawing, pose, face_order(mesh, pins, pose, crossings))
+    return Frame(document.drawing, pose, draw_order(mesh, pins, pose, crossings))
 
 
 def stretch_times(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:

@@ -11,7 +11,7 @@ import numpy as np
 from ...deform.deformer import StepResult
 from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.validation import Floats, as_number
-from ..document.crossings import crossings_in_pose, face_order
+from ..document.crossings import crossings_in_pose, draw_order
 from ..document.document import EditState
 from ..document.drawing import Drawing
 from ..session.recording import MAX_TIME, Recording
@@ -61,7 +61,7 @@ def _state_frame(drawing: Drawing, state: EditState, pose: Floats) -> Frame:
     mesh, crossings = drawing.mesh, state.crossings
     if pose is not state.positions:
         crossings = crossings_in_pose(mesh, state.pins, state.positions, crossings, pose)
-    return Frame(drawing, pose, face_order(mesh, state.pins, pose, crossings))
+    return Frame(drawing, pose, draw_order(mesh, state.pins, pose, crossings))
 
 
 class Motion:

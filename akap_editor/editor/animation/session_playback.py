@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from time import monotonic
 
 from ...deform.pose_interpolation import InterpolationCache
-from ..document.crossings import crossings_in_pose, face_order
+from ..document.crossings import crossings_in_pose, draw_order
 from ..document.document import EditState
 from ..document.drawing import Drawing
 from ..session.session import Session
@@ -150,4 +150,4 @@ class SessionPlayback(Playback):
         state, crossings = snapshot.state, snapshot.state.crossings
         if pose is not state.positions:
             crossings = crossings_in_pose(mesh, state.pins, state.positions, crossings, pose)
-        return Frame(snapshot.drawing, pose, face_order(mesh, state.pins, pose, crossings))
+        return Frame(snapshot.drawing, pose, draw_order(mesh, state.pins, pose, crossings))

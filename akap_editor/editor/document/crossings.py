@@ -20,6 +20,7 @@ from ...overlap.overlaps import (
     restored_overlaps,
 )
 from ...overlap.rules import Rules
+from ...overlap.seams import CutMesh, cut_along_seams
 from .pin import MAX_DEPTH, Pin
 
 LEVELS_PER_DEPTH = 4  # faces of one level keep the order of the mesh, so that a limb is drawn as a whole
@@ -54,7 +55,7 @@ class _IdentityCache:
                 del self._entries[next(iter(self._entries))]
 
 
-_overlaps, _orders = _IdentityCache(), _IdentityCache()
+_overlaps, _orders, _cuts = _IdentityCache(), _IdentityCache(), _IdentityCache()
 
 
 def as_crossings(value: ArrayLike, face_count: int = MAX_FACES) -> Ints:
@@ -187,6 +188,22 @@ def overlap_order(mesh: TriMesh, pins: Sequence[Pin], overlaps: Overlaps) -> Int
 def face_order(mesh: TriMesh, pins: Sequence[Pin], positions: Floats, crossings: Ints) -> Ints | None:
     """Indices of the faces from back to front in a pose (n, 2); None stands for the order of the mesh."""
     return overlap_order(mesh, pins, overlaps_of(mesh, pins, positions, crossings))
+
+
+def draw_order(
+    mesh: TriMesh, pins: Sequence[Pin], positions: Floats, crossings: Ints
+) -> Ints | CutMesh | None:
+    """What is drawn in a pose (n, 2), from back to front: `face_order`, or the mesh cut along its seams."""
+    overlaps = overlaps_of(mesh, pins, positions, crossings)
+    order = overlap_order(mesh, pins, overlaps)
+    if order is None or not overlaps.has_seam:
+        return order
+    found = _cuts.get(overlaps, order)
+    if found is None:
+        found = cut_along_seams(mesh, overlaps, order) or order
+        _cuts.put(found, overlaps, order)
+    assert isinstance(found, CutMesh | np.ndarray)
+    return found
 
 
 # -- depths of pins -----------------------------------------------------------------------------------------

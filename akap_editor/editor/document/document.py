@@ -7,7 +7,8 @@ import numpy as np
 
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.validation import Floats, Ints, as_floats, as_instance
-from .crossings import as_crossings, face_order, no_crossings
+from ...overlap.seams import CutMesh
+from .crossings import as_crossings, draw_order, face_order, no_crossings
 from .drawing import Drawing
 from .keyframes import NO_ANIMATION, Animation
 from .named_poses import NamedPose
@@ -93,6 +94,12 @@ class Document:
         """Indices of the faces from back to front, (m,) int; None stands for the order of the mesh."""
         state = self.state
         return face_order(self.drawing.mesh, state.pins, state.positions, state.crossings)
+
+    @property
+    def draw_order(self) -> Ints | CutMesh | None:
+        """What is drawn, from back to front: `face_order`, or the mesh cut along its seams."""
+        state = self.state
+        return draw_order(self.drawing.mesh, state.pins, state.positions, state.crossings)
 
     def with_state(self, state: EditState) -> "Document":
         """This document with another state and the next revision."""

@@ -57,7 +57,7 @@ def _encode_png(document: Document, stem: str, options: ExportOptions, painter: 
         raise InputError("expected a painter for a picture, e.g. an OffscreenRenderer, got None")
     drawing, pose = document.drawing, document.state.positions
     box = crop_box(drawing, pose, options.crop)
-    picture = painter.render(drawing, pose, box, options.scale, options.background, document.face_order)
+    picture = painter.render(drawing, pose, box, options.scale, options.background, document.draw_order)
     return {f"{stem}.png": encode_png(picture)}
 
 

@@ -69,10 +69,13 @@ class _Part:
 
 
 def _parts(mesh: TriMesh) -> list[_Part]:
-    """The components from back to front, because slots are drawn in order."""
-    first = mesh.component[mesh.faces[:, 0]]
-    numbers = list(dict.fromkeys(first.tolist()))
-    return [_Part(mesh, number) for number in numbers]
+    """The components from back to front, because slots are drawn in order.
+
+    A component is as far in front as its faces are on average.
+    """
+    components = mesh.component[mesh.faces[:, 0]]
+    ranks = np.bincount(components, np.arange(len(components))) / np.bincount(components)
+    return [_Part(mesh, int(number)) for number in np.argsort(ranks, kind="stable")]
 
 
 def _attachment(drawing: Drawing, part: _Part, rest: Floats, texture: str) -> dict[str, Any]:
