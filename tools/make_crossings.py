@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from akap_editor.editor.document.crossings import overlaps_of
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.session.edits import OrderLimb, SetTargets
@@ -65,14 +66,6 @@ class Scene:
     image: Path
     pins: Sequence[Point]
     drags: Sequence[Drag]
-
-
-def rope_drags() -> list[Drag]:
-    """Both ends of the rope are led into a trefoil, over and under."""
-    return [
-        Drag((1130, 120), arc((1130, 120), (870, 120), -200, 60) + line((626, 209), (700, 330), 15)),
-        Drag((70, 120), arc((70, 120), (330, 120), 200, 60) + line((574, 209), (500, 330), 15)),
-    ]
 
 
 SCENES = {
@@ -146,6 +139,48 @@ def bend(scene: Scene, vertices: int = 2000) -> Session:
     return session
 
 
+def trefoil(places: np.ndarray, share: float, length: float) -> np.ndarray:
+    """Points (k, 2) of the axis of a rope, at ``places`` (k,) from 0 to 1, on its way to a trefoil, at 1."""
+    t = np.linspace(0.12, 2 * np.pi - 0.12, 4000)
+    x, y = np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t)
+    heading = np.unwrap(np.arctan2(np.gradient(y), np.gradient(x)))
+    steps = np.hypot(np.diff(x), np.diff(y))
+    arc_length = np.concatenate([[0], np.cumsum(steps)])
+    angles = heading.mean() + share * (heading[1:] - heading.mean())
+    scale = length / arc_length[-1]
+    along = [np.concatenate([[0], np.cumsum(turn(angles) * steps)]) * scale for turn in (np.cos, np.sin)]
+    return np.stack([np.interp(places * arc_length[-1], arc_length, axis) for axis in along], axis=1)
+
+
+def tie_rope(pin_count: int = 28, steps: int = 160) -> Session:
+    """A session in which the rope is tied into a trefoil that passes over and under in turn."""
+    session = Session(new_document(make_drawing(read_image(BUNDLED / "rope.png"), vertices=2500)))
+    places = np.linspace(0.02, 0.98, pin_count)
+    width, height = session.drawing.size
+    session.begin("Add Pins")
+    pins = [add_pin(session, (float(place) * width, height / 2)) for place in places]
+    session.commit()
+    session.begin("Drag Pins")
+    for share in np.linspace(0, 1, steps + 1)[1:]:
+        points = trefoil(places, float(share), width).tolist()
+        session.apply(SetTargets({pin: (x, y) for pin, (x, y) in zip(pins, points, strict=True) if pin}))
+        session.step()
+    session.settle()
+    # Every second passage along the rope goes over.
+    state, mesh = session.state, session.drawing.mesh
+    overlaps = overlaps_of(mesh, state.pins, state.positions, state.crossings)
+    middles = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] / width
+    passages = sorted(
+        float(middles[faces[overlaps.pairs.regions == region]].mean())
+        for region in range(overlaps.pairs.region_count)
+        for faces in (overlaps.pairs.first, overlaps.pairs.second)
+    )
+    for passage in passages[::2]:
+        session.apply(OrderLimb([int(np.argmin(np.abs(places - passage))) + 1], True))
+    session.commit()
+    return session
+
+
 def nearest_pin(session: Session, place: np.ndarray) -> int:
     """The pin at a place of the pose, added if there is none."""
     pins = session.state.pins
@@ -172,12 +207,11 @@ def pictures(session: Session, height: int = HEIGHT) -> Iterator[np.ndarray]:
 def main() -> None:
     """Draw the scenes named on the command line, by default all."""
     OUTPUT.mkdir(parents=True, exist_ok=True)
-    for name in sys.argv[1:] or SCENES:
-        scene = SCENES[name]
-        if not scene.image.exists():
-            print(f"{name}: skipped, {scene.image} is absent")
+    for name in sys.argv[1:] or (*SCENES, "rope"):
+        if name in SCENES and not SCENES[name].image.exists():
+            print(f"{name}: skipped, {SCENES[name].image} is absent")
             continue
-        before, after = pictures(bend(scene))
+        before, after = pictures(tie_rope() if name == "rope" else bend(SCENES[name]))
         gap = np.full((len(before), GAP, 3), 255, dtype=np.uint8)
         picture = Image.fromarray(np.hstack([before, gap, after])).quantize(255, dither=Image.Dither.NONE)
         picture.save(OUTPUT / f"{name}.png", optimize=True)

@@ -12,7 +12,15 @@ from PIL import Image
 from akap_editor.io.images import write_png
 from akap_editor.resources import resource
 
-WIDTHS = {"alien": 1000, "bar": 1120, "cat": 1000, "elephant": 1000, "gingerbread": 1000, "raptor": 1100}
+WIDTHS = {
+    "alien": 1000,
+    "bar": 1120,
+    "cat": 1000,
+    "elephant": 1000,
+    "gingerbread": 1000,
+    "raptor": 1100,
+    "rope": 2000,
+}
 
 
 def main() -> None:
