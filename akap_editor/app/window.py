@@ -51,8 +51,10 @@ NATIVE_DIALOG_SECONDS = 0.1  # between two looks at a dialog of the system, see 
 def _precompile() -> None:
     """Load and compile the engine; in a thread, so that the window appears first."""
     from ..deform.precompile import precompile
+    from ..overlap.precompile import precompile as precompile_overlaps
 
     precompile()
+    precompile_overlaps()
 
 
 def render_imgui() -> None:
