@@ -15,7 +15,7 @@ from .face_pairs import FacePairs, no_face_pairs, overlapping_faces, pair_index
 from .least_cut import cut_signs, seam_pairs, spread_signs
 from .memory import carried_signs, tally
 from .rules import Rules
-from .topology import Topology, mesh_topology
+from .topology import Topology, face_centers, mesh_topology
 
 _JUMP = 0.15  # share of the mesh's length: a region that moved less far on both sheets is the same one
 _NEGLIGIBLE = 1e-4  # share of the mesh's area: of two decisions in one region the smaller is dropped
@@ -374,18 +374,6 @@ def find_pairs(first: Ints, second: Ints, seconds: Ints, heads: Ints, starts: In
             indices[i] = pair_index(second[i], first[i], seconds, heads, starts, links)
             signs[i] = -1
     return indices, signs
-
-
-_centers: tuple[TriMesh, Floats] | None = None
-
-
-def face_centers(mesh: TriMesh) -> Floats:
-    """(m, 2) middles of the faces at rest; cached for the mesh last asked for."""
-    global _centers
-    cached = _centers
-    if cached is None or cached[0] is not mesh:
-        cached = _centers = mesh, np.ascontiguousarray(mesh.vertices[mesh.faces].mean(axis=1))
-    return cached[1]
 
 
 def _sheet_centers(mesh: TriMesh, overlaps: Overlaps) -> list[Floats]:

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..geometry.mesh import TriMesh
-from ..geometry.validation import Ints
+from ..geometry.validation import Floats, Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,3 +59,9 @@ def mesh_topology(mesh: TriMesh) -> Topology:
         np.array([leaving[loop[0]] for loop in mesh.boundary_loops]),
     )
     return Topology(*(np.ascontiguousarray(array, dtype=np.int32) for array in arrays))
+
+
+@lru_cache(maxsize=8)
+def face_centers(mesh: TriMesh) -> Floats:
+    """The centers of the faces of a mesh at rest, (m, 2) pixels; cached."""
+    return np.ascontiguousarray(mesh.vertices[mesh.faces].mean(axis=1))
