@@ -62,13 +62,14 @@ class StepResult:
 
 
 class Deformer(Protocol):
-    """Bends a mesh by its pins.
+    """Deforms a mesh by its pins; the contract of every method.
 
     The constructor prepares what depends on the rest mesh, `set_pins` what depends on where the pins are, and
     `step` the rest. Arguments are never modified. The result depends only on the arguments of constructor,
     `set_pins` and `step`; a cache may change the cost of a step, and its result within the method's stated
-    tolerance. The result is finite, or SolverError is raised. Moving, rotating or scaling rest pose,
-    positions and targets together does the same to the result; renumbering the vertices renumbers it.
+    tolerance. It is finite, or SolverError is raised. Moving, rotating or scaling rest pose, positions and
+    targets together does the same to the result; renumbering the vertices renumbers it. Components without
+    pins stay where they are.
 
     A method can do more than this contract asks for; the attributes say what.
 
