@@ -1,5 +1,6 @@
 """The pages: links and names of files and commands are valid, and scripts make the screenshots."""
 
+import ast
 import importlib.util
 import re
 from functools import cache
@@ -95,3 +96,24 @@ def test_presets_of_the_paper_have_their_labels():
         for preset in METHODS["akap"].presets
         if f"| `{preset.spec}` | {preset.label} |" not in page
     ]
+
+
+LABEL = re.compile(r"(?<!\*)\*([A-Z][^*\n]+)\*(?!\*)")  # in italics
+OTHER_PROGRAMS = {"Join as Shapes"}
+
+
+@pytest.mark.parametrize("name", ["start", "posing", "view", "animation", "exporting"])
+def test_named_labels_are_on_the_screen(name):
+    labels = set(LABEL.findall((ROOT / "docs" / f"{name}.md").read_text("utf-8"))) - OTHER_PROGRAMS
+    shown = labels_on_the_screen()
+    unknown = [label for label in labels if not {text.rstrip("…") for text in label.split(" > ")} <= shown]
+    assert not unknown
+
+
+@cache
+def labels_on_the_screen():
+    """The constant texts of the app and of the edits, without dots at the end."""
+    folders = [ROOT / "akap_editor" / "app", ROOT / "akap_editor" / "editor"]
+    trees = [ast.parse(path.read_text("utf-8")) for folder in folders for path in folder.rglob("*.py")]
+    texts = {node.value for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+    return {text.rstrip(".") for text in texts if isinstance(text, str)}
