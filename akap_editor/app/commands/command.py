@@ -8,8 +8,20 @@ from imgui_bundle import imgui
 
 from ..app_state import AppState
 
-CTRL, SHIFT = imgui.Key.mod_ctrl, imgui.Key.mod_shift
 Key = imgui.Key
+
+
+class Modifier(int):
+    """A modifier key; ``CTRL | Key.s`` is a chord.
+
+    Python before 3.11.4 cannot combine members of ImGui's enumeration, whose values have several bits.
+    """
+
+    def __or__(self, other: int) -> "Modifier":
+        return Modifier(int(self) | int(other))
+
+
+CTRL, SHIFT, ALT = map(Modifier, (Key.mod_ctrl, Key.mod_shift, Key.mod_alt))
 CONTEXT_MENU_KEYS = (SHIFT | Key.f10, Key.menu)
 _NAVIGATION_KEYS = frozenset(
     int(key)

@@ -7,6 +7,7 @@ import glfw
 import numpy as np
 import pytest
 
+from akap_editor.app.commands.command import CTRL
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.session.stepper import PIN_TOLERANCE
@@ -68,7 +69,7 @@ def test_press_and_drag_on_the_drawing_adds_a_pin_and_bends_in_one_gesture(ui):
     ui.drag(start, end)
     assert np.linalg.norm(ui.pin_place(2) - ui.place(end)) < PIN_TOLERANCE
     assert ui.session.history.undo_label == "Add and Drag Pin"
-    ui.key(Key.mod_ctrl | Key.z)
+    ui.key(CTRL | Key.z)
     assert [pin.id for pin in ui.pins] == [1]
     assert pose(ui).tobytes() == before.tobytes()
 
@@ -239,11 +240,11 @@ def lose_focus(ui, hand):
 
 
 def undo(ui, hand):
-    hand.key_press(Key.mod_ctrl | Key.z)
+    hand.key_press(CTRL | Key.z)
 
 
 def open_dialog(ui, hand):
-    hand.key_press(Key.mod_ctrl | Key.o)
+    hand.key_press(CTRL | Key.o)
     hand.yield_(2)
     assert ui.file_request is not None
     hand.mouse_up(0)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app.commands import registry as commands
+from akap_editor.app.commands.command import SHIFT
 
 Key = imgui.Key
 
@@ -18,7 +19,7 @@ def test_arrows_nudge_also_after_a_click_on_a_panel(pinned):
 
     def nudge(hand):
         hand.item_click(f"//Tools/{commands.SHOW_MESH.icon}##{commands.SHOW_MESH.label}")
-        for chord in (Key.up_arrow, Key.up_arrow, Key.mod_shift | Key.left_arrow):
+        for chord in (Key.up_arrow, Key.up_arrow, SHIFT | Key.left_arrow):
             hand.key_press(int(chord))
 
     pinned.do(nudge)

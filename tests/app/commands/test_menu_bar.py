@@ -4,12 +4,10 @@ from imgui_bundle import imgui  # isort: skip
 import pytest
 
 from akap_editor.app import files
-from akap_editor.app.commands.command import CTRL, SHIFT, Key, Submenu
+from akap_editor.app.commands.command import ALT, CTRL, SHIFT, Key, Submenu
 from akap_editor.app.commands.palette import Entry, Palette, entries, match, ranked
 from akap_editor.app.commands.registry import COMMANDS, MENUS, PALETTE_ITEMS
 from akap_editor.resources import bundled_drawings
-
-ALT = Key.mod_alt
 
 
 def open_menus():

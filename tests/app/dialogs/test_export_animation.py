@@ -10,6 +10,7 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
+from akap_editor.app.commands.command import CTRL, SHIFT
 from akap_editor.app.dialogs.export_animation import (
     DIALOG_FORMATS,
     PREFERENCE,
@@ -49,7 +50,7 @@ def frames_of(path):
 
 def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
     keyed.state.folder = tmp_path
-    keyed.key(imgui.Key.mod_ctrl | imgui.Key.mod_shift | imgui.Key.e)
+    keyed.key(CTRL | SHIFT | imgui.Key.e)
     keyed.dialog(TITLE, "**/APNG", "**/60", "Export...")
     keyed.type_name(TITLE, "wave")
     keyed.settle()

@@ -6,6 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from akap_editor.app import files
+from akap_editor.app.commands.command import SHIFT
 from akap_editor.editor import gestures
 from akap_editor.editor.session.replay import replay
 from akap_editor.io.akap.project import load, save
@@ -104,7 +105,7 @@ def test_several_are_chosen_with_shift_and_moved_together(keyed):
     keyed.click(on_track(keyed, 1.0), shift=True)
     keyed.drag(on_track(keyed, 0.5), on_track(keyed, 0.7))
     assert times(keyed) == pytest.approx((0.0, 0.7, 1.2))
-    keyed.key(imgui.Key.mod_shift | imgui.Key.k)
+    keyed.key(SHIFT | imgui.Key.k)
     assert times(keyed) == (0.0,)
 
 
@@ -252,7 +253,7 @@ def test_without_the_timeline_the_present_is_seen(keyed):
     keyed.state.timeline.keyframe_playback.scrub(0.5)
     keyed.settle()
     assert keyed.session.is_previewing
-    keyed.key(imgui.Key.mod_shift | imgui.Key.t)
+    keyed.key(SHIFT | imgui.Key.t)
     assert not keyed.session.is_previewing
-    keyed.key(imgui.Key.mod_shift | imgui.Key.t)
+    keyed.key(SHIFT | imgui.Key.t)
     assert not keyed.session.is_previewing
