@@ -121,12 +121,12 @@ def measure(drawing: Drawing, name: str, method: str, settings: dict[str, Any], 
 def _table(rows: list[BenchRow]) -> str:
     width = max(len("method"), *(len(row.method) for row in rows))
     lines = [
-        f"{'method':<{width}} {'vertices':>9} {'prepare':>9} {'median':>9} {'95 %':>9}"
+        f"{'method':<{width}} {'vertices':>9} {'prepare':>12} {'median':>12} {'95 %':>12}"
         f" {'E_area':>9} {'E_angle':>9} {'flipped':>8} {'pin error':>10}"
     ]
     lines += [
-        f"{row.method:<{width}} {row.vertices:>9} {row.prepare_ms:>6.1f} ms {row.median_ms:>6.2f} ms"
-        f" {row.slowest_ms:>6.2f} ms {row.area:>9.4f} {row.angle:>9.4f} {row.flipped:>8}"
+        f"{row.method:<{width}} {row.vertices:>9} {row.prepare_ms:>9.1f} ms {row.median_ms:>9.2f} ms"
+        f" {row.slowest_ms:>9.2f} ms {row.area:>9.4f} {row.angle:>9.4f} {row.flipped:>8}"
         f" {row.pin_error:>7.2f} px"
         for row in rows
     ]

@@ -4,7 +4,7 @@ from imgui_bundle import imgui
 
 from .. import files, widgets
 from ..app_state import AppState
-from .command import ALT, Command, Key, Submenu
+from .command import ALT, Command, Submenu
 from .registry import MENUS
 
 _MAX_NAME_WIDTH = 24  # of a file, times the font size
@@ -39,7 +39,7 @@ def _requested_by_key() -> str:
     if imgui.is_key_pressed(imgui.Key.f10, False) and not imgui.get_io().key_shift:  # opens context menus
         return _NAMES[0]
     for name in _NAMES:
-        if imgui.is_key_chord_pressed(ALT | Key[name[0].lower()]):
+        if imgui.is_key_chord_pressed(ALT | imgui.Key[name[0].lower()]):
             return name
     return ""
 

@@ -4,12 +4,10 @@ from imgui_bundle import imgui  # isort: skip
 import pytest
 
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES
-from akap_editor.app.commands.command import SHIFT, Key
+from akap_editor.app.commands.command import ALT, CTRL, SHIFT, Key
 from akap_editor.app.dialogs.first_steps import FirstSteps
 from akap_editor.editor import gestures
 from akap_editor.editor.tools.keyboard_pointer import BIG_STEP, STEP
-
-ALT, CTRL = Key.mod_alt, Key.mod_ctrl
 
 
 @pytest.fixture(autouse=True)

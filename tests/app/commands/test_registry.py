@@ -480,7 +480,10 @@ def test_the_pin_list_selects(pinned):
     ("error", "message"),
     [
         (SolverError("the numbers are not finite"), "the numbers are not finite"),
-        (KeyError("oops"), "Something went wrong in the program (KeyError: 'oops')"),
+        (
+            KeyError("oops"),
+            "Something went wrong in the program (KeyError: 'oops'). Your drawing is still open.",
+        ),
     ],
 )
 def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd, error, message):

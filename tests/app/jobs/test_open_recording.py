@@ -91,7 +91,7 @@ def test_opening_a_recording_is_stopped_half_way_or_cancelled(ui, tmp_path, monk
     files.open_path(ui.state, tmp_path / "wave.akaprec")
     for _ in range(12):
         ui.frame()
-    ui.dialog("Opening wave.akaprec", "Stop here")
+    ui.dialog("Opening wave.akaprec", "Stop Here")
     assert ui.session is not session
     assert 0 < len(ui.session.recording.events) < len(session.recording.events)
 
