@@ -136,7 +136,7 @@ def test_the_values_of_a_pin_are_changed_by_keys(pinned):
 
 
 def test_the_menu_of_a_pin_is_walked_by_keys(pinned):
-    keys(pinned, Key.j, SHIFT | Key.f10, *[Key.down_arrow] * 1, Key.enter)
+    keys(pinned, Key.j, SHIFT | Key.f10, *[Key.down_arrow] * 3, Key.enter)
     assert [pin.depth for pin in pinned.pins] == [1, 0, 0]
 
 
