@@ -193,7 +193,7 @@ class _Decision:
         self.count = pairs.region_count
         self.signs = np.zeros(len(pairs), dtype=np.int8)
         self.known = np.zeros(len(pairs), dtype=bool)
-        self.ages = np.zeros(self.count, dtype=np.int64)
+        self.ages = np.full(self.count, np.iinfo(np.int64).max)  # no region is younger than a new one
         self.contradictory: list[int] = []  # regions with both signs
         self.ends = np.searchsorted(pairs.regions, np.arange(self.count + 1))
 
@@ -236,9 +236,11 @@ class _Decision:
             face_centers(mesh),
             mesh.length,
         )
-        votes, guesses, self.ages = tally(self.pairs.regions, signs, known, sources, before.ages, self.count)
-        self.known = known
-        for region in range(self.count):
+        votes, guesses, ages = tally(self.pairs.regions, signs, known, sources, before.ages, self.count)
+        is_open = self.signs[self.ends[:-1]] == 0
+        self.ages[is_open] = ages[is_open]
+        self.known |= known
+        for region in np.flatnonzero(is_open).tolist():
             # Pairs that were there outvote all others; guesses speak where none was.
             counts = votes[region] if votes[region].any() else guesses[region]
             if not counts.any():
@@ -250,7 +252,8 @@ class _Decision:
             mine = signs[begin:end]
             minority = 1 if counts[0] < counts[1] else -1
             members = begin + np.flatnonzero(mine == minority)
-            is_unanimous = votes[region].any() and not votes[region].min()
+            dissent = guesses[region, 0 if minority > 0 else 1]
+            is_unanimous = not votes[region].min() and 2 * votes[region].max() >= dissent
             if is_unanimous or self.areas(members).sum() <= _NEGLIGIBLE * self.mesh.length**2:
                 self.signs[begin:end] = -minority
             else:

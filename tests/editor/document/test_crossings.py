@@ -1,14 +1,17 @@
-"""Depths of pins: the order of faces, clicks on overlapping parts, undo, files and replays."""
+"""Crossings and depths of pins: order of faces, clicks on overlapping parts, undo, files and replays."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from akap_editor.editor import gestures
-from akap_editor.editor.document.crossings import depth_at, depth_order
+from akap_editor.editor.document.crossings import depth_at, depth_order, overlaps_of
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.pin import MAX_DEPTH, Pin
 from akap_editor.editor.editor import Editor
+from akap_editor.editor.session.edits import Remesh
 from akap_editor.editor.session.recording import parse_recording
 from akap_editor.editor.session.replay import replay
 from akap_editor.errors import InputError
@@ -179,3 +182,92 @@ def test_a_cartoon_limb_changes_sides(shared_data):
         order = rank(editor.session.document.face_order)
         faces = [editor.session.state.pin(pin).face for pin in pins]
         assert (order[faces[1]] > order[faces[0]]) == (depth > 0)
+
+
+# -- crossings -----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def folded(pinned):
+    """The end of the figure is dragged over its head."""
+    pinned.drag(END, (22.0, 46.0), steps=8)
+    pinned.settle()
+    assert len(pinned.state.crossings)
+    return pinned
+
+
+def in_front(driver, near):
+    """Whether what is near to an end of the rest pose is above in all overlapping pairs it is part of."""
+    mesh, state = driver.session.drawing.mesh, driver.state
+    low, high = overlaps_of(mesh, state.pins, state.positions, state.crossings).low_and_high
+    middles = mesh.vertices[mesh.faces].mean(axis=1)
+    is_above = np.abs(middles[high] - near).sum(axis=1) < np.abs(middles[low] - near).sum(axis=1)
+    return bool(is_above.mean() > 0.9)
+
+
+def test_what_is_dragged_passes_in_front_of_what_it_meets(folded):
+    assert in_front(folded, END)
+    order = rank(folded.session.document.face_order)
+    mesh, state = folded.session.drawing.mesh, folded.state
+    low, high = overlaps_of(mesh, state.pins, state.positions, state.crossings).low_and_high
+    assert (order[low] < order[high]).all()
+
+
+def test_a_limb_is_sent_to_the_back_stays_there_and_comes_back_by_undo(folded):
+    crossings = folded.state.crossings
+    folded.editor.select({3})
+    gestures.order_limb(folded.editor, False)
+    assert folded.session.history.undo_label == "Send Limb to Back"
+    assert in_front(folded, HEAD)
+    folded.drag(folded.where(3), (26.0, 44.0), steps=4)
+    folded.settle()
+    assert in_front(folded, HEAD), "what was asked for stays"
+    folded.undo()
+    folded.undo()
+    assert folded.state.crossings is crossings
+    depth = folded.depth
+    gestures.order_limb(folded.editor, True)
+    assert folded.depth == depth, "it is in front already"
+
+
+def test_crossings_are_saved_recorded_and_replayed(folded, drawing, tmp_path):
+    folded.editor.select({3})
+    gestures.order_limb(folded.editor, False)
+    gestures.add_pose(folded.editor, "folded")
+    folded.drag(folded.where(3), (30.0, 47.0), steps=3)
+    folded.settle()
+    save(folded.session.document, tmp_path / "folded.akap")
+    again = load(tmp_path / "folded.akap")
+    assert bits(again.state) == bits(folded.state)
+    np.testing.assert_array_equal(again.state.crossings, folded.state.crossings)
+    *_, last = replay(parse_recording(folded.session.recording.to_text()), drawing)
+    assert bits(last.state) == bits(folded.state)
+    opened = Editor()
+    opened.open(again)
+    *_, last = replay(parse_recording(opened.session.recording.to_text()), again.drawing)
+    np.testing.assert_array_equal(last.state.crossings, folded.state.crossings)
+
+
+def test_another_mesh_keeps_what_is_in_front(folded):
+    folded.editor.select({3})
+    gestures.order_limb(folded.editor, False)
+    gestures.add_pose(folded.editor, "folded")
+    folded.editor.apply("Mesh", Remesh(replace(folded.session.drawing.meshing, vertices=200)))
+    assert in_front(folded, HEAD)
+    state, mesh = folded.state, folded.session.drawing.mesh
+    assert state.poses[0].crossings.max() < len(mesh.faces)
+    assert len(state.poses[0].crossings)
+
+
+def test_the_wheel_brings_what_is_dragged_to_the_front_and_back(folded):
+    x, y = folded.where(3)
+    zoom = folded.editor.camera.zoom
+    folded.press((x, y))
+    folded.move((x + 8, y))
+    assert "wheel" in folded.editor.tool.hint
+    folded.scroll((x + 8, y), -1.0)
+    assert in_front(folded, HEAD)
+    assert folded.editor.camera.zoom == zoom
+    folded.scroll((x + 8, y), 1.0)
+    assert in_front(folded, END)
+    folded.key("escape")
