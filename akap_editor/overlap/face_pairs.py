@@ -9,7 +9,7 @@ from ..geometry.validation import Floats, Ints
 from .seeds import overlap_seeds
 from .topology import Topology
 
-MAX_PAIRS_PER_FACE = 60  # a pose with more is crumpled beyond any order; two sheets have about eight
+MAX_PAIRS_PER_FACE = 30  # a pose with more is crumpled beyond any order; two sheets have about eight
 _SHORTEST_STRETCH = 1e-9  # share of an edge that must lie inside a face for the overlap to go on across it
 
 
