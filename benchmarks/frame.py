@@ -80,7 +80,7 @@ def instrument(timer: FunctionTimer, window: Window) -> list[float]:
     # Without a screen no frame ever ends by itself, and what was drawn for it stays in memory.
     window_module.glfw.swap_buffers = lambda _: window.ctx.finish()  # type: ignore[assignment]
     timer.wrap(window_module.glfw, "swap_buffers", "draw")
-    timer.wrap(Window, "_frame", "interface")
+    timer.wrap(Window, "_draw", "interface")
     steps: list[float] = []
     step = Session.step
 

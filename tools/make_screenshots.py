@@ -22,8 +22,9 @@ from akap_editor.app.commands.registry import PALETTE_ITEMS, SHORTCUTS
 from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.dialogs.first_steps import FirstSteps
+from akap_editor.app.glfw_window import DEFAULT_SIZE
 from akap_editor.app.preferences import Preferences
-from akap_editor.app.window import SIZE, Window
+from akap_editor.app.window import Window
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import make_drawing
@@ -278,7 +279,7 @@ def main() -> None:
     if unknown := set(options.names) - set(SHOTS):
         parser.error(f"expected names among {', '.join(SHOTS)}, got {', '.join(sorted(unknown))}")
     options.folder.mkdir(parents=True, exist_ok=True)
-    size = round(SIZE[0] * options.scale), round(SIZE[1] * options.scale)
+    size = round(DEFAULT_SIZE[0] * options.scale), round(DEFAULT_SIZE[1] * options.scale)
     with Window(null=True, scale=options.scale, size=size) as window:
         for name in options.names or SHOTS:
             take(window, name, options.folder)

@@ -1,10 +1,10 @@
 """The window and its loop: GLFW, OpenGL and Dear ImGui around the editor."""
 
-# imgui_bundle first: its import makes pyGLFW load the very libglfw that its own backend is linked to.
+# imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
 from imgui_bundle import imgui  # isort: skip
 import ctypes
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from threading import Event, Lock, Thread
@@ -16,36 +16,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..editor.document.document import Document
-from ..errors import AkapError, DisplayError, GraphicsError
+from ..errors import AkapError
 from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
 from . import files, start_page, theme, widgets
-from . import glfw_key_order as key_order
 from .app_state import AppState, error_message
 from .canvas import split_view
 from .canvas.legend import draw_legend
 from .canvas.pin_markers import draw_markers
 from .canvas.pointer_input import Canvas
 from .canvas.scene import Scene
-from .commands import registry as commands
 from .commands.focus_navigation import handle_focus_keys
 from .commands.palette import Palette
+from .commands.registry import run_pressed
 from .dialogs import dialogs
 from .dialogs.file_dialog import FileDialog, has_native_dialogs
 from .dialogs.recovery import RecoveryDialog
-from .panels import side_panel as panels
+from .glfw_window import create_window, on_key, remembered_position, remembered_size, screens
+from .panels import side_panel
 from .preferences import Preferences
 from .termination import TerminationSignals, rescue_on_lost_display
 from .thumbnails import Thumbnails
 
-SIZE = (1280, 800)
-SMALLEST = (640, 400)
-GRASP = 64  # screen coordinates of a window's corner that must be on a screen for a hand to move it
 MAX_FAILURES_IN_A_ROW = 3  # of the loop
 SETTLE_FRAMES = 3  # ImGui needs this many frames after an event until every widget has its final place
 IDLE_SECONDS, BLINK_SECONDS = 1.0, 0.4  # the longest sleep; half the period of a text caret
 MINIMIZED_SECONDS = 0.25  # between two looks whether a minimized window can be drawn again
-NATIVE_DIALOG_SECONDS = 0.1  # between two looks at a dialog of the system, see `Dialogs.native_is_open`
+NATIVE_DIALOG_SECONDS = 0.1  # between two looks at a dialog of the system, see `FileDialog.native_is_open`
 
 
 def _precompile() -> None:
@@ -58,18 +55,20 @@ def _precompile() -> None:
 
 
 def render_imgui() -> None:
-    """Close ImGui's frame; a function of its own, so that its Test Engine can put another in its place."""
+    """End ImGui's frame. A function, so that tests can replace it by one that works with the Test Engine."""
     imgui.render()
 
 
 class Window:
-    """The editor on the screen. Use as a context manager, or call `close` in the end.
+    """The editor's window. Use it as a context manager, or call `close` in the end.
 
-    null: GLFW's null platform with EGL, which needs no display server; hidden: no visible window;
-    scale: points per design point, by default what the monitor says; size: of the window, in points, by
-    default as the preferences remember it; preferences: by default nothing is remembered;
-    autosave: by default unsaved work is not protected.
-    Raises DisplayError where there is no display, GraphicsError where there is no OpenGL 3.3.
+    null: use GLFW's null platform with EGL, which needs no display server; hidden: show no window; scale:
+    points per design point, by default that of the monitor; size: in points, by default the remembered one;
+    preferences: by default nothing is remembered; autosave: by default unsaved work is not protected.
+    Raises DisplayError without a display, GraphicsError without OpenGL 3.3.
+
+    frames: the number of frames drawn so far; after_draw: called in each frame when everything is drawn;
+    wait_for_events: sleeps for a number of seconds at most; tests and benchmarks replace it.
     """
 
     def __init__(
@@ -90,7 +89,7 @@ class Window:
         self.state.part(FileDialog).uses_native = has_native_dialogs() and not null
         self.frames = 0
         self.after_draw: list[Callable[[], None]] = []
-        self._scale_wanted, self._in_frame, self._focused = scale, False, False
+        self._fixed_scale, self._is_drawing, self._has_focus = scale, False, False
         self._failures_in_a_row = 0
         self._frames_due = SETTLE_FRAMES
         self._dropped: list[list[Path]] = []
@@ -98,23 +97,33 @@ class Window:
         # GLFW's null platform has no events to wait for and would return at once
         wait_for_wake: Callable[[float], object] = self._woken.wait
         self.wait_for_events = wait_for_wake if null else glfw.wait_events_timeout
-        self.handle = _create_window(null, hidden, size or _remembered_size(self.state.preferences))
+        self.handle = create_window(null, hidden, size or remembered_size(self.state.preferences))
         self._is_open = True
-        place = _remembered_place(self.state.preferences, _screens())
-        if place is not None:
-            glfw.set_window_pos(self.handle, *place)
+        position = remembered_position(self.state.preferences, screens())
+        if position is not None:
+            glfw.set_window_pos(self.handle, *position)
         if self.state.preferences.get("maximized", False):
             glfw.maximize_window(self.handle)
         self.ctx = moderngl.create_context(require=330)
-        self._picture = Scene(self.ctx)
+        self._scene = Scene(self.ctx)
         self.state.exporter = OffscreenRenderer(self.ctx)
         self.state.thumbnails = Thumbnails(self.ctx)
-        # Callbacks only queue: an exception in one would come out of poll_events. ImGui calls those it needs.
-        glfw.set_key_callback(self.handle, key_order.on_key)
+        self._canvas = Canvas()
+        self._set_callbacks()
+        self._start_imgui()
+
+    def _set_callbacks(self) -> None:
+        """Let GLFW call the window. ImGui's callbacks, which are set later, call these first.
+
+        They must not raise, because their exception would come out of `glfw.poll_events`; so they only queue.
+        """
+        glfw.set_key_callback(self.handle, on_key)
         glfw.set_drop_callback(self.handle, self._on_drop)  # type: ignore[arg-type]  # its stub is wrong
-        glfw.set_window_refresh_callback(self.handle, lambda _: self._refresh())
+        glfw.set_window_refresh_callback(self.handle, lambda _: self._on_refresh())
         glfw.set_window_content_scale_callback(self.handle, lambda *_: self._apply_scale())
         glfw.set_window_close_callback(self.handle, self._on_close)
+
+    def _start_imgui(self) -> None:
         imgui.create_context()
         io = imgui.get_io()
         io.set_ini_filename("")
@@ -125,7 +134,6 @@ class Window:
         assert address is not None
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
-        self._canvas = Canvas()
 
     def __enter__(self) -> "Window":
         return self
@@ -141,7 +149,7 @@ class Window:
         self.state.writer.close()
         self.state.exporter.release()
         self.state.thumbnails.release()
-        self._picture.release()
+        self._scene.release()
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         imgui.destroy_context()
@@ -152,7 +160,7 @@ class Window:
     # -- the loop --------------------------------------------------------------------------------------------
 
     def run(self, document: Document | None = None) -> None:
-        """Show a document and stay until the window is closed."""
+        """Show a document, and run the loop until the window is closed."""
         lost_display_handler = rescue_on_lost_display(partial(files.rescue, self.state))
         Thread(target=_precompile, name="precompile", daemon=True).start()
         if document is not None:
@@ -170,7 +178,7 @@ class Window:
         del lost_display_handler  # it had to live until here
 
     def loop_once(self) -> None:
-        """Sleep if there is nothing to draw; otherwise, or after that, draw a frame.
+        """Sleep if no frame is due; then draw one if it is due now.
 
         An exception becomes a message. Several in a row are raised: then not even the message can be drawn.
         """
@@ -201,12 +209,12 @@ class Window:
 
     @property
     def needs_frame(self) -> bool:
-        """Whether there may be something new to draw. All other changes come with an event or a `wake`."""
+        """Whether a frame is due now. A frame that is due later comes with an event or a `wake`."""
         return self._frames_due > 0 or self._woken.is_set() or self.state.needs_frame or bool(self._dropped)
 
     @property
     def _is_animated(self) -> bool:
-        """Whether the next frame differs from the last one, although nothing new has happened."""
+        """Whether the next frame differs from the last one without any event."""
         context = imgui.get_current_context()
         is_dimming = 0 < context.dim_bg_ratio < 1  # behind a dialog that has just opened or closed
         has_queued_events = context.input_events_queue.size() > 0  # ImGui takes some only one per frame
@@ -220,12 +228,12 @@ class Window:
                 glfw.post_empty_event()
 
     def remember(self) -> None:
-        """Write the preferences if something has changed; called when the window is about to sleep."""
-        maximized = bool(glfw.get_window_attrib(self.handle, glfw.MAXIMIZED))
+        """Write the preferences if they have changed. The loop calls it before it sleeps."""
+        is_maximized = bool(glfw.get_window_attrib(self.handle, glfw.MAXIMIZED))
         width, height = glfw.get_window_size(self.handle)
         preferences = self.state.preferences
-        preferences.put("maximized", maximized)
-        if not maximized and not glfw.get_window_attrib(self.handle, glfw.ICONIFIED):
+        preferences.put("maximized", is_maximized)
+        if not is_maximized and not glfw.get_window_attrib(self.handle, glfw.ICONIFIED):
             preferences.put("window", [round(width / self.scale), round(height / self.scale)])
             preferences.put("place", list(glfw.get_window_pos(self.handle)))
         self.state.remember()
@@ -250,38 +258,37 @@ class Window:
 
     def frame(self) -> bool:
         """Draw one frame; False if the window is minimized, or a frame is being drawn already."""
-        framebuffer = glfw.get_framebuffer_size(self.handle)
-        is_hidden = 0 in framebuffer or glfw.get_window_attrib(self.handle, glfw.ICONIFIED)
-        if self._in_frame:
+        if self._is_drawing:
             return False
-        # before the frame reads any result: a thread that is done later causes another frame
         if self._woken.is_set():
-            self._woken.clear()
+            self._woken.clear()  # before the frame looks at any result: a later one causes another frame
             self._frames_due = SETTLE_FRAMES
         self._frames_due = max(self._frames_due - 1, 0)
-        if is_hidden:
+        framebuffer = glfw.get_framebuffer_size(self.handle)
+        if 0 in framebuffer or glfw.get_window_attrib(self.handle, glfw.ICONIFIED):
             return False
-        self._in_frame = True
+        self._is_drawing = True
         try:
-            self._frame(framebuffer)
+            self._draw(framebuffer)
         finally:
-            self._in_frame = False
+            self._is_drawing = False
         return True
 
-    def _frame(self, framebuffer: tuple[int, int]) -> None:
+    def _draw(self, framebuffer: tuple[int, int]) -> None:
+        """Draw the panels, then the scene under them, and run what waits for the end of the frame."""
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
         imgui.new_frame()
         recovery = imgui.internal.ErrorRecoveryState()
         imgui.internal.error_recovery_store_state(recovery)
         try:
-            self._interface()
+            self._build_interface()
         except Exception as error:
             self._recover(recovery, error_message(error))
-            if not isinstance(error, AkapError):  # a bug must not cost the user's work
+            if not isinstance(error, AkapError):  # a bug must not cost unsaved work
                 self.state.editor.cancel()
         render_imgui()
-        self._picture.draw(self.state, framebuffer, glfw.get_window_size(self.handle), self.scale)
+        self._scene.draw(self.state, framebuffer, glfw.get_window_size(self.handle), self.scale)
         imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
         self.frames += 1
         for action in self.after_draw:
@@ -291,23 +298,24 @@ class Window:
         if self.state.run_pending():
             self._frames_due = SETTLE_FRAMES
 
-    def _interface(self) -> None:
+    def _build_interface(self) -> None:
+        """Build ImGui's part of the frame, take in the input, and step the drawing."""
         state = self.state
         self._watch_focus()
         while self._dropped:
             files.open_dropped(state, self._dropped.pop(0))
         handle_focus_keys(state)
-        modal = _popup_is_open()  # before as well as after: the key that closes one must not do more
-        state.editor.canvas = split_view.draw(state, panels.draw(state, self.scale), self.scale)
+        is_modal = _popup_is_open()  # also before, because the key that closes a dialog must do nothing else
+        state.editor.canvas = split_view.draw(state, side_panel.draw(state, self.scale), self.scale)
         if state.document is None:
             start_page.draw(state, self.scale, self._density)
         state.part(Palette).draw(state, self.scale)
         dialogs.draw(state, self.scale)
         self._canvas.draw_popup(state, self.scale)
-        modal = modal or _popup_is_open()
-        if not imgui.get_io().want_text_input and not modal:
-            commands.run_pressed(state)
-        if modal:
+        is_modal = is_modal or _popup_is_open()
+        if not imgui.get_io().want_text_input and not is_modal:
+            run_pressed(state)
+        if is_modal:
             self._canvas.cancel_input(state)
         else:
             self._canvas.read_input(state)
@@ -320,7 +328,7 @@ class Window:
         draw_legend(state.view, state.editor, self.scale)
 
     def _recover(self, recovery: Any, message: str) -> None:
-        """Repair ImGui's stacks after an exception; the next frame would fail otherwise."""
+        """Show an error message; repair ImGui's stacks, or else the next frame would fail."""
         io = imgui.get_io()
         io.config_error_recovery_enable_assert = False
         imgui.internal.error_recovery_try_to_recover_state(recovery)
@@ -332,9 +340,9 @@ class Window:
 
     @property
     def scale(self) -> float:
-        """Points of the window per point of the design: 2 on a 200 % monitor, 1 on a Retina display."""
-        if self._scale_wanted is not None:
-            return self._scale_wanted
+        """Points of the window per design point: 2 on a 200 % monitor, 1 on a Retina display."""
+        if self._fixed_scale is not None:
+            return self._fixed_scale
         return float(glfw.get_window_content_scale(self.handle)[0] / self._density) or 1.0
 
     @property
@@ -344,7 +352,7 @@ class Window:
         return max(pixels, 1) / max(points, 1)
 
     def screenshot(self) -> NDArray[np.uint8]:
-        """(h, w, 3) of the frame being drawn; to be called from `after_draw`."""
+        """The frame that is being drawn, (h, w, 3). To be called from `after_draw`."""
         width, height = glfw.get_framebuffer_size(self.handle)
         data = self.ctx.screen.read(viewport=(0, 0, width, height), components=3, alignment=1)
         return np.frombuffer(data, dtype=np.uint8).reshape(height, width, 3)[::-1].copy()
@@ -361,10 +369,11 @@ class Window:
             glfw.set_window_title(self.handle, self._title)
 
     def _watch_focus(self) -> None:
-        focused = bool(glfw.get_window_attrib(self.handle, glfw.FOCUSED))
-        if self._focused and not focused:
+        """Cancel a gesture if another window gets the keyboard, since its release would not be seen."""
+        has_focus = bool(glfw.get_window_attrib(self.handle, glfw.FOCUSED))
+        if self._has_focus and not has_focus:
             self._canvas.cancel_input(self.state)
-        self._focused = focused
+        self._has_focus = has_focus
 
     def drop(self, paths: list[Path]) -> None:
         """Open files that were dropped on the window, in the next frame."""
@@ -381,67 +390,11 @@ class Window:
         glfw.set_window_should_close(self.handle, False)
         self.request_close()
 
-    def _refresh(self) -> None:
-        """While a window is being resized, some systems call only this."""
+    def _on_refresh(self) -> None:
+        """Draw at once: while the user resizes a window, some systems do not return to the loop."""
         self._frames_due = SETTLE_FRAMES
         self.frame()
 
 
 def _popup_is_open() -> bool:
     return bool(imgui.is_popup_open("", imgui.PopupFlags_.any_popup))
-
-
-def _remembered_size(preferences: Preferences) -> tuple[int, int]:
-    """Width and height in design points, never too small to find one's way back."""
-    match preferences.get("window", [*SIZE]):
-        case [int(width), int(height)]:
-            return min(max(width, SMALLEST[0]), 16384), min(max(height, SMALLEST[1]), 16384)
-    return SIZE
-
-
-def _screens() -> list[tuple[int, int, int, int]]:
-    """Left, top, width and height of what windows may cover of each monitor, in screen coordinates."""
-    return [glfw.get_monitor_workarea(monitor) for monitor in glfw.get_monitors()]
-
-
-def _remembered_place(
-    preferences: Preferences, screens: Sequence[tuple[int, int, int, int]]
-) -> tuple[int, int] | None:
-    """The window's upper left corner, where there is still a screen to grasp it on, else None."""
-    remembered: list[object] = preferences.get("place", [])
-    match remembered:
-        case [int(x), int(y)]:
-            for left, top, width, height in screens:
-                if left <= x <= left + width - GRASP and top <= y <= top + height - GRASP:
-                    return x, y
-    return None
-
-
-def _create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
-    """A GLFW window whose OpenGL 3.3 context is current."""
-    if null:
-        glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
-    if not glfw.init():
-        raise DisplayError("there is no display: expected an X11 or Wayland session to open a window in")
-    if null:
-        glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
-    for hint, value in (
-        (glfw.CONTEXT_VERSION_MAJOR, 3),
-        (glfw.CONTEXT_VERSION_MINOR, 3),
-        (glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE),
-        (glfw.OPENGL_FORWARD_COMPAT, True),
-        (glfw.DEPTH_BITS, 0),
-        (glfw.STENCIL_BITS, 0),
-        (glfw.SCALE_TO_MONITOR, True),
-        (glfw.VISIBLE, not hidden),
-    ):
-        glfw.window_hint(hint, value)
-    handle = glfw.create_window(*size, "akap-editor", None, None)
-    if not handle:
-        glfw.terminate()
-        raise GraphicsError("this computer offers no OpenGL 3.3 core profile, which the window needs")
-    if not null:  # there GLFW takes the least height for the greatest
-        glfw.set_window_size_limits(handle, *SMALLEST, glfw.DONT_CARE, glfw.DONT_CARE)
-    glfw.make_context_current(handle)
-    glfw.swap_interval(1)
-    return handle

@@ -14,7 +14,7 @@ from akap_editor.io.images import write_png
 @pytest.fixture
 def bent(pinned, tmp_path):
     """Three pins, one of them dragged, not saved; dialogs begin in an empty folder."""
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0], start[1] - 120))
     pinned.state.folder = tmp_path
     assert pinned.editor.is_modified
@@ -71,7 +71,7 @@ def test_a_mask_that_is_no_good_changes_nothing(pinned, image, tmp_path, keep, s
 
 def test_a_pose_is_carried_through_a_file(pinned, tmp_path):
     pinned.state.folder = tmp_path
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0], start[1] - 80))
     posed = pinned.session.state
     pinned.menu("File", "Export Pose File...")

@@ -24,7 +24,7 @@ UNSAVED, MESSAGE = "Unsaved changes", "Error"
 @pytest.fixture
 def bent(pinned, tmp_path):
     """Three pins, one of them dragged, not saved; dialogs begin in an empty folder."""
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0], start[1] - 120))
     pinned.state.folder = tmp_path
     assert pinned.editor.is_modified
@@ -409,7 +409,7 @@ def test_a_picture_without_alpha_opens_with_a_notice(pinned, tmp_path, image):
     assert pinned.document.drawing.name == "opaque"
     height, width = image.shape[:2]
     assert pinned.document.drawing.mesh.rest_areas.sum() >= 0.98 * width * height
-    pinned.click(pinned.screen((width / 2, height / 2)))
+    pinned.click(pinned.to_screen((width / 2, height / 2)))
     assert len(pinned.pins) == 1
     assert not pinned.state.notice
 

@@ -12,7 +12,6 @@ from akap_editor.app import preferences as module
 from akap_editor.app.app_state import AppState
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES, ViewOptions
 from akap_editor.app.preferences import MOST_RECENT, Preferences, preferences_path
-from akap_editor.app.window import SIZE, SMALLEST, _remembered_place, _remembered_size
 from akap_editor.editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
 from akap_editor.editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS, Brush
 from akap_editor.errors import InputError
@@ -133,42 +132,6 @@ def test_recent_files_are_the_newest_first_each_once(path, tmp_path):
     assert preferences.recent == expected[1:MOST_RECENT]
     preferences.put("recent", ["a", 1, None])
     assert preferences.recent == [Path("a")]
-
-
-@pytest.mark.parametrize(
-    ("remembered", "size"),
-    [
-        ([1000, 700], (1000, 700)),
-        ([10, -5], SMALLEST),
-        ([10**12, 700], (16384, 700)),
-        ([1000], SIZE),
-        (["wide", 3], SIZE),
-        ("large", SIZE),
-    ],
-)
-def test_the_remembered_size_of_the_window(remembered, size):
-    preferences = Preferences()
-    preferences.put("window", remembered)
-    assert _remembered_size(preferences) == size
-
-
-@pytest.mark.parametrize(
-    ("remembered", "place"),
-    [
-        ([100, 80], (100, 80)),
-        ([-900, 40], (-900, 40)),
-        ([1900, 40], None),
-        ([100, 5000], None),
-        ([100], None),
-        (["left", 3], None),
-        (None, None),
-    ],
-)
-def test_the_window_comes_back_to_its_place_where_there_still_is_a_screen(remembered, place):
-    preferences = Preferences()
-    preferences.put("place", remembered)
-    assert _remembered_place(preferences, [(0, 24, 1920, 1056), (-1280, 0, 1280, 800)]) == place
-    assert _remembered_place(preferences, []) is None
 
 
 def test_overlays_come_back(path, tmp_path):

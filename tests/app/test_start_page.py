@@ -34,7 +34,7 @@ def closed(ui):
 
 def test_close_shows_the_start_page_and_nothing_of_the_drawing(ui):
     left, top, right, bottom = map(round, ui.editor.canvas)
-    x, y = map(round, ui.screen((70.0, 80.0)))
+    x, y = map(round, ui.to_screen((70.0, 80.0)))
     drawn = ui.screenshot()[y, x]
     ui.menu("File", "Close")
     assert ui.state.document is None
@@ -45,7 +45,7 @@ def test_close_shows_the_start_page_and_nothing_of_the_drawing(ui):
 
 
 def test_closing_asks_for_unsaved_changes(pinned):
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0], start[1] - 80))
     pinned.key(CTRL | Key.w)
     assert pinned.state.document is not None
@@ -223,17 +223,17 @@ def newcomer(ui, tmp_path):
 
 def test_the_steps_follow_what_is_done(newcomer):
     assert newcomer.state.part(FirstSteps).step(newcomer.state) == 0
-    newcomer.click(newcomer.screen((60.0, 80.0)))
+    newcomer.click(newcomer.to_screen((60.0, 80.0)))
     assert newcomer.state.part(FirstSteps).step(newcomer.state) == 1
-    start = newcomer.screen((200.0, 80.0))
+    start = newcomer.to_screen((200.0, 80.0))
     newcomer.drag(start, (start[0], start[1] - 100))
     assert newcomer.state.part(FirstSteps).step(newcomer.state) == 2
     assert newcomer.state.part(FirstSteps).step(newcomer.state) == len(STEPS) - 1
 
 
 def test_the_steps_never_go_back(newcomer):
-    newcomer.click(newcomer.screen((60.0, 80.0)))
-    start = newcomer.screen((200.0, 80.0))
+    newcomer.click(newcomer.to_screen((60.0, 80.0)))
+    start = newcomer.to_screen((200.0, 80.0))
     newcomer.drag(start, (start[0], start[1] - 100))
     seen = []
     for _ in range(2):
@@ -254,14 +254,14 @@ def test_they_wait_on_the_start_page_for_a_drawing(newcomer, document):
 
 
 def test_whoever_drags_the_only_pin_is_told_why_nothing_bends(newcomer):
-    start = newcomer.screen((200.0, 80.0))
+    start = newcomer.to_screen((200.0, 80.0))
     newcomer.drag(start, (start[0], start[1] - 100))
     assert newcomer.session.is_posed
     assert newcomer.state.part(FirstSteps).step(newcomer.state) == 0
-    newcomer.click(newcomer.screen((60.0, 20.0)))  # the head, where it is now
+    newcomer.click(newcomer.to_screen((60.0, 20.0)))  # the head, where it is now
     assert len(newcomer.pins) == 2
     assert newcomer.state.part(FirstSteps).step(newcomer.state) == 1
-    end = newcomer.screen(newcomer.pin_place(1))
+    end = newcomer.to_screen(newcomer.pin_position(1))
     newcomer.drag(end, (end[0], end[1] + 100))
     assert newcomer.state.part(FirstSteps).step(newcomer.state) == 2
 
@@ -269,8 +269,8 @@ def test_whoever_drags_the_only_pin_is_told_why_nothing_bends(newcomer):
 @pytest.mark.parametrize("steps", [0, 2])
 def test_put_away_they_are_gone_for_good(newcomer, tmp_path, steps):
     if steps:
-        newcomer.click(newcomer.screen((60.0, 80.0)))
-        start = newcomer.screen((200.0, 80.0))
+        newcomer.click(newcomer.to_screen((60.0, 80.0)))
+        start = newcomer.to_screen((200.0, 80.0))
         newcomer.drag(start, (start[0], start[1] - 100))
     bottom = newcomer.editor.canvas[3]
     newcomer.do(lambda hand: hand.item_click("//First steps/###away"))

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from akap_editor.app import files, widgets
-from akap_editor.app import window as window_module
 from akap_editor.app.canvas.scene import Scene
-from akap_editor.app.commands.registry import SHORTCUTS
+from akap_editor.app.commands.registry import COMMANDS, SHORTCUTS
 from akap_editor.app.dialogs.about import AboutDialog
 from akap_editor.app.jobs.task import Progress, Task
-from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES, Window
+from akap_editor.app.panels import side_panel
+from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor.session.edits import SetTargets
-from akap_editor.errors import DisplayError, GraphicsError, SolverError
+from akap_editor.errors import SolverError
 from tests.support.window_loop import WindowLoop
 
 
@@ -33,7 +33,7 @@ def test_a_window_with_nothing_to_do_sleeps(loop):
 
 
 def bend(ui):
-    start = ui.screen(ui.pin_place(3))
+    start = ui.to_screen(ui.pin_position(3))
     ui.drag(start, (start[0] - 30, start[1] - 90))
 
 
@@ -88,7 +88,7 @@ def test_a_window_that_is_at_rest_draws_nothing(loop, shown):
 
 def test_a_step_that_fails_in_its_thread_is_told_and_the_window_sleeps_again(loop, monkeypatch):
     ui = loop.ui
-    start = ui.screen(ui.pin_place(3))
+    start = ui.to_screen(ui.pin_position(3))
     targets, pose = ui.session.state.targets, ui.session.state.positions
     threads, step = [], AkapDeformer.step
 
@@ -144,7 +144,7 @@ def test_it_wakes_for_a_tooltip(loop):
     assert imgui.get_current_context().hover_item_delay_id != 0
     assert all(0 < seconds <= imgui.get_style().hover_delay_normal + 0.02 for seconds, _ in waits)
     assert waits[1][1] == waits[0][1] + SETTLE_FRAMES
-    glfw.set_cursor_pos(loop.ui.window.handle, *loop.ui.empty_place)
+    glfw.set_cursor_pos(loop.ui.window.handle, *loop.ui.empty_point)
     loop.ui.settle()
     assert widgets.tooltip_due() == 0.0
 
@@ -173,7 +173,7 @@ def test_it_does_not_sleep_until_a_dialog_has_dimmed_the_rest(loop):
 def test_it_draws_until_the_drawing_has_come_to_rest_and_shows_it(loop):
     """The last frame before the sleep shows, in the panel's numbers too, what any later frame would."""
     ui, snapshots = loop.ui, []
-    x, y = ui.pin_place(3)
+    x, y = ui.pin_position(3)
     ui.session.begin("Drag Pin")
     ui.session.apply(SetTargets({3: (x, y - 40)}))
     ui.session.commit()
@@ -218,26 +218,11 @@ def test_without_a_document_the_window_shows_how_to_begin(ui):
     assert ui.state.title == "akap-editor"
     assert "Open" in ui.editor.hint
     for label in ("Save", "Export...", "Fit in Window"):
-        command = next(c for c in window_module.commands.COMMANDS if c.label == label)
+        command = next(c for c in COMMANDS if c.label == label)
         assert not command.enabled(ui.state)
-    ui.click(ui.empty_place)
-    ui.wheel(ui.empty_place, 1.0)
+    ui.click(ui.empty_point)
+    ui.wheel(ui.empty_point, 1.0)
     assert not ui.state.error
-
-
-def test_no_display_is_said_in_one_sentence(monkeypatch):
-    monkeypatch.setattr(glfw, "init", lambda: False)
-    with pytest.raises(DisplayError, match="no display"):
-        Window()
-
-
-def test_no_opengl_is_said_in_one_sentence(monkeypatch):
-    monkeypatch.setattr(glfw, "init", lambda: True)
-    monkeypatch.setattr(glfw, "window_hint", lambda hint, value: None)
-    monkeypatch.setattr(glfw, "create_window", lambda *args: None)
-    monkeypatch.setattr(glfw, "terminate", lambda: None)
-    with pytest.raises(GraphicsError, match=r"OpenGL 3\.3"):
-        Window()
 
 
 # -- exceptions ----------------------------------------------------------------------------------------------
@@ -292,7 +277,7 @@ def dropped_file(ui, patch):
 
 
 def panel(ui, patch):
-    fail_once(patch, window_module.panels, "draw")
+    fail_once(patch, side_panel, "draw")
 
 
 def dialog(ui, patch):
@@ -339,7 +324,7 @@ def test_an_exception_becomes_a_message_and_the_drawing_stays(pinned, monkeypatc
     assert not ui.state.error
     assert not ui.state.part(AboutDialog).is_open
     assert "Traceback" in capfd.readouterr().err, "for a bug report"
-    ui.click(ui.screen(ui.pin_place(1)))
+    ui.click(ui.to_screen(ui.pin_position(1)))
     assert ui.editor.selection == {1}
 
 

@@ -40,7 +40,7 @@ class Frames:
 
     def __init__(self, ui, way, steps=()):
         self.ui, self.steps, self.seen = ui, steps, []
-        x, y = self.start = ui.screen(ui.pin_place(3))
+        x, y = self.start = ui.to_screen(ui.pin_position(3))
         self.end = x, y + way
         ui.window.after_draw.append(self._look)
         ui.do(self._drag)
@@ -49,7 +49,9 @@ class Frames:
 
     def _look(self):
         at = imgui.get_io().mouse_pos
-        self.seen.append(((at.x, at.y), self.ui.window.screenshot(), len(self.steps), self.ui.pin_place(3)))
+        self.seen.append(
+            ((at.x, at.y), self.ui.window.screenshot(), len(self.steps), self.ui.pin_position(3))
+        )
 
     def _drag(self, hand):
         x, y = self.start
@@ -113,7 +115,7 @@ def held(pinned, monkeypatch):
         return step(*arguments)
 
     monkeypatch.setattr(AkapDeformer, "step", wait)
-    x, y = pinned.pin_place(3)
+    x, y = pinned.pin_position(3)
     pinned.session.begin("Drag Pin")
     pinned.session.apply(SetTargets({3: (x, y - 40)}))
     pinned.session.commit()
@@ -130,7 +132,7 @@ def test_menus_view_and_drags_answer_while_a_step_is_computed(held):
         hand.menu_click("View")
         assert imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
         hand.key_press(imgui.Key.escape)
-        hand.mouse_move_to_pos(imgui.ImVec2(*ui.empty_place))
+        hand.mouse_move_to_pos(imgui.ImVec2(*ui.empty_point))
         hand.mouse_wheel_y(2.0)
         hand.yield_(2)
         assert ui.editor.camera.zoom > zoom
@@ -140,7 +142,7 @@ def test_menus_view_and_drags_answer_while_a_step_is_computed(held):
     ui.do(act, settle=False)
     held.open.set()
     ui.settle()
-    np.testing.assert_allclose(ui.pin_place(3), held.goal, atol=0.25)
+    np.testing.assert_allclose(ui.pin_position(3), held.goal, atol=0.25)
 
 
 def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, loop):
@@ -159,13 +161,13 @@ def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, loop):
     held.open.set()
     loop.run(1)
     assert not held.ui.state.is_busy
-    np.testing.assert_allclose(held.ui.pin_place(3), held.goal, atol=0.25)
+    np.testing.assert_allclose(held.ui.pin_position(3), held.goal, atol=0.25)
 
 
 @pytest.mark.parametrize("press", ["wheel", "key"])
 def test_view_changes_are_seen_in_the_very_next_frame(ui, press):
     io = imgui.get_io()
-    io.add_mouse_pos_event(*ui.empty_place)
+    io.add_mouse_pos_event(*ui.empty_point)
     ui.settle()
     before = one_frame(ui)
     if press == "wheel":
@@ -188,7 +190,7 @@ def test_a_key_that_closes_a_page_does_nothing_else(pinned):
 @pytest.mark.parametrize("changed", [False, True])
 def test_the_title_tells_what_is_open_and_whether_it_is_saved(pinned, changed):
     if changed:
-        start = pinned.screen(pinned.pin_place(3))
+        start = pinned.to_screen(pinned.pin_position(3))
         pinned.drag(start, (start[0], start[1] - 60))
     pinned.settle()
     assert glfw.get_window_title(pinned.window.handle) == f"figure{' *' if changed else ''} - akap-editor"

@@ -21,7 +21,7 @@ def test_panels_take_twice_the_room(ui):
 @pytest.mark.parametrize(("distance", "picked"), [(2 * PICK_RADIUS - 1, True), (2 * PICK_RADIUS + 1, False)])
 def test_pins_are_picked_within_their_radius(pinned, distance, picked):
     assert PICK_RADIUS == 12
-    x, y = pinned.editor.camera.to_screen(pinned.pin_place(2))
+    x, y = pinned.editor.camera.to_screen(pinned.pin_position(2))
     at = float(round(x)), float(round(y + distance))
     pinned.click(at)
     assert pinned.editor.selection == ({2} if picked else {4})
@@ -29,10 +29,10 @@ def test_pins_are_picked_within_their_radius(pinned, distance, picked):
 
 
 def test_a_drag_lands_where_it_ends(pinned):
-    start = pinned.screen(pinned.pin_place(3))
-    wanted = pinned.pin_place(3) + np.array([0, -300]) / pinned.editor.camera.zoom
+    start = pinned.to_screen(pinned.pin_position(3))
+    wanted = pinned.pin_position(3) + np.array([0, -300]) / pinned.editor.camera.zoom
     pinned.drag(start, (start[0], start[1] - 300))
-    assert np.linalg.norm(pinned.pin_place(3) - wanted) < 0.25
+    assert np.linalg.norm(pinned.pin_position(3) - wanted) < 0.25
 
 
 def test_buttons_and_menus_are_hit(pinned):

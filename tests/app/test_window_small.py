@@ -10,7 +10,7 @@ from akap_editor.app import files, widgets
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
-from akap_editor.app.window import SMALLEST
+from akap_editor.app.glfw_window import MIN_SIZE
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 
@@ -19,7 +19,7 @@ LONG = "a drawing whose name somebody has typed without thinking of panels at al
 
 @pytest.fixture(scope="module")
 def module_window(new_window):
-    return new_window(size=SMALLEST)
+    return new_window(size=MIN_SIZE)
 
 
 def ask_save(state):
@@ -63,8 +63,8 @@ def test_dialogs_are_wholly_in_the_window(ui, drawing, title, ask):
     assert dialog.scroll_max.y == 0
     assert dialog.pos.x >= 0
     assert dialog.pos.y >= 0
-    assert dialog.pos.x + dialog.size.x <= SMALLEST[0]
-    assert dialog.pos.y + dialog.size.y <= SMALLEST[1]
+    assert dialog.pos.x + dialog.size.x <= MIN_SIZE[0]
+    assert dialog.pos.y + dialog.size.y <= MIN_SIZE[1]
 
 
 def test_texts_are_shortened_to_the_room_there_is(ui):

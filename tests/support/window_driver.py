@@ -1,6 +1,6 @@
 """Drives the whole window by labels, mouse and keys, through Dear ImGui's Test Engine."""
 
-# imgui_bundle first: its import makes pyGLFW load the libglfw that imgui's backend is linked to.
+# imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
 from imgui_bundle import imgui  # isort: skip
 import ctypes
 import math
@@ -30,17 +30,21 @@ from akap_editor.editor.tools.rotate import RING_RADIUS
 
 te = imgui.test_engine
 Point = tuple[float, float]
-MOST_FRAMES = 2000
+MAX_FRAMES = 2000
 DEADLINE = 60.0  # seconds; a slow machine takes a few
 
-# The Test Engine waits in this for a thread that runs Python. Its binding keeps the interpreter locked, so
-# the two would wait for one another for ever; a call through ctypes unlocks it.
+# ImGui::Render waits for the thread of the Test Engine, which runs Python. Its binding keeps the interpreter
+# locked, a deadlock; a call through ctypes releases the lock.
 render_unlocked = ctypes.CDLL(native.__file__)._ZN5ImGui6RenderEv
 render_unlocked.restype, render_unlocked.argtypes = None, []
 
 
 class WindowDriver:
-    """A window with an artificial hand. Places on the screen are whole points, as Test Engine rounds down."""
+    """A window with an artificial hand.
+
+    Points of the screen are whole numbers, because the Test Engine rounds down; points of the drawing are in
+    drawing units. Every action ends when the window is idle again.
+    """
 
     def __init__(self, window: Window) -> None:
         self.window = window
@@ -52,15 +56,19 @@ class WindowDriver:
         io.config_fixed_delta_time = 1 / 60
         te.start(self._engine, imgui.get_current_context())
         self._count = 0
-        self._between: list[Callable[[], None]] = []
+        self._main_thread_actions: list[Callable[[], None]] = []
 
     def close(self) -> None:
+        """Close the window and end the Test Engine."""
         te.stop(self._engine)
         self.window.close()
         te.destroy_context(self._engine)  # only after ImGui's context
 
     def reset(self, document: Document, clock: Callable[[], float] = time.monotonic) -> None:
-        """As just started with this document, whatever was open before. clock: the editor's, in seconds."""
+        """Put the window into the state of a new program with this document.
+
+        clock: the editor's, in seconds.
+        """
         if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
             imgui.internal.close_popup_to_level(0, False)
         wake = self.window.wake
@@ -70,10 +78,10 @@ class WindowDriver:
         )
         self.editor.ui_scale = self.window.scale
         files.show_document(self.state, document)
-        self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.empty_place)))
+        self.do(lambda hand: hand.mouse_move_to_pos(imgui.ImVec2(*self.empty_point)))
         assert not self.state.error
 
-    # -- what is there -------------------------------------------------------------------------------------
+    # -- the state -----------------------------------------------------------------------------------------
 
     @property
     def state(self) -> AppState:
@@ -103,37 +111,39 @@ class WindowDriver:
 
     @property
     def tool(self) -> str:
+        """Name of the class of the active tool."""
         return type(self.editor.tool).__name__
 
     @property
-    def empty_place(self) -> Point:
-        """A place on the canvas where no drawing is."""
+    def empty_point(self) -> Point:
+        """A point of the screen on the canvas beside the drawing."""
         left, top, _, _ = self.editor.canvas
         return left + 8, top + 8
 
-    def screen(self, place: Point) -> Point:
-        """The whole point of the screen that is nearest to a place in the drawing."""
-        x, y = self.editor.camera.to_screen(place)
+    def to_screen(self, point: Point) -> Point:
+        """The point of the screen nearest to a point of the drawing."""
+        x, y = self.editor.camera.to_screen(point)
         return float(round(x)), float(round(y))
 
-    def place(self, at: Point) -> Point:
-        """The place in the drawing that is seen at a point of the screen."""
-        return self.editor.camera.to_drawing(at)
+    def to_drawing(self, point: Point) -> Point:
+        """The point of the drawing that is seen at a point of the screen."""
+        return self.editor.camera.to_drawing(point)
 
-    def pin_place(self, pin: int) -> NDArray[np.float64]:
-        """(2,): where a pin is now, in the drawing."""
-        ids = [each.id for each in self.pins]
-        return self.session.pin_positions()[ids.index(pin)]
+    def pin_position(self, pin_id: int) -> NDArray[np.float64]:
+        """(2,) where a pin is now, in the drawing."""
+        ids = [pin.id for pin in self.pins]
+        return self.session.pin_positions()[ids.index(pin_id)]
 
     def ring_points(self, pin: int, *degrees: float) -> list[Point]:
         """Points of the screen on the rotation ring of a pin, in directions clockwise from the right."""
-        x, y = self.screen(self.pin_place(pin))
+        x, y = self.to_screen(self.pin_position(pin))
         angles = [math.radians(angle) for angle in degrees]
         return [(x + RING_RADIUS * math.cos(angle), y + RING_RADIUS * math.sin(angle)) for angle in angles]
 
     # -- frames --------------------------------------------------------------------------------------------
 
     def frame(self) -> None:
+        """Draw one frame; the Test Engine does its next step."""
         glfw.poll_events()
         self.window.frame()
         te.post_swap(self._engine)
@@ -141,7 +151,7 @@ class WindowDriver:
     def settle(self) -> None:
         """Draw frames until nothing moves and no thread computes; a thread that is done must wake it."""
         self.window.wake()
-        for _ in range(MOST_FRAMES):
+        for _ in range(MAX_FRAMES):
             if self.window.needs_frame:
                 self.frame()
             elif self.state.is_busy:
@@ -149,10 +159,10 @@ class WindowDriver:
                 assert self.window.needs_frame, f"nothing has woken the window within {DEADLINE:g} s"
             else:
                 return
-        raise AssertionError(f"still busy after {MOST_FRAMES} frames")
+        raise AssertionError(f"still busy after {MAX_FRAMES} frames")
 
     def screenshot(self) -> NDArray[np.uint8]:
-        """(h, w, 3) of the settled window."""
+        """The idle window, (h, w, 3)."""
         snapshots: list[NDArray[np.uint8]] = []
         self.settle()
         self.window.after_draw.append(lambda: snapshots.append(self.window.screenshot()))
@@ -160,16 +170,17 @@ class WindowDriver:
         self.window.after_draw.clear()
         return snapshots[0]
 
-    # -- what a hand does ----------------------------------------------------------------------------------
+    # -- actions -------------------------------------------------------------------------------------------
 
     def do(self, actions: Callable[[Any], None], settle: bool = True) -> None:
-        """Run ``actions(hand)``, a Test Engine context, frame by frame; raises what it raises.
+        """Run ``actions(hand)`` while frames are drawn; raises its exceptions.
 
-        It runs on another thread, where OpenGL and GLFW must not be called; `on_main_thread` is for that.
+        hand: a context of the Test Engine. It runs in another thread, where OpenGL and GLFW must not be
+        called; see `on_main_thread`. settle: whether to wait until the window is idle.
         """
         failures: list[BaseException] = []
 
-        def guarded(hand: Any) -> None:
+        def catching(hand: Any) -> None:
             try:
                 actions(hand)
             except BaseException as error:
@@ -177,7 +188,7 @@ class WindowDriver:
 
         self._count += 1
         test = te.register_test(self._engine, "window", str(self._count))
-        test.test_func = guarded
+        test.test_func = catching
         te.queue_test(self._engine, test)
         try:
             self._run_queue()
@@ -187,7 +198,7 @@ class WindowDriver:
                 self._run_queue()
             raise
         log = test.output.log.get_text()
-        assert te.is_test_queue_empty(self._engine), f"not done after {MOST_FRAMES} frames: {log}"
+        assert te.is_test_queue_empty(self._engine), f"not done after {MAX_FRAMES} frames: {log}"
         if failures:
             raise failures[0]
         assert test.output.status == te.TestStatus.success, log
@@ -195,20 +206,21 @@ class WindowDriver:
             self.settle()
 
     def _run_queue(self) -> None:
-        for _ in range(MOST_FRAMES):
+        """Draw frames until the Test Engine has nothing left to do."""
+        for _ in range(MAX_FRAMES):
             if te.is_test_queue_empty(self._engine):
                 return
-            while self._between:
-                self._between.pop(0)()
+            while self._main_thread_actions:
+                self._main_thread_actions.pop(0)()
             self.frame()
 
     def on_main_thread(self, hand: Any, action: Callable[[], None], frames: int = 2) -> None:
-        """From inside ``actions``: run something between two frames."""
-        self._between.append(action)
+        """From ``actions``: run ``action`` in the main thread between two frames."""
+        self._main_thread_actions.append(action)
         hand.yield_(frames)
 
     def menu(self, *path: str) -> None:
-        """Choose a menu item by its labels."""
+        """Click a menu item, given the labels on the path to it."""
         self.do(lambda hand: self._menu(hand, path))
 
     @staticmethod
@@ -251,11 +263,11 @@ class WindowDriver:
 
         self.do(press)
 
-    def click(self, at: Point, shift: bool = False) -> None:
+    def click(self, point: Point, shift: bool = False) -> None:
         """Click a point of the screen."""
 
         def click(hand: Any) -> None:
-            hand.mouse_move_to_pos(imgui.ImVec2(*at))
+            hand.mouse_move_to_pos(imgui.ImVec2(*point))
             if shift:
                 hand.key_down(imgui.Key.mod_shift)
             hand.mouse_click(0)
@@ -265,12 +277,15 @@ class WindowDriver:
         self.do(click)
 
     def drag(self, *path: Point, button: int = 0, held: int | None = None) -> None:
-        """Press at the first point, move through the others, release at the last; held: a key meanwhile."""
+        """Press at the first point of the screen, move through the others, release at the last.
+
+        button: of the mouse; held: a key that is held meanwhile.
+        """
 
         def drag(hand: Any) -> None:
             self.begin_drag(hand, path[0], button, held)
-            for at in path[1:]:
-                hand.mouse_move_to_pos(imgui.ImVec2(*at))
+            for point in path[1:]:
+                hand.mouse_move_to_pos(imgui.ImVec2(*point))
             hand.mouse_up(button)
             if held is not None:
                 hand.key_up(held)
@@ -279,14 +294,17 @@ class WindowDriver:
 
     @staticmethod
     def begin_drag(hand: Any, start: Point, button: int = 0, held: int | None = None) -> None:
+        """From ``actions``: press and hold a button of the mouse, and a key."""
         hand.mouse_move_to_pos(imgui.ImVec2(*start))
         if held is not None:
             hand.key_down(held)
         hand.mouse_down(button)
 
-    def wheel(self, at: Point, notches: float) -> None:
+    def wheel(self, point: Point, notches: float) -> None:
+        """Turn the mouse wheel at a point of the screen."""
+
         def turn(hand: Any) -> None:
-            hand.mouse_move_to_pos(imgui.ImVec2(*at))
+            hand.mouse_move_to_pos(imgui.ImVec2(*point))
             hand.mouse_wheel_y(notches)
 
         self.do(turn)
@@ -298,7 +316,7 @@ class WindowDriver:
 
 
 def one_step(task: Task) -> bool:
-    """In place of `Task.advance`, so that there is a frame after each step of a task."""
+    """Replaces `Task.advance`, so that a frame follows each step of a task."""
     try:
         task.progress = next(task.steps)
     except StopIteration:

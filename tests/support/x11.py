@@ -1,5 +1,6 @@
 """`X11Client`: sends a window the messages of a window manager and of a program that drops a file."""
 
+import select
 import time
 from pathlib import Path
 
@@ -70,5 +71,5 @@ class X11Client:
                 received = self._display.next_event()
                 if received.type == kind:
                     return received
-            time.sleep(0.01)
+            select.select([self._display], [], [], max(deadline - time.monotonic(), 0.0))
         raise AssertionError(f"no event of kind {kind} within {DEADLINE:g} s")

@@ -13,7 +13,7 @@ def test_h_hides_the_pins_while_it_is_held(pinned):
     snapshots = []
 
     def hold(hand):
-        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.empty_place))
+        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.empty_point))
         hand.key_down(Key.h)
         hand.yield_(2)
         pinned.on_main_thread(hand, lambda: pinned.window.after_draw.append(shoot))
@@ -40,20 +40,20 @@ def marker_pixels(shot, at, radius):
 
 
 def test_pins_are_drawn_where_they_are_and_only_when_shown(pinned):
-    at = pinned.screen(pinned.pin_place(2))
+    at = pinned.to_screen(pinned.pin_position(2))
     shown = pinned.screenshot()
     pinned.state.view.show_pins = False
     hidden = pinned.screenshot()
     on_canvas = slice(0, round(pinned.editor.canvas[2]))
     changed = np.argwhere((shown != hidden).any(axis=2)[:, on_canvas])
-    around = [pinned.screen(pinned.pin_place(pin)) for pin in (1, 2, 3)]
+    around = [pinned.to_screen(pinned.pin_position(pin)) for pin in (1, 2, 3)]
     distances = np.min([np.hypot(*(changed[:, ::-1] + 0.5 - place).T) for place in around], axis=0)
     assert distances.max() < PICK_RADIUS
     ring = marker_pixels(shown, (at[0] + 6, at[1]), 0)[0, 0]
     assert ring.min() > 240, "a white ring around the dot"
     disc = changed[np.hypot(*(changed[:, ::-1] + 0.5 - at).T) < 2 * PICK_RADIUS]
     np.testing.assert_allclose(
-        disc.mean(axis=0)[::-1] + 0.5, pinned.editor.camera.to_screen(pinned.pin_place(2)), atol=0.5
+        disc.mean(axis=0)[::-1] + 0.5, pinned.editor.camera.to_screen(pinned.pin_position(2)), atol=0.5
     )
 
 

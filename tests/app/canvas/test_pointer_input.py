@@ -29,11 +29,11 @@ def pose(ui):
 
 
 def test_a_click_adds_a_pin_exactly_there(ui):
-    at = ui.screen((100.0, 80.0))
+    at = ui.to_screen((100.0, 80.0))
     ui.click(at)
     (pin,) = ui.pins
-    assert tuple(pin.target) == ui.place(at)
-    np.testing.assert_allclose(ui.pin_place(pin.id), ui.place(at), atol=1e-9)
+    assert tuple(pin.target) == ui.to_drawing(at)
+    np.testing.assert_allclose(ui.pin_position(pin.id), ui.to_drawing(at), atol=1e-9)
     assert ui.editor.selection == {pin.id}
     assert ui.session.history.undo_label == "Add Pin"
     assert not ui.session.is_posed
@@ -41,33 +41,33 @@ def test_a_click_adds_a_pin_exactly_there(ui):
 
 def test_a_click_beside_the_drawing_adds_none_and_deselects(pinned):
     pinned.editor.select({1})
-    pinned.click(pinned.empty_place)
+    pinned.click(pinned.empty_point)
     assert len(pinned.pins) == 3
     assert not pinned.editor.selection
     assert pinned.session.history.depth == 0
 
 
 def test_a_drag_bends_and_the_pin_arrives_while_others_hold(pinned):
-    held = {pin: pinned.pin_place(pin) for pin in (1, 2)}
-    start = pinned.screen(pinned.pin_place(3))
+    held = {pin: pinned.pin_position(pin) for pin in (1, 2)}
+    start = pinned.to_screen(pinned.pin_position(3))
     end = start[0] - 60, start[1] - 200
-    wanted = pinned.pin_place(3) + np.subtract(end, start) / pinned.editor.camera.zoom
+    wanted = pinned.pin_position(3) + np.subtract(end, start) / pinned.editor.camera.zoom
     pinned.drag(start, end)
     np.testing.assert_allclose(pinned.session.state.pin(3).target, wanted, atol=1e-9)
-    assert np.linalg.norm(pinned.pin_place(3) - wanted) < PIN_TOLERANCE == 0.25
+    assert np.linalg.norm(pinned.pin_position(3) - wanted) < PIN_TOLERANCE == 0.25
     for pin, place in held.items():
-        assert np.linalg.norm(pinned.pin_place(pin) - place) < PIN_TOLERANCE
+        assert np.linalg.norm(pinned.pin_position(pin) - place) < PIN_TOLERANCE
     assert pinned.session.history.undo_label == "Drag Pin"
     assert pinned.session.history.depth == 1
 
 
 def test_press_and_drag_on_the_drawing_adds_a_pin_and_bends_in_one_gesture(ui):
-    ui.click(ui.screen((50.0, 80.0)))
+    ui.click(ui.to_screen((50.0, 80.0)))
     before = pose(ui)
-    start = ui.screen((200.0, 80.0))
+    start = ui.to_screen((200.0, 80.0))
     end = start[0], start[1] + 150
     ui.drag(start, end)
-    assert np.linalg.norm(ui.pin_place(2) - ui.place(end)) < PIN_TOLERANCE
+    assert np.linalg.norm(ui.pin_position(2) - ui.to_drawing(end)) < PIN_TOLERANCE
     assert ui.session.history.undo_label == "Add and Drag Pin"
     ui.key(CTRL | Key.z)
     assert [pin.id for pin in ui.pins] == [1]
@@ -75,27 +75,27 @@ def test_press_and_drag_on_the_drawing_adds_a_pin_and_bends_in_one_gesture(ui):
 
 
 def test_shift_click_selects_and_unselects_pins(pinned):
-    pinned.click(pinned.screen(pinned.pin_place(1)))
-    pinned.click(pinned.screen(pinned.pin_place(2)), shift=True)
+    pinned.click(pinned.to_screen(pinned.pin_position(1)))
+    pinned.click(pinned.to_screen(pinned.pin_position(2)), shift=True)
     assert pinned.editor.selection == {1, 2}
-    pinned.click(pinned.screen(pinned.pin_place(1)), shift=True)
+    pinned.click(pinned.to_screen(pinned.pin_position(1)), shift=True)
     assert pinned.editor.selection == {2}
     assert pinned.session.history.depth == 0
 
 
 def test_selected_pins_are_dragged_together(pinned):
     pinned.editor.select({2, 3})
-    before = {pin: pinned.pin_place(pin) for pin in (2, 3)}
-    start = pinned.screen(before[3])
+    before = {pin: pinned.pin_position(pin) for pin in (2, 3)}
+    start = pinned.to_screen(before[3])
     pinned.drag(start, (start[0], start[1] + 100))
     for pin, place in before.items():
         wanted = place + np.array([0, 100 / pinned.editor.camera.zoom])
-        assert np.linalg.norm(pinned.pin_place(pin) - wanted) < PIN_TOLERANCE
+        assert np.linalg.norm(pinned.pin_position(pin) - wanted) < PIN_TOLERANCE
 
 
 def test_a_rubber_band_selects_what_is_in_it(pinned):
-    x, y = pinned.screen(pinned.pin_place(3))
-    corner = pinned.screen((232.0, 2.0))
+    x, y = pinned.to_screen(pinned.pin_position(3))
+    corner = pinned.to_screen((232.0, 2.0))
     pinned.drag(corner, (x - 20, y + 20))
     assert pinned.editor.selection == {3}
     assert len(pinned.pins) == 3
@@ -103,11 +103,11 @@ def test_a_rubber_band_selects_what_is_in_it(pinned):
 
 def test_a_rubber_band_that_is_escaped_selects_nothing(pinned):
     pinned.editor.select({1})
-    x, y = pinned.screen(pinned.pin_place(3))
+    x, y = pinned.to_screen(pinned.pin_position(3))
     seen = []
 
     def actions(hand):
-        pinned.begin_drag(hand, pinned.screen((232.0, 2.0)))
+        pinned.begin_drag(hand, pinned.to_screen((232.0, 2.0)))
         move(hand, (x - 20, y + 20))
         seen.append((pinned.tool, pinned.editor.selection))
         hand.key_press(Key.escape)
@@ -124,23 +124,23 @@ def test_a_rubber_band_that_is_escaped_selects_nothing(pinned):
 @pytest.mark.parametrize("notches", [3.0, -2.0])
 def test_the_wheel_zooms_at_the_pointer(ui, notches):
     at = (300.0, 500.0)
-    place, zoom = ui.place(at), ui.editor.camera.zoom
+    place, zoom = ui.to_drawing(at), ui.editor.camera.zoom
     ui.wheel(at, notches)
     assert ui.editor.camera.zoom == pytest.approx(zoom * 1.15**notches)
-    np.testing.assert_allclose(ui.place(at), place, atol=1e-9)
+    np.testing.assert_allclose(ui.to_drawing(at), place, atol=1e-9)
 
 
 @pytest.mark.parametrize("how", ["middle button", "space", "hand tool"])
 def test_panning_takes_the_canvas_along_and_edits_nothing(pinned, how):
-    start = pinned.screen(pinned.pin_place(2))
+    start = pinned.to_screen(pinned.pin_position(2))
     end = start[0] + 70, start[1] - 40
-    place = pinned.place(start)
+    place = pinned.to_drawing(start)
     if how == "hand tool":
         pinned.editor.chosen_tool = pinned.editor.hand_tool
     pinned.drag(
         start, end, button=2 if how == "middle button" else 0, held=Key.space if how == "space" else None
     )
-    np.testing.assert_allclose(pinned.place(end), place, atol=1e-9)
+    np.testing.assert_allclose(pinned.to_drawing(end), place, atol=1e-9)
     assert not pinned.editor.is_modified
     assert pinned.tool == ("HandIdle" if how == "hand tool" else "PinsIdle")
 
@@ -161,7 +161,7 @@ def test_escape_in_a_pan_goes_back(ui):
 
 def test_space_released_where_the_canvas_does_not_hear_it_leaves_no_hand(ui):
     def actions(hand):
-        move(hand, ui.empty_place)
+        move(hand, ui.empty_point)
         hand.key_down(Key.space)
         hand.yield_(2)
         assert ui.tool == "HandIdle"
@@ -181,7 +181,7 @@ def test_space_released_where_the_canvas_does_not_hear_it_leaves_no_hand(ui):
 @pytest.mark.parametrize("at", [PANEL, STATUS, (20.0, 500.0), (900.0, 8.0)])
 def test_a_click_on_a_panel_never_reaches_the_canvas(ui, at):
     ui.editor.camera = Camera(6.0, (at[0] - 6 * 70, at[1] - 6 * 80))  # the head lies under the panel
-    assert ui.session.drawing.mesh.find(ui.place(at), pose(ui)) is not None
+    assert ui.session.drawing.mesh.find(ui.to_drawing(at), pose(ui)) is not None
     over = []
 
     def click(hand):
@@ -201,7 +201,7 @@ def test_the_wheel_over_a_panel_does_not_zoom(ui):
 
 
 def test_a_drag_goes_on_over_a_panel_and_ends_there(pinned):
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     seen = []
 
     def actions(hand):
@@ -213,7 +213,7 @@ def test_a_drag_goes_on_over_a_panel_and_ends_there(pinned):
         hand.mouse_up(0)
 
     pinned.do(actions)
-    wanted = pinned.pin_place(3)
+    wanted = pinned.pin_position(3)
     (tool, target), shift = seen[0], np.subtract(PANEL, start) / pinned.editor.camera.zoom
     assert tool == "DraggingPin"
     np.testing.assert_allclose(target, np.add((210.0, 80.0), shift), atol=0.01)
@@ -222,7 +222,7 @@ def test_a_drag_goes_on_over_a_panel_and_ends_there(pinned):
 
 
 def test_a_press_that_began_on_a_panel_drags_no_pin(pinned):
-    pinned.drag(PANEL, pinned.screen(pinned.pin_place(3)), pinned.screen(pinned.pin_place(2)))
+    pinned.drag(PANEL, pinned.to_screen(pinned.pin_position(3)), pinned.to_screen(pinned.pin_position(2)))
     assert not pinned.editor.is_modified
     assert not pinned.editor.selection
 
@@ -254,7 +254,7 @@ def open_dialog(ui, hand):
 @pytest.mark.parametrize("end", [escape, lose_focus, undo, open_dialog])
 def test_a_drag_that_is_cut_short_restores_everything(pinned, end):
     before = pinned.session.state
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     seen = []
 
     def actions(hand):
@@ -279,7 +279,7 @@ def test_a_pointer_that_has_left_the_window_hovers_over_nothing(pinned):
     hovered = []
 
     def actions(hand):
-        for at in (pinned.screen(pinned.pin_place(2)), (no_place, no_place)):
+        for at in (pinned.to_screen(pinned.pin_position(2)), (no_place, no_place)):
             hand.mouse_teleport_to_pos(imgui.ImVec2(*at))
             hand.yield_(2)
             hovered.append(pinned.editor.tool.markers.hovered_pin)
@@ -290,7 +290,7 @@ def test_a_pointer_that_has_left_the_window_hovers_over_nothing(pinned):
 
 def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkeypatch):
     before = pinned.session.state
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     seen = []
 
     def actions(hand):
@@ -320,10 +320,10 @@ def test_an_unsolvable_drag_shows_a_message_and_restores_the_pose(pinned, monkey
 
 
 def test_the_drawing_is_shown_where_the_camera_says(ui, image):
-    background = ui.screenshot()[int(ui.empty_place[1]) + 2, int(ui.empty_place[0]) + 2]
+    background = ui.screenshot()[int(ui.empty_point[1]) + 2, int(ui.empty_point[0]) + 2]
     ui.state.view.show_checkerboard = False
     shot = ui.screenshot().astype(int)
-    inside = ui.screen((70.0, 80.0))
+    inside = ui.to_screen((70.0, 80.0))
     np.testing.assert_allclose(shot[round(inside[1]), round(inside[0])], [90, 140, 200], atol=1)
     left, top, right, bottom = (round(side) for side in ui.editor.canvas)
     part = shot[top:bottom, left:right]

@@ -34,7 +34,7 @@ def test_backspace_removes_the_last_pin(pinned):
 
 
 def test_alt_click_cuts_a_pin_off_and_the_keyboard_stays_with_the_canvas(pinned):
-    at = pinned.screen(pinned.pin_place(2))
+    at = pinned.to_screen(pinned.pin_position(2))
 
     def cut(hand):
         hand.mouse_move_to_pos(imgui.ImVec2(*at))

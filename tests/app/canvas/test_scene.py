@@ -34,10 +34,10 @@ def test_a_cached_picture_shows_every_change(pinned, monkeypatch):
     def hover(at):
         imgui.get_io().add_mouse_pos_event(*at)
 
-    x, y = pinned.pin_place(3)
+    x, y = pinned.pin_position(3)
     changes = [
-        lambda: hover(pinned.screen(pinned.pin_place(2))),
-        lambda: setattr(pinned.editor, "camera", pinned.editor.camera.zoomed(1.3, pinned.empty_place)),
+        lambda: hover(pinned.to_screen(pinned.pin_position(2))),
+        lambda: setattr(pinned.editor, "camera", pinned.editor.camera.zoomed(1.3, pinned.empty_point)),
         lambda: setattr(pinned.state.view, "show_checkerboard", False),
         lambda: setattr(pinned.state.view, "show_mesh", True),
         lambda: setattr(pinned.state.view, "show_rest_pose", True),
@@ -148,7 +148,7 @@ def test_a_new_overlay_is_seen_on_a_large_mesh(large, monkeypatch):
 def test_a_large_mesh_at_rest_is_drawn_once(large, draws):
     large.settle()
     count = len(draws)
-    large.editor.pointer = large.screen((100.0, 80.0))
+    large.editor.pointer = large.to_screen((100.0, 80.0))
     large.frame()
     large.frame()
     assert len(draws) == count

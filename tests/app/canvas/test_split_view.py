@@ -18,7 +18,7 @@ MENU = ("View", "Compare Methods")
 def split(pinned):
     """The pinned drawing in both halves, pin 3 dragged up."""
     pinned.menu(*MENU)
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0], start[1] - 100))
     assert pinned.session.is_posed
     return pinned
@@ -87,10 +87,10 @@ def test_right_half_shows_the_second_pose(split):
 
 def test_a_click_on_the_right_adds_no_pin_and_the_wheel_zooms_both(split):
     shift = split.editor.canvas[2] - split.editor.canvas[0]
-    x, y = split.screen((100.0, 80.0))
+    x, y = split.to_screen((100.0, 80.0))
     split.click((x + shift, y))
     assert len(split.pins) == 3
-    zoom, place = split.editor.camera.zoom, split.place((x, y))
+    zoom, place = split.editor.camera.zoom, split.to_drawing((x, y))
 
     def scroll(hand):
         hand.mouse_move_to_pos(imgui.ImVec2(x + shift, y))
@@ -98,7 +98,7 @@ def test_a_click_on_the_right_adds_no_pin_and_the_wheel_zooms_both(split):
 
     split.do(scroll)
     assert split.editor.camera.zoom > zoom
-    assert split.place((x, y)) == pytest.approx(place, abs=1.0)
+    assert split.to_drawing((x, y)) == pytest.approx(place, abs=1.0)
 
 
 def test_undo_takes_both_back(split):

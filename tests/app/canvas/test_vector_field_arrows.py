@@ -36,7 +36,7 @@ def test_the_length_of_an_arrow_grows_with_the_root_of_the_speed():
 
 def test_the_fields_are_seen_during_a_drag_only(pinned):
     pinned.state.view.show_vector_fields = True
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     counts = []
 
     def actions(hand):
@@ -71,7 +71,7 @@ def gate(monkeypatch):
 @pytest.mark.parametrize("ends", ["at rest", "switched off", "closed"])
 def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, gate, ends):
     pinned.state.view.show_vector_fields = True
-    gestures.move_pin(pinned.editor, 3, tuple(pinned.pin_place(3) - (0, 20)))
+    gestures.move_pin(pinned.editor, 3, tuple(pinned.pin_position(3) - (0, 20)))
     while not pinned.state.view.is_computing:
         pinned.frame()
     if ends == "switched off":
@@ -88,7 +88,7 @@ def test_the_window_sleeps_though_fields_came_too_late_to_be_seen(pinned, gate, 
 
 def test_fields_are_computed_beside_the_window_and_then_shown(pinned, gate):
     pinned.state.view.show_vector_fields = True
-    x, y = pinned.pin_place(3)
+    x, y = pinned.pin_position(3)
     pinned.session.begin("Drag Pin")
     pinned.session.apply(SetTargets({3: (x, y - 40)}))
     while not pinned.state.view.is_computing:

@@ -48,7 +48,7 @@ def exported(ui):
 
 
 def bend(ui):
-    start = ui.screen(ui.pin_place(3))
+    start = ui.to_screen(ui.pin_position(3))
     ui.drag(start, (start[0] - 30, start[1] - 120))
 
 
@@ -74,14 +74,14 @@ def test_an_overlay_is_seen_and_gone_again_and_never_exported(pinned, name):
 def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned):
     plain = pinned.screenshot()
     pinned.key(Key.s)
-    start, end = pinned.screen((120.0, 80.0)), pinned.screen((160.0, 80.0))
+    start, end = pinned.to_screen((120.0, 80.0)), pinned.to_screen((160.0, 80.0))
     pinned.drag(start, end)
     stiffness = pinned.session.state.stiffness
     assert stiffness.max() == 100.0
     assert len(pinned.pins) == 3
     assert isinstance(pinned.state.overlays(1.0).face_colors, FaceColors)
     tinted = pinned.screenshot()
-    x, y = map(round, pinned.screen((140.0, 70.0)))
+    x, y = map(round, pinned.to_screen((140.0, 70.0)))
     assert (tinted[y, x] != plain[y, x]).any()
     pinned.key(Key.p)
     assert pinned.state.overlays(1.0).face_colors is None

@@ -42,10 +42,10 @@ def keys(ui, *chords, look=None):
 def test_a_pin_is_set_nudged_and_removed_by_keys_alone(ui):
     at = keys(ui, Key.c, Key.enter, look=lambda: ui.editor.pointer)[0]
     (pin,) = ui.pins
-    assert ui.pin_place(pin.id) == pytest.approx(ui.place(at), abs=0.01)
+    assert ui.pin_position(pin.id) == pytest.approx(ui.to_drawing(at), abs=0.01)
     assert ui.editor.selection == {pin.id}
     keys(ui, Key.escape, Key.up_arrow, SHIFT | Key.left_arrow)
-    x, y = ui.place(at)
+    x, y = ui.to_drawing(at)
     assert ui.pins[0].target == pytest.approx((x - 10, y - 1), abs=0.01)
     keys(ui, Key.delete)
     assert not ui.pins
@@ -90,7 +90,7 @@ def test_the_mouse_takes_over_where_it_really_moves(ui):
     tools = []
 
     def act(hand):
-        x, y = ui.empty_place
+        x, y = ui.empty_point
         hand.mouse_move_to_pos(imgui.ImVec2(x, y))
         hand.key_press(Key.c)
         for way in (2, 60):

@@ -172,7 +172,7 @@ def test_escape_and_a_click_beside_it_close_it_and_run_nothing(pinned):
     def click_beside(hand):
         hand.key_press(Key.f3)
         hand.yield_(3)
-        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.empty_place))
+        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.empty_point))
         hand.mouse_click(0)
 
     pinned.do(click_beside)
@@ -216,7 +216,7 @@ def test_a_drawing_is_opened_by_its_name(pinned):
 @pytest.mark.parametrize(("chord", "name"), [(Key.tab, "Panel"), (SHIFT | Key.tab, "Tools")])
 def test_tab_goes_from_the_drawing_to_a_panel_and_escape_back(pinned, chord, name):
     pinned.editor.select({3})
-    before = pinned.pin_place(3)
+    before = pinned.pin_position(3)
     seen = []
 
     def walk(hand):

@@ -5,7 +5,6 @@ import glfw
 import numpy as np
 import pytest
 
-from akap_editor.app import glfw_key_order as key_order
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
@@ -15,6 +14,7 @@ from akap_editor.app.commands.shortcuts_page import ShortcutsPage
 from akap_editor.app.dialogs.about import AboutDialog
 from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
+from akap_editor.app.glfw_window import on_key
 from akap_editor.app.panels import side_panel as panels
 from akap_editor.deform.methods import get_method, method_names, nearest_preset, presets
 from akap_editor.editor import gestures
@@ -29,7 +29,7 @@ ITEMS = [(menu, command) for menu, group in MENUS for command in group if isinst
 
 def bend(ui):
     """Pin 3 goes up; one undo entry."""
-    start = ui.screen(ui.pin_place(3))
+    start = ui.to_screen(ui.pin_position(3))
     ui.drag(start, (start[0], start[1] - 120))
     assert ui.session.is_posed
 
@@ -386,7 +386,7 @@ def test_a_shortcut_within_one_frame_is_not_its_key_alone(pinned):
     io = imgui.get_io()
     io.add_key_event(CTRL, True)
     io.add_key_event(Key.d, True)
-    key_order.on_key(None, glfw.KEY_LEFT_CONTROL, 0, glfw.RELEASE, 0)
+    on_key(None, glfw.KEY_LEFT_CONTROL, 0, glfw.RELEASE, 0)
     io.add_key_event(CTRL, False)
     io.add_key_event(Key.d, False)
     pinned.settle()
@@ -397,7 +397,7 @@ def test_a_shortcut_within_one_frame_is_not_its_key_alone(pinned):
 
 def test_space_presses_no_button_that_was_clicked_before(pinned):
     pinned.tool_button(commands.SHOW_MESH)
-    start = pinned.screen(pinned.pin_place(2))
+    start = pinned.to_screen(pinned.pin_position(2))
     camera = pinned.editor.camera
     pinned.drag(start, (start[0] + 30, start[1]), held=Key.space)
     assert pinned.editor.camera != camera
@@ -522,7 +522,7 @@ def test_help_opens_and_closes(pinned, label, page, title, close):
     else:
         pinned.key(Key.escape if close == "escape" else Key.enter)
     assert not pinned.state.part(page).is_open
-    pinned.click(pinned.screen((100.0, 80.0)))
+    pinned.click(pinned.to_screen((100.0, 80.0)))
     assert len(pinned.pins) == 4, "the canvas is free again"
 
 

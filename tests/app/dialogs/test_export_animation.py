@@ -34,7 +34,7 @@ def keyed(pinned):
     state.timeline.is_shown, state.timeline.mode = True, "keyframes"
     pinned.settle()
     state.timeline.keyframe_playback.set_keyframe(0.0)
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0] - 20, start[1] - 80))
     state.timeline.keyframe_playback.set_keyframe(0.4)
     pinned.settle()

@@ -40,7 +40,7 @@ def restart(ui, tmp_path):
 @pytest.fixture
 def bent(pinned):
     """The state of a drawing with three pins, one of them dragged."""
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0], start[1] - 90))
     return pinned.document
 

@@ -11,8 +11,8 @@ from tests.support.window_driver import one_step
 def test_what_was_done_by_hand_is_saved_and_done_again_to_the_last_bit(ui, tmp_path):
     ui.state.folder = tmp_path
     for place in ((50.0, 80.0), (130.0, 80.0), (210.0, 80.0)):
-        ui.click(ui.screen(place))
-    start = ui.screen((210.0, 80.0))
+        ui.click(ui.to_screen(place))
+    start = ui.to_screen((210.0, 80.0))
     ui.drag(start, (start[0] - 30, start[1] - 90))
     ui.menu("Edit", "Undo")
     ui.menu("Edit", "Redo")
@@ -30,8 +30,8 @@ def recorded(ui, tmp_path):
     """A recording of three pins, a drag, an undo and a drag; and the session that it was made of."""
     ui.state.timeline.session_playback.follow(ui.session)
     for place in ((50.0, 80.0), (130.0, 80.0), (210.0, 80.0)):
-        ui.click(ui.screen(place))
-    start = ui.screen((210.0, 80.0))
+        ui.click(ui.to_screen(place))
+    start = ui.to_screen((210.0, 80.0))
     ui.drag(start, (start[0] - 30, start[1] - 90))
     ui.menu("Edit", "Undo")
     ui.drag(start, (start[0] - 10, start[1] + 50))
@@ -65,7 +65,7 @@ def test_a_recording_that_was_opened_is_gone_on_with_and_branched(ui, tmp_path):
     playback = ui.state.timeline.session_playback
     playback.scrub(0.5 * playback.duration)
     ui.settle()
-    start = ui.screen(ui.pin_place(1))
+    start = ui.to_screen(ui.pin_position(1))
     ui.drag(start, (start[0] + 20, start[1] + 30))
     assert ui.session.history.labels[-2:] == ["Go Back in Time", "Drag Pin"]
     times = [event["t"] for event in ui.session.recording.events]

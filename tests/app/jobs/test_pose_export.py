@@ -84,14 +84,14 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
     monkeypatch.setattr(formats, "encode_png", lambda picture: gate.wait(60) and encode(picture))
     path = tmp_path / "pose.png"
     export_pose(pinned.state, PoseExportOptions(), path)
-    x, y = pinned.pin_place(3)
+    x, y = pinned.pin_position(3)
     drawing, pose = pinned.session.drawing, pinned.session.state.positions
     pinned.do(lambda hand: hand.yield_(3), settle=False)
     assert pinned.state.notice == "Exporting pose.png ..."
     gestures.move_pin(pinned.editor, 3, (x, y - 40))
     while pinned.editor.is_moving:
         pinned.frame()
-    np.testing.assert_allclose(pinned.pin_place(3), (x, y - 40), atol=0.25)
+    np.testing.assert_allclose(pinned.pin_position(3), (x, y - 40), atol=0.25)
     assert pinned.state.is_busy
     assert not path.exists()
     gate.set()

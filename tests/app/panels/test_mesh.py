@@ -67,7 +67,7 @@ def test_two_drags_are_two_entries(opened):
 
 def test_a_pin_can_be_dragged_right_after(opened):
     slide(opened, "##Detail", 0.2, 0.5)
-    start = opened.screen(tuple(opened.pin_place(3)))
+    start = opened.to_screen(tuple(opened.pin_position(3)))
     opened.drag(start, (start[0], start[1] - 40))
     assert opened.session.history.undo_label == "Move Pin" or opened.session.is_posed
     assert opened.session.pin_error() < 0.25

@@ -88,7 +88,7 @@ def test_a_method_without_parameters_has_no_section_of_them(pinned, monkeypatch)
     pinned.do(choose)
     assert sections == [True, False]
     assert pinned.session.state.settings == Settings(TOY, ())
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     rest = pinned.session.state.positions
     pinned.drag(start, (start[0], start[1] - 40))
     assert pinned.session.state.positions.tobytes() != rest.tobytes()
@@ -107,7 +107,7 @@ def click(hand, label):
 def test_a_click_on_a_step_goes_there_and_back(pinned):
     poses = [pinned.session.state]
     for pin, dy in ((3, -60), (3, 40), (1, 30)):
-        start = pinned.screen(pinned.pin_place(pin))
+        start = pinned.to_screen(pinned.pin_position(pin))
         pinned.drag(start, (start[0], start[1] + dy))
         poses.append(pinned.session.state)
     pinned.state.notice = "Saved figure.akap"

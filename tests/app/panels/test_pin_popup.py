@@ -25,7 +25,7 @@ def _open(ui, pin, click, actions):
     """All in one run, because the Test Engine closes popups at the end of a run."""
 
     def act(hand):
-        hand.mouse_move_to_pos(imgui.ImVec2(*ui.screen(ui.pin_place(pin))))
+        hand.mouse_move_to_pos(imgui.ImVec2(*ui.to_screen(ui.pin_position(pin))))
         click(hand)
         hand.yield_(3)
         for action in actions:
@@ -55,7 +55,7 @@ def test_a_double_click_opens_the_values_which_move_the_pin(pinned):
     assert seen == [PinRequest("values", 3), revision, PinRequest("values", 3)], "half a number moves nothing"
     assert pinned.editor.request is None
     np.testing.assert_allclose(pinned.session.state.pin(3).target, (195, 80))
-    np.testing.assert_allclose(pinned.pin_place(3), (195, 80), atol=0.25)
+    np.testing.assert_allclose(pinned.pin_position(3), (195, 80), atol=0.25)
     assert pinned.session.history.labels == ["Move Pin"]
 
 
@@ -68,7 +68,7 @@ def test_escape_closes_the_values_at_once(pinned):
 
 def test_a_double_click_on_the_drawing_adds_one_pin(ui):
     def act(hand):
-        hand.mouse_move_to_pos(imgui.ImVec2(*ui.screen((100.0, 80.0))))
+        hand.mouse_move_to_pos(imgui.ImVec2(*ui.to_screen((100.0, 80.0))))
         hand.mouse_double_click(0)
         hand.yield_(3)
         assert ui.editor.request is None
@@ -103,7 +103,7 @@ def test_a_click_beside_an_open_menu_closes_it_and_adds_no_pin(pinned):
     counts = []
 
     def click_beside(hand):
-        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.screen((80.0, 60.0))))
+        hand.mouse_move_to_pos(imgui.ImVec2(*pinned.to_screen((80.0, 60.0))))
         hand.mouse_click(0)
         hand.yield_(2)
         counts.append((pinned.editor.request, len(pinned.pins)))

@@ -8,7 +8,7 @@ from akap_editor.editor import gestures
 
 
 def test_poses_are_kept_and_applied_with_a_click(pinned):
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0] - 20, start[1] - 100))
     gestures.add_pose(pinned.editor, "Up")
     gestures.reset_pose(pinned.editor)

@@ -19,7 +19,7 @@ def keyed(pinned):
     state.timeline.is_shown, state.timeline.mode = True, "keyframes"
     pinned.settle()
     pinned.key(imgui.Key.k)
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0] - 20, start[1] - 100))
     state.timeline.keyframe_playback.set_keyframe(1.0)
     state.timeline.keyframe_playback.scrub(0.0)
@@ -65,7 +65,7 @@ def test_a_drag_on_the_canvas_takes_what_is_seen_and_k_keeps_it(keyed):
     keyed.settle()
     seen, depth = keyed.session.state.positions, keyed.session.history.depth
     before = keyed.session.present
-    start = keyed.screen(keyed.pin_place(3))
+    start = keyed.to_screen(keyed.pin_position(3))
     keyed.click(start)
     assert keyed.session.present is before, "a click takes nothing"
     keyed.drag(start, (start[0] + 20, start[1] + 30))

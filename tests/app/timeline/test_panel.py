@@ -16,7 +16,7 @@ def bent(pinned):
     """The timeline is shown, and a drag was made."""
     pinned.state.timeline.is_shown = True
     pinned.settle()
-    start = pinned.screen(pinned.pin_place(3))
+    start = pinned.to_screen(pinned.pin_position(3))
     pinned.drag(start, (start[0] - 20, start[1] - 100))
     return pinned
 
@@ -75,7 +75,7 @@ def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(be
     playback.scrub(0.5 * playback.duration)
     bent.settle()
     here = playback.snapshot_at(playback.time).time
-    start = bent.screen(bent.pin_place(3))
+    start = bent.to_screen(bent.pin_position(3))
     bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
     assert bent.session.history.labels[-2:] == ["Go Back in Time", "Drag Pin"]
     assert playback.marked_range is not None
@@ -86,7 +86,7 @@ def test_control_and_drag_from_an_earlier_moment_takes_the_gesture_from_there(be
 def test_a_drag_on_the_canvas_goes_on_from_there(bent):
     bent.state.timeline.session_playback.scrub(0.0)
     bent.settle()
-    start = bent.screen(bent.pin_place(3))
+    start = bent.to_screen(bent.pin_position(3))
     bent.drag(start, (start[0] - 20, start[1] + 60))
     assert not bent.session.is_previewing
     *_, last = replay(bent.session.recording, bent.session.drawing)
@@ -96,7 +96,7 @@ def test_a_drag_on_the_canvas_goes_on_from_there(bent):
 
 def test_control_and_drag_records_that_gesture_only(bent):
     before = bent.state.timeline.session_playback.duration
-    start = bent.screen(bent.pin_place(3))
+    start = bent.to_screen(bent.pin_position(3))
     bent.drag(start, (start[0] + 30, start[1] + 30), held=imgui.Key.mod_ctrl)
     assert bent.state.timeline.session_playback.marked_range is not None
     start, end = bent.state.timeline.session_playback.marked_range

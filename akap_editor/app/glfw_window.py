@@ -1,0 +1,91 @@
+"""The GLFW window: its creation, its remembered size and position, and its key callback."""
+
+# imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
+from imgui_bundle import imgui  # isort: skip
+from collections.abc import Sequence
+from typing import Any
+
+import glfw
+
+from ..errors import DisplayError, GraphicsError
+from .preferences import Preferences
+
+_MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
+_UNUSED_KEY = imgui.Key.f24  # no command has it
+
+Area = tuple[int, int, int, int]  # left, top, width, height in screen coordinates
+
+DEFAULT_SIZE, MIN_SIZE = (1280, 800), (640, 400)  # design points
+MAX_SIDE = 16384  # of a remembered size, design points
+GRIP = 64  # screen coordinates of the window's upper left corner that must be on a screen, to drag it by
+
+
+def create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
+    """A GLFW window whose OpenGL 3.3 context is current. See `Window` for the arguments.
+
+    Raises DisplayError without a display, GraphicsError without OpenGL 3.3.
+    """
+    if null:
+        glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
+    if not glfw.init():
+        raise DisplayError("there is no display: expected an X11 or Wayland session to open a window in")
+    if null:
+        glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
+    for hint, value in (
+        (glfw.CONTEXT_VERSION_MAJOR, 3),
+        (glfw.CONTEXT_VERSION_MINOR, 3),
+        (glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE),
+        (glfw.OPENGL_FORWARD_COMPAT, True),
+        (glfw.DEPTH_BITS, 0),
+        (glfw.STENCIL_BITS, 0),
+        (glfw.SCALE_TO_MONITOR, True),
+        (glfw.VISIBLE, not hidden),
+    ):
+        glfw.window_hint(hint, value)
+    handle = glfw.create_window(*size, "akap-editor", None, None)
+    if not handle:
+        glfw.terminate()
+        raise GraphicsError("this computer offers no OpenGL 3.3 core profile, which the window needs")
+    if not null:  # the null platform takes the smallest height for the largest
+        glfw.set_window_size_limits(handle, *MIN_SIZE, glfw.DONT_CARE, glfw.DONT_CARE)
+    glfw.make_context_current(handle)
+    glfw.swap_interval(1)
+    return handle
+
+
+def remembered_size(preferences: Preferences) -> tuple[int, int]:
+    """Width and height in design points, within limits."""
+    match preferences.get("window", [*DEFAULT_SIZE]):
+        case [int(width), int(height)]:
+            return min(max(width, MIN_SIZE[0]), MAX_SIDE), min(max(height, MIN_SIZE[1]), MAX_SIDE)
+    return DEFAULT_SIZE
+
+
+def remembered_position(preferences: Preferences, screens: Sequence[Area]) -> tuple[int, int] | None:
+    """The upper left corner of the window; None if it is not on one of the screens any more."""
+    remembered: list[object] = preferences.get("place", [])
+    match remembered:
+        case [int(x), int(y)]:
+            for left, top, width, height in screens:
+                if left <= x <= left + width - GRIP and top <= y <= top + height - GRIP:
+                    return x, y
+    return None
+
+
+def screens() -> list[Area]:
+    """The part of each monitor that windows may cover."""
+    return [glfw.get_monitor_workarea(monitor) for monitor in glfw.get_monitors()]
+
+
+def on_key(window: Any, key: int, scancode: int, action: int, mods: int) -> None:
+    """GLFW's key callback: gives ImGui the keys of one frame in the order in which they were pressed.
+
+    It must be set before ImGui's callback, which calls it first.
+    ImGui reads the modifiers at the end of a frame: of Ctrl down, D down, Ctrl up in one frame it would see
+    only D. But it takes only one event of a key into a frame, so two events of a key without meaning, queued
+    before the release of a modifier, leave this release to the next frame.
+    """
+    if key in _MODIFIERS and action == glfw.RELEASE:
+        io = imgui.get_io()
+        io.add_key_event(_UNUSED_KEY, True)
+        io.add_key_event(_UNUSED_KEY, False)

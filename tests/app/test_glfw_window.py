@@ -1,0 +1,60 @@
+"""The GLFW window: its remembered size and position, and computers that cannot show it."""
+
+import glfw
+import pytest
+
+from akap_editor.app.glfw_window import DEFAULT_SIZE, MIN_SIZE, remembered_position, remembered_size
+from akap_editor.app.preferences import Preferences
+from akap_editor.app.window import Window
+from akap_editor.errors import DisplayError, GraphicsError
+
+
+@pytest.mark.parametrize(
+    ("remembered", "size"),
+    [
+        ([1000, 700], (1000, 700)),
+        ([10, -5], MIN_SIZE),
+        ([10**12, 700], (16384, 700)),
+        ([1000], DEFAULT_SIZE),
+        (["wide", 3], DEFAULT_SIZE),
+        ("large", DEFAULT_SIZE),
+    ],
+)
+def test_the_remembered_size_of_the_window(remembered, size):
+    preferences = Preferences()
+    preferences.put("window", remembered)
+    assert remembered_size(preferences) == size
+
+
+@pytest.mark.parametrize(
+    ("remembered", "position"),
+    [
+        ([100, 80], (100, 80)),
+        ([-900, 40], (-900, 40)),
+        ([1900, 40], None),
+        ([100, 5000], None),
+        ([100], None),
+        (["left", 3], None),
+        (None, None),
+    ],
+)
+def test_the_remembered_position_is_used_if_it_is_still_on_a_screen(remembered, position):
+    preferences = Preferences()
+    preferences.put("place", remembered)
+    assert remembered_position(preferences, [(0, 24, 1920, 1056), (-1280, 0, 1280, 800)]) == position
+    assert remembered_position(preferences, []) is None
+
+
+def test_no_display_is_said_in_one_sentence(monkeypatch):
+    monkeypatch.setattr(glfw, "init", lambda: False)
+    with pytest.raises(DisplayError, match="no display"):
+        Window()
+
+
+def test_no_opengl_is_said_in_one_sentence(monkeypatch):
+    monkeypatch.setattr(glfw, "init", lambda: True)
+    monkeypatch.setattr(glfw, "window_hint", lambda hint, value: None)
+    monkeypatch.setattr(glfw, "create_window", lambda *args: None)
+    monkeypatch.setattr(glfw, "terminate", lambda: None)
+    with pytest.raises(GraphicsError, match=r"OpenGL 3\.3"):
+        Window()
