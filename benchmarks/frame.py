@@ -1,10 +1,11 @@
-"""The editor while a pin is dragged: how often it draws, how long it keeps a hand waiting, and on what.
+"""Measures the frames of the editor while a pin is dragged.
 
 Run from the project's root: python benchmarks/frame.py [--seconds S] [--drawing NAME]
-Opens the real window on GLFW's null platform (no display needed), drags the trunk of the bundled elephant
-a hundred times a second by pointer events, with the window's own loop, and prints for each mesh size the
-median and the 95th percentile, in milliseconds: of the time between two frames, of the parts of a frame named
-in `PARTS`, and of the steps that the engine's thread computes meanwhile; and the process's peak memory.
+Opens the window on GLFW's null platform, which needs no display, runs its own loop, and drags the trunk of
+the bundled elephant with a hundred pointer events a second. Prints for each mesh size, in milliseconds, the
+median, the 95th percentile and the maximum of the time between two frames, of the `PARTS` of a frame, and of
+the steps that the engine's thread computes meanwhile. Also prints frames and steps per second and the peak
+memory.
 """
 
 import os
@@ -18,11 +19,13 @@ import subprocess
 import sys
 import time
 
+# imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
+import imgui_bundle  # noqa: F401  # isort: skip
+import glfw
 import numpy as np
 from timing import FunctionTimer
 
 from akap_editor.app import files
-from akap_editor.app import window as window_module
 from akap_editor.app.window import Window
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
@@ -36,13 +39,13 @@ from akap_editor.resources import resource
 SIZES = (1000, 3000, 10000, 30000)
 PINS = ((135, 800), (285, 795), (445, 795), (625, 800), (260, 420))
 GRIP, REACH = (915, 180), (-250.0, -90.0)
-RATE = 100  # moves of the hand a second
+RATE = 100  # pointer events per second
 PARTS = ("wait", "upload", "draw", "interface")
 COLUMNS = ("interval", *PARTS, "step")
 
 
 class Hand:
-    """Drags the trunk there and back in so many seconds."""
+    """Drags the tip of the trunk to another point and back. seconds: duration of the drag."""
 
     def __init__(self, window: Window, seconds: float) -> None:
         self._editor, self._seconds = window.state.editor, seconds
@@ -52,49 +55,52 @@ class Hand:
         self._moves = 0
 
     @property
-    def passed(self) -> float:
+    def elapsed(self) -> float:
         """Seconds since the press."""
         return time.perf_counter() - self._started
 
     def move(self) -> bool:
-        """Go to where the hand is now, if it has moved since the last look; whether it has."""
-        moves = int(self.passed * RATE)
+        """Send the pointer event that is due; whether there was one."""
+        moves = int(self.elapsed * RATE)
         if moves == self._moves:
             return False
         self._moves = moves
-        t = 0.5 - 0.5 * np.cos(2 * np.pi * self.passed / self._seconds)
-        at = GRIP[0] + t * REACH[0], GRIP[1] + t * REACH[1]
-        self._editor.handle_event(PointerEvent("move", self._to_screen(at)))
+        t = 0.5 - 0.5 * np.cos(2 * np.pi * self.elapsed / self._seconds)
+        point = GRIP[0] + t * REACH[0], GRIP[1] + t * REACH[1]
+        self._editor.handle_event(PointerEvent("move", self._to_screen(point)))
         return True
 
     def until_next_move(self) -> float:
-        """Seconds until the hand moves again."""
-        return max((self._moves + 1) / RATE - self.passed, 0.0)
+        """Seconds until the next pointer event is due."""
+        return max((self._moves + 1) / RATE - self.elapsed, 0.0)
 
 
 def instrument(timer: FunctionTimer, window: Window) -> list[float]:
-    """Sort the parts of a frame, whatever no other part claims is the interface; seconds of steps to come."""
+    """Time the parts of each frame; returns a list that will hold the seconds of each step.
+
+    The time of a frame that belongs to no other part counts as the interface.
+    """
     timer.wrap(Session, "step_is_ready", "wait")
     timer.wrap(Renderer, "show", "upload")
     timer.wrap(Renderer, "draw", "draw")
-    # Without a screen no frame ever ends by itself, and what was drawn for it stays in memory.
-    window_module.glfw.swap_buffers = lambda _: window.ctx.finish()  # type: ignore[assignment]
-    timer.wrap(window_module.glfw, "swap_buffers", "draw")
+    # without a screen no frame is ever finished, and its commands stay in memory
+    glfw.swap_buffers = lambda _: window.ctx.finish()  # type: ignore[assignment]
+    timer.wrap(glfw, "swap_buffers", "draw")
     timer.wrap(Window, "_draw", "interface")
     steps: list[float] = []
     step = Session.step
 
-    def counted(session: Session) -> object:
+    def timed_step(session: Session) -> object:
         result = step(session)
         steps.append(result.report.seconds)
         return result
 
-    Session.step = counted  # type: ignore[assignment, method-assign]
+    Session.step = timed_step  # type: ignore[assignment, method-assign]
     return steps
 
 
 def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[str, float]], list[float]]:
-    """Drag for so long; the vertex count, the seconds of each frame, and those of each step."""
+    """Drag for some seconds; returns the vertex count, the seconds of each frame's parts and of each step."""
     timer = FunctionTimer(PARTS)
     image = read_image(resource("assets", "drawings", f"{name}.png"))
     with Window(null=True) as window:
@@ -102,7 +108,7 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
         editor = window.state.editor
         for pin in PINS:
             gestures.add_pin(editor, pin)
-        for _ in range(20):  # panels find their places, and the drawing is fitted between them
+        for _ in range(20):  # until the panels have their final size and the drawing is fitted
             window.frame()
         steps = instrument(timer, window)
         hand = Hand(window, seconds)
@@ -110,7 +116,7 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
         window.wait_for_events = lambda seconds: wait_for_wake(min(seconds, hand.until_next_move()))
         rows: list[dict[str, float]] = []
         before = window.frames, time.perf_counter()
-        while hand.passed < seconds:
+        while hand.elapsed < seconds:
             if hand.move():
                 window.wake()
             window.loop_once()
@@ -124,10 +130,10 @@ def measure(vertices: int, seconds: float, name: str) -> tuple[int, list[dict[st
 
 
 def print_table(count: int, rows: list[dict[str, float]], steps: list[float], seconds: float) -> None:
-    """Median, 95th percentile and longest of each column, milliseconds."""
+    """Print the median, the 95th percentile and the maximum of each column in milliseconds."""
     memory = system.getrusage(system.RUSAGE_SELF).ru_maxrss / (1024**2 if sys.platform == "darwin" else 1024)
     columns = {name: [row[name] for row in rows] for name in COLUMNS[:-1]} | {"step": steps}
-    for label, quantile in (("median", 50), ("95 %", 95), ("most", 100)):
+    for label, quantile in (("median", 50), ("95 %", 95), ("max", 100)):
         values = [1000 * float(np.percentile(columns[name], quantile)) for name in COLUMNS]
         first = quantile == 50
         rates = f"  {len(rows) / seconds:6.0f} {len(steps) / seconds:6.0f} /s  {memory:5.0f} MB"
@@ -136,7 +142,7 @@ def print_table(count: int, rows: list[dict[str, float]], steps: list[float], se
 
 
 def main() -> None:
-    """Each size in a process of its own, so that its peak memory is its own."""
+    """Measure each size in its own process, so that the peak memory is that of the size."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=6.0)
     parser.add_argument("--drawing", default="elephant", choices=["elephant"])
