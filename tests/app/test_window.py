@@ -86,7 +86,7 @@ def test_a_window_that_is_at_rest_draws_nothing(loop, shown):
     assert loop.run(4) == [(IDLE_SECONDS, SETTLE_FRAMES)] * 4
 
 
-def test_a_step_that_fails_in_its_thread_is_told_and_the_window_sleeps_again(loop, monkeypatch):
+def test_a_step_that_fails_in_its_thread_is_reported_and_the_window_sleeps_again(loop, monkeypatch):
     ui = loop.ui
     start = ui.to_screen(ui.pin_position(3))
     targets, pose = ui.session.state.targets, ui.session.state.positions
@@ -123,7 +123,7 @@ def test_a_step_that_fails_in_its_thread_is_told_and_the_window_sleeps_again(loo
     assert not ui.state.error
 
 
-def test_an_event_wakes_it_until_all_stands_where_it_belongs(loop):
+def test_after_an_event_it_draws_until_the_layout_is_final(loop):
     loop.on_sleep = lambda count: count == 2
     frames = [frames for _, frames in loop.run(4)]
     assert frames == [SETTLE_FRAMES, SETTLE_FRAMES, 2 * SETTLE_FRAMES, 2 * SETTLE_FRAMES]
@@ -149,7 +149,7 @@ def test_it_wakes_for_a_tooltip(loop):
     assert widgets.tooltip_due() == 0.0
 
 
-def test_input_that_comes_with_the_last_frame_is_taken_in_whole(loop):
+def test_a_key_pressed_and_released_in_the_last_frame_is_handled(loop):
     """ImGui takes one change of a key per frame, so a quick press and release needs two."""
     io = imgui.get_io()
 
@@ -170,7 +170,7 @@ def test_it_does_not_sleep_until_a_dialog_has_dimmed_the_rest(loop):
     assert imgui.get_current_context().dim_bg_ratio == 1.0
 
 
-def test_it_draws_until_the_drawing_has_come_to_rest_and_shows_it(loop):
+def test_it_draws_until_the_drawing_has_settled_and_shows_the_last_pose(loop):
     """The last frame before the sleep shows, in the panel's numbers too, what any later frame would."""
     ui, snapshots = loop.ui, []
     x, y = ui.pin_position(3)
@@ -186,7 +186,7 @@ def test_it_draws_until_the_drawing_has_come_to_rest_and_shows_it(loop):
     np.testing.assert_array_equal(snapshots[-1], ui.screenshot())
 
 
-def test_a_minimised_window_is_not_drawn(loop, monkeypatch):
+def test_a_minimized_window_is_not_drawn(loop, monkeypatch):
     monkeypatch.setattr(glfw, "get_framebuffer_size", lambda handle: (0, 0))
     seconds = {seconds for seconds, _ in loop.run()}
     assert loop.sleeps[-1][1] == 0
