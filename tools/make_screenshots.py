@@ -86,7 +86,7 @@ def start(window: Window) -> None:
     window.state.editor.close()
     home = Path("/home/ada/Pictures")
     for name in reversed(RECENT):
-        window.state.preferences.opened(home / name)
+        window.state.preferences.add_recent(home / name)
 
 
 @shot("first-steps")
@@ -250,7 +250,9 @@ def take(window: Window, name: str, folder: Path) -> None:
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
     state = window.state = AppState(
-        exporter=window.state.exporter, thumbnails=window.state.thumbnails, preferences=Preferences()
+        offscreen_renderer=window.state.offscreen_renderer,
+        thumbnails=window.state.thumbnails,
+        preferences=Preferences(),
     )
     state.editor.ui_scale = window.scale
     files.show_document(state, posed_elephant())

@@ -1,8 +1,8 @@
-"""What the window holds besides the drawing's own state: view switches, files, messages, questions."""
+"""The state of the window: the editor, and what two or more of its dialogs, panels and jobs share."""
 
 import traceback
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -18,8 +18,7 @@ from ..geometry.distortion import Distortion, distortion
 from ..geometry.validation import Floats
 from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
-from ..render.overlays import Overlays
-from .canvas.view_options import ViewOptions, onion_poses
+from .canvas.view_options import ViewOptions
 from .jobs.background_thread import BackgroundThread, Wake, no_window
 from .jobs.pose_export import PoseExportQueue
 from .jobs.task import Task
@@ -27,7 +26,7 @@ from .preferences import Preferences
 from .thumbnails import Thumbnails
 from .timeline.timeline import Timeline
 
-_VIEW_PREFERENCES = {"show_mesh": "show_mesh", "checker": "show_checkerboard"}  # preferences: view options
+_STORED_OPTIONS = {"show_mesh": "show_mesh", "checker": "show_checkerboard"}  # preference: view option
 
 P = TypeVar("P")
 
@@ -44,35 +43,44 @@ def error_message(error: Exception) -> str:
 
 @dataclass
 class AppState:
-    """The state of the window; panels show it and commands change it.
+    """What panels and dialogs show and commands change.
 
-    notice: a sentence for the status bar that goes with the next edit; error: one that must be read first.
+    editor: the open drawing; view: what is shown besides it; timeline: its playback; comparison: the second
+    method in the split view; remesher: makes other meshes; wake: lets the window draw a frame, threads call
+    it when they are done.
+
+    notice: text in the status bar until the next edit; error: text that must be read before anything else;
+    task: the work whose progress a dialog shows; pose_exports: exports in the background; is_closing: whether
+    the window is about to close.
+
+    folder: where the next file dialog starts; preferences: what is stored between runs; autosave: keeps
+    recovery copies, None for none; offscreen_renderer, thumbnails: share the window's OpenGL context.
     """
 
     editor: Editor = field(default_factory=Editor)
-    wake: Wake = no_window  # lets the window draw a frame; threads call it when they are done
+    wake: Wake = no_window
+    view: ViewOptions = field(default_factory=ViewOptions)
     timeline: Timeline = field(init=False)
-    task: Task | None = None
     comparison: MethodComparison = field(default_factory=MethodComparison)
+    remesher: BackgroundRemesh = field(init=False)
     notice: str = ""
     error: str = ""
-    closing: bool = False
+    task: Task | None = None
+    pose_exports: PoseExportQueue = field(init=False)
+    is_closing: bool = False
     folder: Path = field(default_factory=Path.cwd)
-    exporter: OffscreenRenderer = field(default_factory=OffscreenRenderer)
-    writer: PoseExportQueue = field(init=False)
-    thumbnails: Thumbnails = field(default_factory=Thumbnails)
     preferences: Preferences = field(default_factory=Preferences)
     autosave: Autosave | None = None
-    view: ViewOptions = field(default_factory=ViewOptions)
-    remesher: BackgroundRemesh = field(init=False)
-    _jobs: list[Callable[[], None]] = field(default_factory=list)
-    _due: list[Callable[[], None]] = field(default_factory=list)
+    offscreen_renderer: OffscreenRenderer = field(default_factory=OffscreenRenderer)
+    thumbnails: Thumbnails = field(default_factory=Thumbnails)
+    _new_jobs: list[Callable[[], None]] = field(default_factory=list)
+    _due_jobs: list[Callable[[], None]] = field(default_factory=list)
     _measured: tuple[Floats, Distortion] | None = None
     _parts: dict[type, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.remesher = BackgroundRemesh(self.editor, BackgroundThread("mesh", self.wake))
-        self.writer = PoseExportQueue(self.wake)
+        self.pose_exports = PoseExportQueue(self.wake)
         self.timeline = Timeline(self.editor)
 
     def part(self, kind: type[P]) -> P:
@@ -86,14 +94,14 @@ class AppState:
         """Forget a part; the next use makes it anew, for example a dialog that is closed."""
         self._parts.pop(kind, None)
 
-    # -- between runs ----------------------------------------------------------------------------------------
+    # -- preferences -----------------------------------------------------------------------------------------
 
     @classmethod
-    def remembering(cls, preferences: Preferences, wake: Wake = no_window) -> "AppState":
-        """The state that the preferences remember; steps are computed in a thread."""
+    def from_preferences(cls, preferences: Preferences, wake: Wake = no_window) -> "AppState":
+        """The state as it was stored; steps of the solver are computed in a thread."""
         editor = Editor(worker=BackgroundThread("engine", wake))
         state = cls(editor, wake, preferences=preferences, notice=preferences.problem)
-        for name, option in _VIEW_PREFERENCES.items():
+        for name, option in _STORED_OPTIONS.items():
             setattr(state.view, option, preferences.get(name, getattr(state.view, option)))
         state.timeline.is_shown = preferences.get("show_timeline", False)
         state.view.restore(preferences.get("overlays", {}))
@@ -105,9 +113,9 @@ class AppState:
                 state.editor.brush_tool.brush = Brush.within_limits(radius, factor)
         return state
 
-    def remember(self) -> None:
-        """Write what has changed to the preferences; if that fails, a notice says so once."""
-        for name, option in _VIEW_PREFERENCES.items():
+    def save_preferences(self) -> None:
+        """Write the preferences if they have changed; an error becomes a notice, once."""
+        for name, option in _STORED_OPTIONS.items():
             self.preferences.put(name, getattr(self.view, option))
         self.preferences.put("show_timeline", self.timeline.is_shown)
         self.preferences.put("overlays", self.view.to_json())
@@ -116,58 +124,57 @@ class AppState:
         try:
             self.preferences.write()
         except InputError as error:
-            self.notice = f"Couldn't save the preferences. {error}"
+            self.notice = str(error)
 
-    # -- work that may fail ----------------------------------------------------------------------------------
-
-    def run_after_frame(self, job: Callable[[], None], notice: str = "") -> None:
-        """Do ``job`` once a whole frame has been drawn, so that ``notice`` is seen while it runs."""
-        self.notice = notice or self.notice
-        self._jobs.append(job)
+    # -- work ------------------------------------------------------------------------------------------------
 
     @property
     def needs_frame(self) -> bool:
         """Whether the next frame changes something without an event: deferred jobs, a task, playback."""
-        task_can_go_on = self.task is not None and not self.task.progress.is_blocked
-        return bool(self._jobs or self._due) or task_can_go_on or self.timeline.playback.is_playing
+        can_task_advance = self.task is not None and not self.task.progress.is_blocked
+        return bool(self._new_jobs or self._due_jobs) or can_task_advance or self.timeline.playback.is_playing
 
     @property
     def is_busy(self) -> bool:
         """Whether anything moves or is computed, be it in a thread; when it ends, the window is idle."""
-        moves = self.editor.is_moving or self.comparison.is_moving or self.timeline.playback.is_playing
-        computes = self.view.is_computing or self.remesher.is_busy or self.writer.is_busy
-        return moves or computes or self.needs_frame or self.task is not None
+        is_moving = self.editor.is_moving or self.comparison.is_moving or self.timeline.playback.is_playing
+        is_computing = self.view.is_computing or self.remesher.is_busy or self.pose_exports.is_busy
+        return is_moving or is_computing or self.needs_frame or self.task is not None
+
+    def run_after_frame(self, job: Callable[[], None], notice: str = "") -> None:
+        """Run ``job`` after the next whole frame, which shows ``notice``."""
+        self.notice = notice or self.notice
+        self._new_jobs.append(job)
 
     def run_pending(self) -> bool:
-        """After a frame: do what was put off before it began; whether there was anything."""
+        """Run what is due after a frame: jobs, exports, task, remeshing; return whether anything changed."""
         messages = self.notice, self.error
-        jobs, self._due, self._jobs = self._due, self._jobs, []
+        jobs, self._due_jobs, self._new_jobs = self._due_jobs, self._new_jobs, []
         for job in jobs:
             self.run_reporting_errors(job)
-        self.run_reporting_errors(self._go_on_writing)
+        self.run_reporting_errors(self._advance_exports)
         if self.task is not None:
-            self.run_reporting_errors(self._go_on)
+            self.run_reporting_errors(self._advance_task)
             return self.task is None or not self.task.progress.is_blocked
         has_changed = bool(jobs)
         try:
             has_changed |= self.remesher.advance()
-        except Exception as error:  # no dialog in the middle of a drag
+        except Exception as error:  # a dialog would interrupt the drag of a slider
             self.notice = error_message(error)
         return has_changed or (self.notice, self.error) != messages
 
-    def _go_on_writing(self) -> None:
-        self.notice = self.writer.advance(self.exporter) or self.notice
+    def _advance_exports(self) -> None:
+        self.notice = self.pose_exports.advance(self.offscreen_renderer) or self.notice
 
-    def _go_on(self) -> None:
-        """A slice of the task."""
-        task = self.task
+    def _advance_task(self) -> None:
+        """Run a slice of the task, which is dropped when it is done or raises an exception."""
+        task, self.task = self.task, None
         assert task is not None
-        self.task = None  # where it fails, there is none
         if not task.advance():
             self.task = task
 
     def run_reporting_errors(self, job: Callable[[], object]) -> bool:
-        """Run ``job``; an exception becomes a message, and everything open stays as it was."""
+        """Run ``job`` and show an exception as a message; return whether there was none."""
         try:
             job()
         except Exception as error:
@@ -182,8 +189,17 @@ class AppState:
         """The open document."""
         return self.editor.session.document if self.editor.session is not None else None
 
+    @property
+    def title(self) -> str:
+        """The title of the window; an asterisk marks unsaved changes."""
+        if self.document is None:
+            return "akap-editor"
+        path = self.document.path
+        name = path.name if path is not None else self.document.drawing.name
+        return f"{name}{' *' if self.editor.is_modified else ''} - akap-editor"
+
     def change_settings(self, settings: Settings) -> None:
-        """Deform with other settings from now on, in new drawings too. Raises InputError for invalid ones."""
+        """Change method and parameters, for new drawings too. Raises InputError for invalid ones."""
         gestures.set_settings(self.editor, settings)
         values = {"method": settings.method, "parameters": dict(settings.parameters)}
         self.preferences.put("settings", values)
@@ -195,16 +211,7 @@ class AppState:
                 return Settings(method, tuple(sorted(parameters.items())))
         return None
 
-    def overlays(self, scale: float) -> Overlays:
-        """What the renderer shows besides the drawing. scale: framebuffer pixels per point of the design."""
-        distortion = self.measure() if self.view.distortion_measure is not None else None
-        mesh = self.view.show_mesh or self.remesher.is_active
-        overlays = self.view.overlays(self.editor, distortion, mesh, scale)
-        if not self.timeline.shows_keyframes:
-            return overlays
-        return replace(overlays, onion_poses=onion_poses(*self.timeline.keyframe_playback.onion_poses()))
-
-    def measure(self) -> Distortion | None:
+    def measure_distortion(self) -> Distortion | None:
         """The distortion of the current pose, computed once for each pose."""
         if self.document is None:
             return None
@@ -212,12 +219,3 @@ class AppState:
         if self._measured is None or self._measured[0] is not pose:
             self._measured = pose, distortion(self.document.drawing.mesh, pose)
         return self._measured[1]
-
-    @property
-    def title(self) -> str:
-        """For the window's title bar."""
-        if self.document is None:
-            return "akap-editor"
-        path = self.document.path
-        name = path.name if path is not None else self.document.drawing.name
-        return f"{name}{' *' if self.editor.is_modified else ''} - akap-editor"

@@ -69,7 +69,7 @@ def open_path(state: AppState, path: Path, notice: str = "") -> None:
                 return
             document = open_document(path)
         except InputError:
-            state.preferences.forget(path)
+            state.preferences.remove_recent(path)
             raise
         show_document(state, document)
         if is_animation(path):
@@ -93,8 +93,8 @@ def remember_file(state: AppState, path: Path) -> None:
     """Start the next file dialog in this file's folder, and list the file among the recent ones."""
     state.folder = path.resolve().parent
     if path.resolve() not in map(Path.resolve, bundled_drawings()):
-        state.preferences.opened(path)
-        state.remember()  # now, so that it survives a crash
+        state.preferences.add_recent(path)
+        state.save_preferences()  # now, so that it survives a crash
 
 
 # -- saving -------------------------------------------------------------------------------------------------
@@ -169,7 +169,7 @@ def quit_program(state: AppState) -> None:
     """Close the window, after asking about unsaved changes."""
 
     def close() -> None:
-        state.closing = True
+        state.is_closing = True
 
     confirm_unsaved(state, close)
 

@@ -7,18 +7,18 @@ from typing import Any, TypeVar
 
 import platformdirs
 
-from ..errors import InputError
-from ..io.atomic import read_file, write_atomic
+from ..errors import FileError, InputError
+from ..io.atomic import os_error_reason, read_file, write_atomic
 
-CONFIG_FOLDER_VARIABLE = "AKAP_EDITOR_CONFIG"  # environment: another folder, e.g. for tests
+CONFIG_FOLDER_VARIABLE = "AKAP_EDITOR_CONFIG"  # environment variable: another folder, e.g. for tests
 FILE_NAME = "preferences.json"
-MOST_RECENT = 12
+MAX_RECENT = 12  # files
 
 T = TypeVar("T")
 
 
 def preferences_path() -> Path:
-    """The file of the user who runs the program."""
+    """The preferences file of the user who runs the program."""
     folder = os.environ.get(CONFIG_FOLDER_VARIABLE) or platformdirs.user_config_dir(
         "akap-editor", appauthor=False
     )
@@ -28,9 +28,9 @@ def preferences_path() -> Path:
 class Preferences:
     """Named values, each of which JSON can hold.
 
-    path: of the file, or None to remember nothing beyond this run. A file that cannot be read or makes no
-    sense is ignored, and `problem` says so; it is replaced at the next `write`. Programs that run at the same
-    time share the file: `write` changes only the names that were `put` here.
+    path: of the file, or None to store nothing beyond this run. An unreadable file is ignored, and replaced
+    at the next `write`; problem: says so, empty if there is none. Programs that run at the same time share
+    the file: `write` changes only the names that were `put` here.
     """
 
     def __init__(self, path: Path | None = None) -> None:
@@ -41,17 +41,17 @@ class Preferences:
             self._values = self._read()
         except InputError as error:
             self._values = {}
-            self.problem = f"Couldn't read the preferences, so the defaults are used. {error}"
+            self.problem = f"{error} The default preferences are used."
 
     @property
-    def is_kept(self) -> bool:
-        """Whether there is a next run that will know them."""
+    def is_stored(self) -> bool:
+        """Whether the next run will read them."""
         return self._path is not None
 
     def get(self, name: str, default: T) -> T:
-        """The value, or ``default`` where there is none of the same type; not to be changed in place.
+        """The value, or ``default`` if there is none of the same type; do not change it in place.
 
-        What lists and objects hold is not checked: the file may have been edited by hand.
+        The elements of lists and objects are not checked, although the file may have been edited by hand.
         """
         value = self._values.get(name)
         if isinstance(default, float) and type(value) is int:
@@ -59,54 +59,60 @@ class Preferences:
         return value if type(value) is type(default) else default
 
     def put(self, name: str, value: object) -> None:
-        """Remember a value: text, a number, a list, an object. Raises TypeError on what JSON cannot hold."""
+        """Set a value: text, a number, a list, an object. Raises TypeError for one that JSON cannot hold."""
         plain = json.loads(json.dumps(value))
         if self._values.get(name) != plain:
             self._values[name] = plain
             self._changed.add(name)
 
     def write(self) -> None:
-        """Write what has changed since the last time, if anything. Raises InputError, but only once."""
+        """Write what has changed since the last call. Raises FileError, once; then nothing is stored."""
         if not self._changed or self._path is None:
             return
         path, changed = self._path, self._changed
         try:
-            there = self._read()
+            stored = self._read()
         except InputError:
-            there = {}
-        there.update((name, self._values[name]) for name in changed)
+            stored = {}
+        stored.update((name, self._values[name]) for name in changed)
         self._changed = set()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_atomic(path, json.dumps(there, indent=1, sort_keys=True).encode())
-        except (OSError, InputError) as error:
+            write_atomic(path, json.dumps(stored, indent=1, sort_keys=True).encode())
+        except OSError as error:
             self._path = None
-            raise InputError(str(error)) from error
+            raise FileError("save", path, os_error_reason(error)) from error
+        except FileError:
+            self._path = None
+            raise
 
     def _read(self) -> dict[str, Any]:
+        """The values in the file; none if there is no file. Raises FileError."""
         if self._path is None or not self._path.exists():
             return {}
         try:
             values = json.loads(read_file(self._path, "preferences"))
+        except FileError:
+            raise
         except (ValueError, RecursionError) as error:
-            raise InputError(f"{self._path}: expected JSON ({error})") from error
+            raise FileError("open", self._path, f"expected JSON ({error})") from error
         if not isinstance(values, dict):
-            raise InputError(f"{self._path}: expected a JSON object, got {type(values).__name__}")
+            raise FileError("open", self._path, f"expected a JSON object, got {type(values).__name__}")
         return values
 
     # -- recent files ----------------------------------------------------------------------------------------
 
     @property
     def recent(self) -> list[Path]:
-        """Files that were opened or saved, the newest first."""
+        """Files that were opened or saved, the latest one first."""
         names: list[object] = self.get("recent", [])
         return [Path(name) for name in names if isinstance(name, str)]
 
-    def opened(self, path: Path) -> None:
-        """A file was opened or saved."""
+    def add_recent(self, path: Path) -> None:
+        """Put a file that was opened or saved first in the list."""
         path = path.resolve()
-        self.put("recent", [str(path), *(str(old) for old in self.recent if old != path)][:MOST_RECENT])
+        self.put("recent", [str(path), *(str(other) for other in self.recent if other != path)][:MAX_RECENT])
 
-    def forget(self, path: Path) -> None:
-        """A file is no longer of use."""
-        self.put("recent", [str(old) for old in self.recent if old not in (path, path.resolve())])
+    def remove_recent(self, path: Path) -> None:
+        """Remove a file that cannot be opened any more from the list."""
+        self.put("recent", [str(other) for other in self.recent if other not in (path, path.resolve())])

@@ -1,4 +1,4 @@
-"""The start page, shown where the canvas is while nothing is open."""
+"""The start page, in place of the canvas while nothing is open: open a file, a bundled or a recent one."""
 
 from pathlib import Path
 
@@ -11,8 +11,8 @@ from ..io.images import Picture, read_image
 from ..resources import bundled_drawings
 from . import files, widgets
 from .app_state import AppState
-from .commands import registry as commands
-from .theme import ACCENT, DARK, FRAME, HOVER, PANEL, QUIET, STRONG_LINE, TEXT, packed
+from .commands.registry import OPEN
+from .theme import ACCENT, DARK, FRAME, HOVER, PANEL, SECONDARY, STRONG_LINE, TEXT, packed
 
 _WINDOW = (
     imgui.WindowFlags_.no_decoration
@@ -20,12 +20,13 @@ _WINDOW = (
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_bring_to_front_on_focus
 ) & ~imgui.WindowFlags_.no_scrollbar
-_BY_KEYS = imgui.ButtonFlags_.enable_nav
+_BUTTON = imgui.ButtonFlags_.enable_nav  # the keyboard can press it
 _WIDTH = 720  # of the column in the middle, in design points, as all sizes here
 _DROP_HEIGHT = 132
 _GAP = 12
 _MARGIN = 12  # around a thumbnail
 _DASH = 7
+_MIN_RECENT = 3  # files
 
 
 def draw(state: AppState, scale: float, pixels_per_point: float) -> None:
@@ -43,31 +44,31 @@ def draw(state: AppState, scale: float, pixels_per_point: float) -> None:
     imgui.begin("Start", None, _WINDOW)
     imgui.pop_style_color()
     imgui.pop_style_var(3)
-    _title()
-    _drop_zone(state, scale, column)
-    _heading("Bundled drawings")
-    _drawings(state, scale, column, pixels_per_point)
-    _heading("Recent files")
-    _recent(state, column)
+    _draw_title()
+    _draw_drop_zone(state, scale, column)
+    _draw_heading("Bundled drawings")
+    _draw_bundled(state, scale, column, pixels_per_point)
+    _draw_heading("Recent files")
+    _draw_recent(state, column)
     imgui.end()
 
 
-def _drawings(state: AppState, scale: float, column: float, pixels_per_point: float) -> None:
+def _draw_bundled(state: AppState, scale: float, column: float, pixels_per_point: float) -> None:
     """Draw a row of buttons that open the bundled drawings, each with its thumbnail and name."""
     paths = bundled_drawings()
     gap = _GAP * scale
     side = round((column - gap * (len(paths) - 1)) / len(paths))
     for path in paths:
-        _drawing(state, path, side, scale, pixels_per_point)
+        _draw_button(state, path, side, scale, pixels_per_point)
         imgui.same_line(0, gap)
     imgui.new_line()
 
 
-def _drawing(state: AppState, path: Path, side: int, scale: float, pixels_per_point: float) -> None:
+def _draw_button(state: AppState, path: Path, side: int, scale: float, pixels_per_point: float) -> None:
     """Draw a button that opens a drawing. side: of its square in points."""
     corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
     name_height = imgui.get_text_line_height() + 8 * scale
-    if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BY_KEYS):
+    if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BUTTON):
         _open(state, path)
     is_hovered = imgui.is_item_hovered() or imgui.is_item_focused()
     end = ImVec2(corner.x + side, corner.y + side)
@@ -78,7 +79,7 @@ def _drawing(state: AppState, path: Path, side: int, scale: float, pixels_per_po
     )
     name = path.stem.capitalize()
     name_corner = ImVec2(corner.x + (side - imgui.calc_text_size(name).x) / 2, end.y + 6 * scale)
-    draw.add_text(name_corner, packed(TEXT if is_hovered else QUIET), name)
+    draw.add_text(name_corner, packed(TEXT if is_hovered else SECONDARY), name)
 
 
 def _scaled_picture(path: Path, pixels: int) -> Picture:
@@ -89,87 +90,88 @@ def _scaled_picture(path: Path, pixels: int) -> Picture:
 
 
 def _open(state: AppState, path: Path) -> None:
-    """Open a file; keys belong to the canvas then."""
+    """Open a file and give the keyboard focus to the canvas."""
     files.open_path(state, path)
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
 
 
-def _title() -> None:
+def _draw_title() -> None:
     imgui.push_font(None, imgui.get_style().font_size_base * 2.0)
     imgui.text("akap-editor")
     imgui.pop_font()
-    imgui.text_colored(ImVec4(*QUIET), "Pin a drawing, drag a pin, and it bends.")
+    imgui.text_colored(ImVec4(*SECONDARY), "Pin a drawing, drag a pin, and the drawing bends.")
     imgui.spacing()
     imgui.spacing()
 
 
-def _heading(title: str) -> None:
+def _draw_heading(title: str) -> None:
     imgui.dummy(ImVec2(0, 0.6 * imgui.get_font_size()))
     imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
-    imgui.text_colored(ImVec4(*QUIET), title.upper())
+    imgui.text_colored(ImVec4(*SECONDARY), title.upper())
     imgui.pop_font()
 
 
-def _drop_zone(state: AppState, scale: float, column: float) -> None:
+def _draw_drop_zone(state: AppState, scale: float, width: float) -> None:
+    """Draw the area that invites to drop a file; a click on it runs File > Open."""
     corner, height = imgui.get_cursor_screen_pos(), _DROP_HEIGHT * scale
-    if imgui.invisible_button("Drop a picture here", ImVec2(column, height), _BY_KEYS):
-        widgets.run(state, commands.OPEN)
-    hovered = imgui.is_item_hovered() or imgui.is_item_focused()
+    if imgui.invisible_button("Drop a picture here", ImVec2(width, height), _BUTTON):
+        widgets.run(state, OPEN)
+    is_highlighted = imgui.is_item_hovered() or imgui.is_item_focused()
     if imgui.is_item_hovered():
         imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-    draw = imgui.get_window_draw_list()
-    end = ImVec2(corner.x + column, corner.y + height)
-    draw.add_rect_filled(corner, end, packed(FRAME if hovered else PANEL), 8 * scale)
-    _dashed_frame(draw, corner, end, scale, packed(ACCENT if hovered else STRONG_LINE))
+    draw, end = imgui.get_window_draw_list(), ImVec2(corner.x + width, corner.y + height)
+    draw.add_rect_filled(corner, end, packed(FRAME if is_highlighted else PANEL), 8 * scale)
+    _draw_dashed_frame(corner, end, scale, packed(ACCENT if is_highlighted else STRONG_LINE))
     lines = (
         (icons.ICON_FA_IMAGE, 1.7, ACCENT),
         ("Drop a picture here", 1.2, TEXT),
-        (f"or click to choose a file ({commands.OPEN.key_name})", 1.0, QUIET),
+        (f"or click to choose a file ({OPEN.key_name})", 1.0, SECONDARY),
     )
-    gap, line = 8 * scale, imgui.get_font_size()
-    y = corner.y + (height - line * sum(size for _, size, _ in lines) - 2 * gap) / 2
+    gap, line_height = 8 * scale, imgui.get_font_size()
+    y = corner.y + (height - line_height * sum(size for _, size, _ in lines) - 2 * gap) / 2
     for text, size, color in lines:
         imgui.push_font(None, imgui.get_style().font_size_base * size)
-        x = corner.x + (column - imgui.calc_text_size(text).x) / 2
+        x = corner.x + (width - imgui.calc_text_size(text).x) / 2
         draw.add_text(ImVec2(round(x), round(y)), packed(color), text)
         imgui.pop_font()
-        y += size * line + gap
+        y += size * line_height + gap
 
 
-def _dashed_frame(draw: imgui.ImDrawList, low: ImVec2, high: ImVec2, scale: float, color: int) -> None:
-    """A rectangle of dashes, so many on each side that one begins and one ends in each corner."""
-    dash, thickness = _DASH * scale, max(1.0, round(1.2 * scale))
+def _draw_dashed_frame(low: ImVec2, high: ImVec2, scale: float, color: int) -> None:
+    """Draw a rectangle of dashes, with a dash at both ends of each side."""
+    draw, thickness = imgui.get_window_draw_list(), max(1.0, round(1.2 * scale))
     for start, end in (
         (low, ImVec2(high.x, low.y)),
         (ImVec2(low.x, high.y), high),
         (low, ImVec2(low.x, high.y)),
         (ImVec2(high.x, low.y), high),
     ):
-        way = ImVec2(end.x - start.x, end.y - start.y)
-        count = 2 * max(1, round((way.x + way.y) / (2 * dash))) + 1
-        for index in range(0, count, 2):
-            first, last = index / count, (index + 1) / count
+        side = ImVec2(end.x - start.x, end.y - start.y)
+        pieces = 2 * max(1, round((side.x + side.y) / (2 * _DASH * scale))) + 1  # dashes and gaps
+        for index in range(0, pieces, 2):
+            first, last = index / pieces, (index + 1) / pieces
             draw.add_line(
-                ImVec2(start.x + first * way.x, start.y + first * way.y),
-                ImVec2(start.x + last * way.x, start.y + last * way.y),
+                ImVec2(start.x + first * side.x, start.y + first * side.y),
+                ImVec2(start.x + last * side.x, start.y + last * side.y),
                 color,
                 thickness,
             )
 
 
-def _recent(state: AppState, column: float) -> None:
+def _draw_recent(state: AppState, width: float) -> None:
+    """Draw as many recent files as there is room for, at least three."""
     recent = state.preferences.recent
     if not recent:
-        widgets.secondary_text("None yet. What you open or save is listed here.")
+        widgets.secondary_text("None yet. Files that you open or save are listed here.")
         return
     room = int(imgui.get_content_region_avail().y / imgui.get_text_line_height_with_spacing())
-    for index, path in enumerate(recent[: max(room, 3)]):
-        name = widgets.shortened(path.name, 0.4 * column)
+    for index, path in enumerate(recent[: max(room, _MIN_RECENT)]):
+        name = widgets.shortened(path.name, 0.4 * width)
         if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
             _open(state, path)
         widgets.show_tooltip(str(path))
-        folder = widgets.shortened(str(path.parent), 0.55 * column, keeps_end=True)
-        room_left = imgui.get_content_region_avail().x
-        imgui.same_line(imgui.get_cursor_pos_x() + room_left - imgui.calc_text_size(folder).x)
-        imgui.text_colored(ImVec4(*QUIET), folder)
+        folder = widgets.shortened(str(path.parent), 0.55 * width, keeps_end=True)
+        right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
+        imgui.same_line(right - imgui.calc_text_size(folder).x)
+        imgui.text_colored(ImVec4(*SECONDARY), folder)

@@ -1,4 +1,4 @@
-"""The look: one dark theme, one accent color, sizes that follow the monitor's scale."""
+"""The theme: dark colors with one accent color, fonts, and sizes for the monitor's scale."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ ACCENT = _hex("#FFB43A")
 ACCENT_HOVER = _hex("#FFC461")
 ACCENT_ACTIVE = _hex("#E69E33")
 TEXT = _hex("#E8E9EC")
-QUIET = _hex("#B4B8C0")
+SECONDARY = _hex("#B4B8C0")
 PANEL = _hex("#212328")
 DARK = _hex("#18191C")
 POPUP = _hex("#26282E")
@@ -27,7 +27,7 @@ FRAME = _hex("#2E3138")
 HOVER = _hex("#3A3E47")
 ACTIVE = _hex("#464B56")
 LINE = _hex("#34373E")
-STRONG_LINE = _hex("#767B86")  # where the line is all that shows what can be used
+STRONG_LINE = _hex("#767B86")  # of items that only their line shows
 
 _COLORS: dict[imgui.Col_, Rgba] = {
     imgui.Col_.text: TEXT,
@@ -45,8 +45,8 @@ _COLORS: dict[imgui.Col_, Rgba] = {
     imgui.Col_.menu_bar_bg: PANEL,
     imgui.Col_.scrollbar_bg: (0, 0, 0, 0),
     imgui.Col_.scrollbar_grab: STRONG_LINE,
-    imgui.Col_.scrollbar_grab_hovered: QUIET,
-    imgui.Col_.scrollbar_grab_active: QUIET,
+    imgui.Col_.scrollbar_grab_hovered: SECONDARY,
+    imgui.Col_.scrollbar_grab_active: SECONDARY,
     imgui.Col_.check_mark: DARK,
     imgui.Col_.checkbox_selected_bg: ACCENT,
     imgui.Col_.slider_grab: ACCENT,
@@ -68,19 +68,19 @@ _COLORS: dict[imgui.Col_, Rgba] = {
 
 
 def load_fonts() -> None:
-    """Roboto for text, Font Awesome for icons; both come with imgui-bundle."""
+    """Load Roboto for text and Font Awesome for icons; both come with imgui-bundle."""
     folder = Path(imgui_bundle.__path__[0]) / "assets" / "fonts"
     fonts = imgui.get_io().fonts
     fonts.add_font_from_file_ttf(str(folder / "Roboto" / "Roboto-Regular.ttf"), FONT_SIZE)
     icons = imgui.ImFontConfig()
     icons.merge_mode = True
     icons.glyph_offset = ImVec2(0, 1)
-    icons.glyph_min_advance_x = FONT_SIZE  # names beside icons begin alike
+    icons.glyph_min_advance_x = FONT_SIZE  # names beside icons are aligned
     fonts.add_font_from_file_ttf(str(folder / "Font_Awesome_6_Free-Solid-900.otf"), FONT_SIZE - 1, icons)
 
 
 def apply(scale: float) -> None:
-    """Set the style for a monitor where one point of the design is ``scale`` points of the window."""
+    """Set ImGui's style. scale: points per design point."""
     style = imgui.Style()
     imgui.style_colors_dark(style)
     for name, color in _COLORS.items():
@@ -108,5 +108,5 @@ def apply(scale: float) -> None:
 
 
 def packed(color: Rgba, alpha: float = 1.0) -> int:
-    """A color for draw lists, its opacity times ``alpha``."""
+    """A color for draw lists, with its opacity multiplied by ``alpha``."""
     return int(imgui.get_color_u32(ImVec4(*color[:3], color[3] * alpha)))

@@ -9,7 +9,7 @@ from ..editor.document.settings import Settings
 from ..render.overlays import Rgba
 from .app_state import AppState
 from .commands.command import Command
-from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, QUIET, STRONG_LINE, TEXT, packed
+from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, SECONDARY, STRONG_LINE, TEXT, packed
 
 FULL = -imgui.FLT_MIN  # a width: all the available room
 NAV_FLATTENED = imgui.ChildFlags_.nav_flattened  # keys move into a child window and out of it
@@ -77,7 +77,7 @@ def radio(label: str, is_on: bool) -> bool:
 def row(label: str, value: str, tooltip: str = "") -> None:
     """Draw a label at the left and its value at the right; a value that is too long is shortened."""
     right = imgui.get_content_region_avail().x + imgui.get_cursor_pos_x()
-    imgui.text_colored(ImVec4(*QUIET), label)
+    imgui.text_colored(ImVec4(*SECONDARY), label)
     show_tooltip(tooltip)
     imgui.same_line()
     text = shortened(value, right - imgui.get_cursor_pos_x())
@@ -169,7 +169,7 @@ def scroll_to_row(index: int, most: int) -> None:
 def secondary_text(text: str) -> None:
     """Draw a text in the secondary color, wrapped at the edge of the window."""
     imgui.push_text_wrap_pos(0.0)
-    imgui.text_colored(ImVec4(*QUIET), text)
+    imgui.text_colored(ImVec4(*SECONDARY), text)
     imgui.pop_text_wrap_pos()
 
 
@@ -274,7 +274,7 @@ def begin_dialog(title: str) -> bool:
 def label(text: str, width: float) -> None:
     """Draw the label of the field that is drawn next, which begins at ``width`` points."""
     imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*QUIET), text)
+    imgui.text_colored(ImVec4(*SECONDARY), text)
     imgui.same_line(width)
     imgui.align_text_to_frame_padding()
 

@@ -81,7 +81,7 @@ class Window:
         autosave: Autosave | None = None,
     ) -> None:
         self._woken, self._open_lock, self._is_open = Event(), Lock(), False
-        self.state = AppState.remembering(preferences or Preferences(), self.wake)
+        self.state = AppState.from_preferences(preferences or Preferences(), self.wake)
         self.state.autosave = autosave
         if autosave is not None:
             autosave.remove_leftovers()
@@ -106,7 +106,7 @@ class Window:
             glfw.maximize_window(self.handle)
         self.ctx = moderngl.create_context(require=330)
         self._scene = Scene(self.ctx)
-        self.state.exporter = OffscreenRenderer(self.ctx)
+        self.state.offscreen_renderer = OffscreenRenderer(self.ctx)
         self.state.thumbnails = Thumbnails(self.ctx)
         self._canvas = Canvas()
         self._set_callbacks()
@@ -146,8 +146,8 @@ class Window:
         with self._open_lock:  # a thread that is done later must not call GLFW
             self._is_open = False
         self.remember()
-        self.state.writer.close()
-        self.state.exporter.release()
+        self.state.pose_exports.close()
+        self.state.offscreen_renderer.release()
         self.state.thumbnails.release()
         self._scene.release()
         imgui.backends.opengl3_shutdown()
@@ -167,14 +167,14 @@ class Window:
             files.show_document(self.state, document)
         try:
             with TerminationSignals(self.wake):
-                while not self.state.closing:
+                while not self.state.is_closing:
                     self.loop_once()
         except BaseException:
             files.rescue(self.state)
             raise
         if self.state.autosave is not None:
             self.state.autosave.close()
-        self.state.writer.finish(self.state.exporter)
+        self.state.pose_exports.finish(self.state.offscreen_renderer)
         del lost_display_handler  # it had to live until here
 
     def loop_once(self) -> None:
@@ -236,7 +236,7 @@ class Window:
         if not is_maximized and not glfw.get_window_attrib(self.handle, glfw.ICONIFIED):
             preferences.put("window", [round(width / self.scale), round(height / self.scale)])
             preferences.put("place", list(glfw.get_window_pos(self.handle)))
-        self.state.remember()
+        self.state.save_preferences()
 
     def _wait_until_needed(self) -> None:
         """Sleep until an event, a `wake`, a due tooltip, a blink of a caret, or the answer of a dialog."""

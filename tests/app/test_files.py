@@ -244,7 +244,7 @@ def close_window(ui, tmp_path):
 
 
 def gone_on(ui):
-    return ui.state.closing or ui.state.title.startswith("other.akap")
+    return ui.state.is_closing or ui.state.title.startswith("other.akap")
 
 
 ENDS = [open_other, quit_, close_window]
@@ -292,7 +292,7 @@ def test_cancel_of_the_file_dialog_after_save_stays(bent, tmp_path):
     bent.dialog(UNSAVED, "Save")
     bent.dialog(SAVE, "Cancel")
     finish(bent)
-    assert not bent.state.closing
+    assert not bent.state.is_closing
     assert bent.editor.is_modified
 
 
@@ -303,7 +303,7 @@ def test_a_failed_save_does_not_go_on(bent, tmp_path):
     assert bent.state.error
     bent.dialog(MESSAGE, "OK")
     finish(bent)
-    assert not bent.state.closing
+    assert not bent.state.is_closing
 
 
 @pytest.mark.parametrize("end", ENDS)

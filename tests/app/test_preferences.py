@@ -11,7 +11,7 @@ from akap_editor.app import files
 from akap_editor.app import preferences as module
 from akap_editor.app.app_state import AppState
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES, ViewOptions
-from akap_editor.app.preferences import MOST_RECENT, Preferences, preferences_path
+from akap_editor.app.preferences import MAX_RECENT, Preferences, preferences_path
 from akap_editor.editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
 from akap_editor.editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS, Brush
 from akap_editor.errors import InputError
@@ -66,7 +66,7 @@ def test_a_corrupt_file_is_told_and_replaced_at_the_next_write(path, content):
     assert str(path) in preferences.problem
     assert "\n" not in preferences.problem
     assert preferences.recent == []
-    assert AppState.remembering(preferences).notice == preferences.problem
+    assert AppState.from_preferences(preferences).notice == preferences.problem
     preferences.write()
     assert path.read_bytes() == content, "nothing has changed, so nothing is written"
     preferences.put("name", 1)
@@ -122,14 +122,14 @@ def test_the_folder_is_the_one_of_the_environment_or_of_the_platform(monkeypatch
 
 def test_recent_files_are_the_newest_first_each_once(path, tmp_path):
     preferences = Preferences(path)
-    files = [tmp_path / f"{number}.png" for number in range(MOST_RECENT + 3)]
+    files = [tmp_path / f"{number}.png" for number in range(MAX_RECENT + 3)]
     for file in files:
-        preferences.opened(file)
-    preferences.opened(files[5])
+        preferences.add_recent(file)
+    preferences.add_recent(files[5])
     expected = [files[5], *(file for file in reversed(files) if file != files[5])]
-    assert preferences.recent == expected[:MOST_RECENT]
-    preferences.forget(files[5])
-    assert preferences.recent == expected[1:MOST_RECENT]
+    assert preferences.recent == expected[:MAX_RECENT]
+    preferences.remove_recent(files[5])
+    assert preferences.recent == expected[1:MAX_RECENT]
     preferences.put("recent", ["a", 1, None])
     assert preferences.recent == [Path("a")]
 
@@ -137,14 +137,14 @@ def test_recent_files_are_the_newest_first_each_once(path, tmp_path):
 def test_overlays_come_back(path, tmp_path):
     picture = tmp_path / "behind.png"
     picture.write_bytes(resource("assets", "drawings", "bar.png").read_bytes())
-    state = AppState.remembering(Preferences(path))
+    state = AppState.from_preferences(Preferences(path))
     state.view.show_vector_fields = state.view.show_rest_pose = state.view.show_pin_trails = True
     state.view.distortion_measure, state.view.distortion_range = "angle", 4
     state.view.set_reference(np.zeros((1, 1, 4), np.uint8), picture)
     state.view.show_reference = False
     state.editor.brush_tool.brush = Brush(80.0, 500.0, erasing=True)
-    state.remember()
-    again = AppState.remembering(Preferences(path))
+    state.save_preferences()
+    again = AppState.from_preferences(Preferences(path))
     for name in (
         "show_vector_fields",
         "show_rest_pose",
@@ -165,10 +165,10 @@ def test_overlays_come_back(path, tmp_path):
 
 
 def test_a_reference_picture_that_is_gone_is_not_missed(path, tmp_path):
-    state = AppState.remembering(Preferences(path))
+    state = AppState.from_preferences(Preferences(path))
     state.view.set_reference(np.zeros((1, 1, 4), np.uint8), tmp_path / "gone.png")
-    state.remember()
-    again = AppState.remembering(Preferences(path))
+    state.save_preferences()
+    again = AppState.from_preferences(Preferences(path))
     while again.needs_frame:
         again.run_pending()
     assert (again.view.reference, again.view.reference_path, again.error) == (None, None, "")
@@ -192,7 +192,7 @@ def test_overlays_that_make_no_sense_are_passed_over():
 def test_a_remembered_brush_is_one_that_there_is(brush):
     preferences = Preferences()
     preferences.put("brush", brush)
-    found = AppState.remembering(preferences).editor.brush_tool.brush
+    found = AppState.from_preferences(preferences).editor.brush_tool.brush
     assert MIN_RADIUS <= found.radius <= MAX_RADIUS
     assert MIN_STIFFNESS <= found.factor <= MAX_STIFFNESS
 
@@ -212,7 +212,7 @@ def test_switches_and_folded_sections_come_back(keeping, path):
     keeping.panel("###section View")
     keeping.do(lambda hand: [] if not hand.item_exists("//Panel/Mesh") else pytest.fail("View is folded"))
     keeping.window.remember()
-    again = AppState.remembering(Preferences(path))
+    again = AppState.from_preferences(Preferences(path))
     assert not again.view.show_checkerboard
     assert again.view.show_mesh == keeping.state.view.show_mesh
     assert again.timeline.is_shown == keeping.state.timeline.is_shown
@@ -251,7 +251,7 @@ def test_preferences_that_cannot_be_written_are_a_notice_and_no_more(ui, tmp_pat
     (tmp_path / "file").write_text("")
     ui.state.preferences = Preferences(tmp_path / "file" / "preferences.json")
     ui.window.remember()
-    assert "Couldn't save the preferences." in ui.state.notice
+    assert ui.state.notice.startswith(f"Couldn't save “{tmp_path}/file/preferences.json”. ")
     ui.state.notice = ""
     ui.panel("Mesh")
     ui.window.remember()

@@ -95,7 +95,7 @@ def test_recent_files_are_listed_and_opened(closed, tmp_path, image):
     path = tmp_path / "a folder with a rather long name" / "seen before.png"
     path.parent.mkdir()
     write_png(path, image)
-    closed.state.preferences.opened(path)
+    closed.state.preferences.add_recent(path)
     closed.settle()
     closed.do(lambda hand: hand.item_click(f"{START}\uf1c5  seen before.png##recent 0"))
     closed.settle()

@@ -65,7 +65,7 @@ def test_black_on_white_is_21_to_1():
 
 
 @pytest.mark.parametrize("ground", GROUNDS)
-@pytest.mark.parametrize("text", ["TEXT", "QUIET", "ACCENT"])
+@pytest.mark.parametrize("text", ["TEXT", "SECONDARY", "ACCENT"])
 def test_text(text, ground):
     assert contrast(of(text), of(ground)) >= TEXT_AA
 
@@ -73,7 +73,7 @@ def test_text(text, ground):
 @pytest.mark.parametrize("ground", ["PANEL", "POPUP"])
 def test_text_on_a_chosen_line(ground):
     chosen = over(theme._COLORS[imgui.Col_.header], of(ground))
-    for text in ("TEXT", "QUIET"):
+    for text in ("TEXT", "SECONDARY"):
         assert contrast(of(text), chosen) >= TEXT_AA
 
 

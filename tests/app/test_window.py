@@ -268,7 +268,7 @@ def remeshing(ui, patch):
 
 
 def background_export(ui, patch):
-    fail_once(patch, ui.state.writer, "advance")
+    fail_once(patch, ui.state.pose_exports, "advance")
 
 
 def dropped_file(ui, patch):

@@ -74,7 +74,10 @@ class WindowDriver:
         wake = self.window.wake
         editor = Editor(clock, BackgroundThread("engine", wake))
         self.window.state = AppState(
-            editor, wake, exporter=self.window.state.exporter, thumbnails=self.window.state.thumbnails
+            editor,
+            wake,
+            offscreen_renderer=self.window.state.offscreen_renderer,
+            thumbnails=self.window.state.thumbnails,
         )
         self.editor.ui_scale = self.window.scale
         files.show_document(self.state, document)

@@ -37,7 +37,7 @@ class WindowLoop:
         self.sleeps, self._most_sleeps, self._first_frame = [], sleeps, self.ui.window.frames
         self.ui.window.wake()
         self.ui.window.run()
-        self.ui.state.closing = False
+        self.ui.state.is_closing = False
         return self.sleeps
 
     def _sleep(self, seconds: float) -> None:
@@ -47,7 +47,7 @@ class WindowLoop:
             return
         self.sleeps.append((seconds, self.ui.window.frames - self._first_frame))
         if len(self.sleeps) == self._most_sleeps:
-            self.ui.state.closing = True
+            self.ui.state.is_closing = True
         is_ended_by_event = self.on_sleep(len(self.sleeps))
         self.now += 0.1 * seconds if is_ended_by_event else seconds
 

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from ...deform.methods import get_method
 from ...editor.editor import Editor
 from ...editor.session.session import Session
-from ..theme import QUIET, TEXT, packed
+from ..theme import SECONDARY, TEXT, packed
 from .vector_field_arrows import U_OPT_COLOR, U_SMOOTH_COLOR
 from .view_options import DISTORTION_RANGES, DISTORTION_SCALES, Measure, ViewOptions
 
@@ -36,7 +36,7 @@ def draw_legend(view: ViewOptions, editor: Editor, scale: float) -> None:
 def _draw_vector_fields(session: Session, scale: float) -> None:
     """An arrow in the color of each field, and the field's name."""
     if not get_method(session.state.settings.method).deformer.has_vector_fields:
-        imgui.text_colored(ImVec4(*QUIET), "This method has no vector field")
+        imgui.text_colored(ImVec4(*SECONDARY), "This method has no vector field")
         return
     for color, label in (
         (U_OPT_COLOR, "U_opt, the field followed"),
@@ -58,7 +58,7 @@ def _draw_distortion_scale(view: ViewOptions, measure: Measure, scale: float) ->
     """The color scale with the ratios at its ends."""
     limit = DISTORTION_RANGES[view.distortion_range]
     title = "Area, against the drawing at rest" if measure == "area" else "Stretch, longer by shorter axis"
-    imgui.text_colored(ImVec4(*QUIET), title)
+    imgui.text_colored(ImVec4(*SECONDARY), title)
     size, gap = ImVec2(230 * scale, 10 * scale), 3 * scale
     corner = imgui.get_cursor_screen_pos()
     size_with_labels = ImVec2(size.x, size.y + gap + imgui.get_text_line_height())

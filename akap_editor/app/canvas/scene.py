@@ -13,6 +13,7 @@ from ...render.renderer import CANVAS, Background, Renderer
 from ...render.shaders import View
 from ..app_state import AppState
 from .split_view import comparison_camera, right_half
+from .view_options import onion_poses
 
 PLAIN = Background(color=CANVAS.color)
 # Without a graphics card, drawing a mesh of so many faces takes several times as long as copying its picture,
@@ -102,13 +103,24 @@ def scene_content(
     """The content of the next frame; arguments as in `Scene.draw`."""
     background = replace(CANVAS, cell=CANVAS.cell * scale) if state.view.show_checkerboard else PLAIN
     document, density = state.document, size[0] / max(window[0], 1)
-    overlays = state.overlays(scale * density)
+    overlays = scene_overlays(state, scale * density)
     if document is None:
         return SceneContent(size, background)
     view = state.editor.camera.view(*window)
     main = PosedDrawing(document.drawing, document.state.positions, document.draw_order, view)
     comparison = _comparison(state, size, window, density)
     return SceneContent(size, background, main, comparison, overlays)
+
+
+def scene_overlays(state: AppState, scale: float) -> Overlays:
+    """The overlays of the next frame. scale: framebuffer pixels per design point."""
+    has_map = state.view.distortion_measure is not None
+    distortion = state.measure_distortion() if has_map else None
+    mesh_lines = state.view.show_mesh or state.remesher.is_active
+    overlays = state.view.overlays(state.editor, distortion, mesh_lines, scale)
+    if not state.timeline.shows_keyframes:
+        return overlays
+    return replace(overlays, onion_poses=onion_poses(*state.timeline.keyframe_playback.onion_poses()))
 
 
 def _comparison(

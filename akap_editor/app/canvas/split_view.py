@@ -9,7 +9,7 @@ from ...editor.events import ScrollEvent
 from ...editor.session.session import Session
 from ...geometry.distortion import Distortion
 from ..app_state import AppState
-from ..theme import QUIET, TEXT, packed
+from ..theme import SECONDARY, TEXT, packed
 from .pin_markers import draw_pin
 
 Rectangle = tuple[float, float, float, float]  # left, top, right, bottom in points of the window
@@ -61,7 +61,7 @@ def draw(state: AppState, canvas: Rectangle, scale: float) -> Rectangle:
         return canvas
     settings = session.state.settings
     method = nearest_preset(settings.method, dict(settings.parameters)).label
-    _draw_caption(left, method, state.measure(), session, scale)
+    _draw_caption(left, method, state.measure_distortion(), session, scale)
     _draw_right_half(state, right, scale)
     return left
 
@@ -113,7 +113,7 @@ def _draw_caption(
     width = right - left - 24 * scale
     numbers = "\n".join(_fit_into(width, line) for line in (first_line, second_line))
     height = imgui.calc_text_size(numbers).y
-    background.add_text(ImVec2(left + 12 * scale, bottom - height - 12 * scale), packed(QUIET), numbers)
+    background.add_text(ImVec2(left + 12 * scale, bottom - height - 12 * scale), packed(SECONDARY), numbers)
 
 
 def _fit_into(width: float, texts: list[str]) -> str:

@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui
 
 from .. import files, widgets
 from ..app_state import AppState
-from ..theme import ACCENT, QUIET, TEXT, packed
+from ..theme import ACCENT, SECONDARY, TEXT, packed
 from .command import Command, Submenu
 
 _NAME = "##palette"
@@ -170,7 +170,7 @@ def _draw_list(matches: list[Match], selected: int, scrolls: bool, scale: float)
         _draw_label(ImVec2(corner.x + 6 * scale, corner.y), entry, letters)
         width = imgui.calc_text_size(entry.key).x
         key_corner = ImVec2(corner.x + room - width - 8 * scale, corner.y)
-        imgui.get_window_draw_list().add_text(key_corner, packed(QUIET), entry.key)
+        imgui.get_window_draw_list().add_text(key_corner, packed(SECONDARY), entry.key)
     imgui.end_child()
     return clicked
 
@@ -178,7 +178,7 @@ def _draw_list(matches: list[Match], selected: int, scrolls: bool, scale: float)
 def _draw_label(corner: ImVec2, entry: Entry, letters: tuple[int, ...]) -> None:
     """Draw a label with the letters at these indices in the accent color."""
     draw, x = imgui.get_window_draw_list(), corner.x
-    color = TEXT if entry.enabled else QUIET
+    color = TEXT if entry.enabled else SECONDARY
     for index, letter in enumerate(entry.label):
         draw.add_text(ImVec2(x, corner.y), packed(ACCENT if index in letters else color), letter)
         x = corner.x + imgui.calc_text_size(entry.label[: index + 1]).x

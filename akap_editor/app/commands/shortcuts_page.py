@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from .. import widgets
 from ..app_state import AppState
-from ..theme import ACTIVE, QUIET, TEXT, packed
+from ..theme import ACTIVE, SECONDARY, TEXT, packed
 from .command import Command, Key, Menu
 
 Line = tuple[str, str]  # keys or mouse, and what they do
@@ -121,7 +121,7 @@ def columns_of(groups: list[Group], count: int) -> list[list[Group]]:
 def _draw_group(title: str, lines: list[Line], scale: float) -> None:
     """Draw a title and its lines. scale: points per design point."""
     imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
-    imgui.text_colored(ImVec4(*QUIET), title.upper())
+    imgui.text_colored(ImVec4(*SECONDARY), title.upper())
     imgui.pop_font()
     left = imgui.get_cursor_pos_x()
     for keys, action in lines:

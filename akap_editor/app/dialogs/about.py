@@ -5,7 +5,7 @@ from imgui_bundle import imgui
 from ... import __version__
 from .. import widgets
 from ..app_state import AppState
-from ..theme import QUIET
+from ..theme import SECONDARY
 
 _WIDTH = 380  # design points
 
@@ -34,7 +34,7 @@ class AboutDialog:
             "Free software under the GNU General Public License, version 3 or later. The included mesh "
             "generator Triangle may only be used non-commercially.",
             _WIDTH * scale,
-            QUIET,
+            SECONDARY,
         )
         imgui.spacing()
         if widgets.button("Close", primary=True) or widgets.cancel_pressed() or widgets.confirm_pressed():

@@ -191,7 +191,7 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
         frames.append(frame_at(state, time))
         yield Progress(0.3 * number / len(times), f"Posing frame {number + 1} of {len(times)}")
     frames = options.playing_order(frames, frames[0], frames[-1])
-    pictures = paint_frames(frames, state.exporter, options.size, options.visible_background)
+    pictures = paint_frames(frames, state.offscreen_renderer, options.size, options.visible_background)
     export = partial(write_animation, path, fps=options.fps, plays=options.plays, sheet=sheet)
     encoder = FrameEncoder(export, state.wake)
     try:

@@ -117,7 +117,7 @@ def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None
         return said
 
     state.notice = f"Exporting {path.name} ..."
-    state.writer.begin(work)
+    state.pose_exports.begin(work)
 
 
 def _draw_options(options: PoseExportOptions, document: Document, scale: float) -> str:

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...editor.framing import Color
 from .. import widgets
-from ..theme import QUIET
+from ..theme import SECONDARY
 
 LABEL_WIDTH = 104  # design points
 
@@ -37,7 +37,7 @@ def format_list(formats: Sequence[F], chosen: F, width: float, height: float) ->
             chosen = each
         ending = each.suffix or "folder"
         imgui.same_line(right - imgui.calc_text_size(ending).x)
-        imgui.text_colored(ImVec4(*QUIET), ending)
+        imgui.text_colored(ImVec4(*SECONDARY), ending)
     imgui.end_child()
     return chosen
 

@@ -14,7 +14,7 @@ from imgui_bundle import portable_file_dialogs as native
 
 from .. import widgets
 from ..app_state import AppState
-from ..theme import ACCENT, QUIET
+from ..theme import ACCENT, SECONDARY
 
 _WIDTH, _HEIGHT = 520, 260  # of the list of files, in design points
 _OTHER_HEIGHT = 220  # of everything around the list in a low window, in design points
@@ -175,7 +175,7 @@ def _draw_folder(request: FileRequest, scale: float) -> None:
     imgui.same_line()
     imgui.align_text_to_frame_padding()
     folder = widgets.shortened(str(request.folder), (_WIDTH - 50) * scale, keeps_end=True)
-    imgui.text_colored(ImVec4(*QUIET), folder)
+    imgui.text_colored(ImVec4(*SECONDARY), folder)
 
 
 def _draw_entries(request: FileRequest, scale: float) -> bool:

@@ -7,7 +7,7 @@ from .. import widgets
 from ..app_state import AppState
 from ..commands.registry import PALETTE, UNDO
 from ..preferences import Preferences
-from ..theme import ACCENT, QUIET, STRONG_LINE, packed
+from ..theme import ACCENT, SECONDARY, STRONG_LINE, packed
 
 STEPS = (
     ("Hold it", "Click where the drawing should hold still, for instance on its feet."),
@@ -36,7 +36,7 @@ class FirstSteps:
     @staticmethod
     def is_wanted(preferences: Preferences) -> bool:
         """Whether this is a newcomer: preferences are kept, and do not say that the strip was dismissed."""
-        return preferences.is_kept and not preferences.get(_PREFERENCE, False)
+        return preferences.is_stored and not preferences.get(_PREFERENCE, False)
 
     def step(self, state: AppState) -> int:
         """The index into `STEPS` of the next step; what was done is seen in the drawing.
@@ -95,7 +95,7 @@ def _draw_dots(step: int, scale: float) -> None:
     for index in range(len(STEPS)):
         center = ImVec2(corner.x + radius + index * gap, corner.y + line / 2)
         if index <= step:
-            draw.add_circle_filled(center, radius, packed(ACCENT if index == step else QUIET))
+            draw.add_circle_filled(center, radius, packed(ACCENT if index == step else SECONDARY))
         else:
             draw.add_circle(center, radius, packed(STRONG_LINE), 0, 1.5 * scale)
     imgui.dummy(ImVec2(2 * radius + (len(STEPS) - 1) * gap, line))

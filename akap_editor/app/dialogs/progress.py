@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from .. import widgets
 from ..app_state import AppState
 from ..jobs.task import Task
-from ..theme import ACCENT, QUIET
+from ..theme import ACCENT, SECONDARY
 
 _WIDTH = 420  # points of the design
 
@@ -18,7 +18,7 @@ def draw(state: AppState, task: Task, scale: float) -> None:
     done = f"{100 * task.progress.share:.0f} %"
     imgui.progress_bar(task.progress.share, ImVec2(_WIDTH * scale, 8 * scale), "")
     imgui.pop_style_color()
-    imgui.text_colored(ImVec4(*QUIET), task.progress.text)
+    imgui.text_colored(ImVec4(*SECONDARY), task.progress.text)
     imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - imgui.calc_text_size(done).x)
     imgui.text(done)
     imgui.spacing()

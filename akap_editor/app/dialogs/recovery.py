@@ -11,7 +11,7 @@ from ...io.akap.autosave import RecoveryCopy
 from ...io.images import Picture
 from .. import files, widgets
 from ..app_state import AppState
-from ..theme import DARK, QUIET, packed
+from ..theme import DARK, SECONDARY, packed
 
 _SIDE = 220  # of the thumbnail, in design points
 _WIDTH = 300  # of the text, in design points
@@ -69,7 +69,7 @@ class RecoveryDialog:
             positions = document.state.positions
             low_x, low_y, high_x, high_y = frame_box(document.drawing, [positions])
             scale = pixels / max(high_x - low_x, high_y - low_y)
-            picture = state.exporter.render(
+            picture = state.offscreen_renderer.render(
                 document.drawing, positions, scale=scale, order=document.draw_order
             )
         except AkapError as error:
@@ -116,10 +116,10 @@ def _draw_facts(copy: RecoveryCopy, document: Document, count: int, width: float
     widgets.paragraph("The program ended before this drawing was saved.", width)
     imgui.spacing()
     widgets.paragraph(
-        f"Last change: {time.strftime('%d %B, %H:%M', time.localtime(copy.time))}", width, QUIET
+        f"Last change: {time.strftime('%d %B, %H:%M', time.localtime(copy.time))}", width, SECONDARY
     )
     origin = f"File: {document.path}" if document.path is not None else "Not saved to a file yet"
-    widgets.paragraph(origin, width, QUIET)
+    widgets.paragraph(origin, width, SECONDARY)
     if count > 1:
-        widgets.paragraph(f"{count - 1} more to recover", width, QUIET)
+        widgets.paragraph(f"{count - 1} more to recover", width, SECONDARY)
     imgui.dummy(ImVec2(width, 0))

@@ -4,7 +4,7 @@ from imgui_bundle import ImVec4, imgui
 
 from .. import widgets
 from ..app_state import AppState
-from ..theme import QUIET
+from ..theme import SECONDARY
 
 _ROWS = 6  # steps that are visible at once
 _FIRST = "Open"  # the state before the first step
@@ -25,7 +25,7 @@ def draw(state: AppState, scale: float) -> None:
     for index, label in enumerate(labels):
         is_undone = index > depth
         if is_undone:
-            imgui.push_style_color(imgui.Col_.text, ImVec4(*QUIET))
+            imgui.push_style_color(imgui.Col_.text, ImVec4(*SECONDARY))
         if imgui.selectable(f"  {label}##step {index}", index == depth)[0]:
             state.notice = ""
             state.run_reporting_errors(lambda index=index: state.editor.undo_or_redo_to(index))  # type: ignore[misc]

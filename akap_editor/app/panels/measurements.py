@@ -81,7 +81,7 @@ def draw(state: AppState, scale: float) -> None:
     """Draw the section. scale: points per design point."""
     session, measurements = state.editor.session, state.part(Measurements)
     assert session is not None
-    measurements.update(session, state.measure)
+    measurements.update(session, state.measure_distortion)
     distortion = measurements.distortion
     assert distortion is not None
     area, angle = distortion.area, distortion.angle

@@ -11,7 +11,7 @@ from ...meshing.background import DEFAULT_TOLERANCE
 from ...meshing.quality import smallest_angles
 from .. import widgets
 from ..app_state import AppState
-from ..theme import QUIET
+from ..theme import SECONDARY
 
 MIN_VERTICES, MAX_VERTICES = 200, 50_000
 MAX_MARGIN = 20.0  # pixels
@@ -89,7 +89,7 @@ def _slider(
     """
     low, high, text_format = limits
     imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*QUIET), label)
+    imgui.text_colored(ImVec4(*SECONDARY), label)
     widgets.show_tooltip(tooltip)
     imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
     is_moved, value, is_released = widgets.slider(f"##{label}", value, (low, high), text_format, flags)

@@ -10,7 +10,7 @@ from ...editor.document.settings import Settings
 from .. import widgets
 from ..app_state import AppState
 from ..pending_values import PendingValues
-from ..theme import QUIET
+from ..theme import SECONDARY
 
 _TITLE = "Parameters"
 _LABEL_WIDTH = 8.3  # times the font size
@@ -73,7 +73,7 @@ def _draw_parameter(state: AppState, settings: Settings, parameter: Parameter) -
     imgui.push_id(parameter.name)
     imgui.align_text_to_frame_padding()
     if value == default:
-        imgui.text_colored(ImVec4(*QUIET), parameter.label)
+        imgui.text_colored(ImVec4(*SECONDARY), parameter.label)
     else:
         imgui.text(parameter.label)
     widgets.show_tooltip(f"{parameter.tooltip} Double-click to reset.")

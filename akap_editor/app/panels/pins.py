@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from .. import widgets
 from ..app_state import AppState
 from ..commands.registry import REMOVE_SELECTED
-from ..theme import QUIET
+from ..theme import SECONDARY
 
 _ROWS = 6  # pins that are visible at once
 
@@ -32,7 +32,7 @@ def draw(state: AppState, scale: float) -> None:
             widgets.scroll_to_row(index, _ROWS)
         target = f"{pin.target[0]:.0f}, {pin.target[1]:.0f}"
         imgui.same_line(imgui.get_content_region_avail().x - imgui.calc_text_size(target).x - 6 * scale)
-        imgui.text_colored(ImVec4(*QUIET), target)
+        imgui.text_colored(ImVec4(*SECONDARY), target)
     imgui.end_child()
     imgui.begin_disabled(not editor.selection)
     if imgui.button("Remove Selected", ImVec2(widgets.FULL, 0)):

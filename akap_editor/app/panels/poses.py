@@ -14,7 +14,7 @@ from ...io.images import Picture
 from .. import widgets
 from ..app_state import AppState
 from ..commands.command import context_menu_pressed
-from ..theme import ACCENT, FRAME, HOVER, QUIET, packed
+from ..theme import ACCENT, FRAME, HOVER, SECONDARY, packed
 from ..timeline.keyframe_track import POSE_PAYLOAD
 
 _SIDE, _GAP, _MARGIN = 66, 6, 4  # of a thumbnail, in design points
@@ -103,7 +103,7 @@ class PosesSection:
         imgui.end_group()
 
     def _draw_name(self, pose: NamedPose, width: float) -> None:
-        imgui.text_colored(ImVec4(*QUIET), widgets.shortened(pose.name, width))
+        imgui.text_colored(ImVec4(*SECONDARY), widgets.shortened(pose.name, width))
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
             self._begin_renaming(pose)
         widgets.show_tooltip(f"{pose.name}: double-click or F2 to rename")
@@ -190,7 +190,7 @@ def _draw_thumbnail(
         assert state.document is not None
         drawing = state.document.drawing
         box = frame_box(drawing, [pose.positions])
-        return state.exporter.render(
+        return state.offscreen_renderer.render(
             drawing, pose.positions, box, pixels / max(box[2] - box[0], box[3] - box[1])
         )
 

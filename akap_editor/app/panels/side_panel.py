@@ -21,7 +21,7 @@ from ..commands.registry import (
     UNDO,
 )
 from ..dialogs.first_steps import FirstSteps
-from ..theme import ACCENT, QUIET, TEXT, packed
+from ..theme import ACCENT, SECONDARY, TEXT, packed
 from ..timeline import panel as timeline_panel
 from . import bending, drawing, history, measurements, mesh, pins, poses, stiffness_brush, view
 
@@ -141,7 +141,7 @@ def _draw_heading(state: AppState, section: Section) -> bool:
     was_open = bool(sections.get(section.title, section.opened))
     imgui.spacing()
     imgui.separator()
-    imgui.push_style_color(imgui.Col_.text, ImVec4(*QUIET))
+    imgui.push_style_color(imgui.Col_.text, ImVec4(*SECONDARY))
     imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
     is_clicked = imgui.selectable(f"{section.title.upper()}###section {section.title}", False)[0]
     arrow = icons.ICON_FA_CHEVRON_DOWN if was_open else icons.ICON_FA_CHEVRON_RIGHT
@@ -169,5 +169,5 @@ def _draw_status_bar(state: AppState, scale: float) -> None:
         widgets.show_tooltip(text if shortened != text else "")
         if zoom:
             imgui.same_line(zoom_left)
-            imgui.text_colored(ImVec4(*QUIET), zoom)
+            imgui.text_colored(ImVec4(*SECONDARY), zoom)
     imgui.end()

@@ -10,7 +10,7 @@ from ...editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS
 from .. import widgets
 from ..app_state import AppState
 from ..commands.registry import CLEAR_STIFFNESS, ERASE
-from ..theme import QUIET
+from ..theme import SECONDARY
 
 _LABEL_WIDTH = 6.0  # times the font size
 
@@ -42,7 +42,7 @@ def draw(state: AppState, scale: float) -> None:
 def _slider(label: str, value: float, limits: tuple[float, float], text_format: str, tooltip: str) -> float:
     """Draw a label and a logarithmic slider; return its value."""
     imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*QUIET), label)
+    imgui.text_colored(ImVec4(*SECONDARY), label)
     widgets.show_tooltip(tooltip)
     imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
     return widgets.slider(f"##{label}", value, limits, text_format, imgui.SliderFlags_.logarithmic, tooltip)[

@@ -8,7 +8,7 @@ from ...editor.document.easing import EASING_LABELS, KEYFRAME_EASINGS
 from ...editor.document.keyframes import Keyframe
 from .. import widgets
 from ..app_state import AppState
-from ..theme import ACCENT, QUIET
+from ..theme import ACCENT, SECONDARY
 
 _BUTTON_WIDTH, _BUTTON_HEIGHT, _NUMBER_WIDTH = 30, 28, 118  # design points
 _MIN_STEP, _MAX_STEP = 0.01, 10.0  # seconds between poses of the onion skin
@@ -31,7 +31,7 @@ def draw_buttons(state: AppState, scale: float) -> None:
         _draw_default_easings(state, playback)
         imgui.end_popup()
     imgui.same_line(0, 4 * scale)
-    imgui.push_style_color(imgui.Col_.text, ImVec4(*(ACCENT if playback.onion_skin.is_shown else QUIET)))
+    imgui.push_style_color(imgui.Col_.text, ImVec4(*(ACCENT if playback.onion_skin.is_shown else SECONDARY)))
     if imgui.button(f"{icons.ICON_FA_LAYER_GROUP}##onion", size):
         imgui.open_popup("onion menu")
     imgui.pop_style_color()

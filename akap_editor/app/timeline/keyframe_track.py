@@ -11,7 +11,7 @@ from ...editor.animation.playback import VisibleRange
 from ...editor.document.easing import EASING_LABELS
 from .. import widgets
 from ..app_state import AppState
-from ..theme import ACCENT, DARK, FRAME, QUIET, STRONG_LINE, TEXT, packed
+from ..theme import ACCENT, DARK, FRAME, SECONDARY, STRONG_LINE, TEXT, packed
 from .keyframe_menus import draw_keyframe_menu
 from .timeline import snap_time
 from .track import (
@@ -64,7 +64,7 @@ class KeyframeTrack:
         draw.pop_clip_rect()
         label_y = corner.y + (height - imgui.get_text_line_height()) / 2
         imgui.set_cursor_screen_pos(ImVec2(corner.x + width + 12 * scale, label_y))
-        imgui.text_colored(ImVec4(*QUIET), label)
+        imgui.text_colored(ImVec4(*SECONDARY), label)
 
     def _handle_mouse(self, state: AppState, time_scale: TimeScale, top: float, scale: float) -> None:
         """Press, drag and release on the track, Escape during a drag, and the context menu."""
@@ -204,7 +204,7 @@ def _draw_ruler(
         draw.add_line(ImVec2(x, top), ImVec2(x, bottom), packed(STRONG_LINE))
         if x + 24 * scale < high.x:
             text_corner = ImVec2(x + 3 * scale, corner.y + 1 * scale)
-            draw.add_text(font, size, text_corner, packed(QUIET), text_format % (number * tick))
+            draw.add_text(font, size, text_corner, packed(SECONDARY), text_format % (number * tick))
     draw_visible_part(visible_range, corner, width, scale)
 
 
@@ -229,6 +229,6 @@ def _draw_keyframes(playback: KeyframePlayback, time_scale: TimeScale, middle: f
 def _draw_playhead(playback: KeyframePlayback, time_scale: TimeScale, top: float, scale: float) -> None:
     """Draw the playhead, faint while the canvas shows the present pose instead of the one at its time."""
     draw, x, half = imgui.get_window_draw_list(), time_scale.x(playback.time), 5 * scale
-    color = packed(TEXT) if playback.is_previewing else packed(QUIET, 0.6)
+    color = packed(TEXT) if playback.is_previewing else packed(SECONDARY, 0.6)
     draw.add_line(ImVec2(x, top), ImVec2(x, top + _BOTTOM * scale), color, 2 * scale)
     draw.add_triangle_filled(ImVec2(x - half, top), ImVec2(x + half, top), ImVec2(x, top + 1.4 * half), color)

@@ -7,7 +7,7 @@ from ...render.overlays import Rgba
 from .. import widgets
 from ..app_state import AppState
 from ..dialogs.export_animation import ExportAnimationDialog
-from ..theme import ACCENT, QUIET, TEXT
+from ..theme import ACCENT, SECONDARY, TEXT
 from . import keyframe_menus
 from .keyframe_track import KeyframeTrack
 from .session_track import SessionTrack
@@ -63,7 +63,7 @@ def _draw_mode_buttons(state: AppState, scale: float) -> None:
     for number, (mode, icon, tooltip) in enumerate(_MODES):
         if number:
             imgui.same_line(0, 2 * scale)
-        if _icon_button(icon, mode, scale, ACCENT if state.timeline.mode == mode else QUIET):
+        if _icon_button(icon, mode, scale, ACCENT if state.timeline.mode == mode else SECONDARY):
             state.timeline.set_mode(mode)
         widgets.show_tooltip(tooltip)
 
@@ -86,7 +86,7 @@ def _draw_playback_buttons(state: AppState, scale: float) -> None:
         playback.toggle_playing()
     widgets.show_tooltip("Play (L)")
     imgui.same_line(0, 4 * scale)
-    if _icon_button(icons.ICON_FA_REPEAT, "loop", scale, ACCENT if playback.loop else QUIET):
+    if _icon_button(icons.ICON_FA_REPEAT, "loop", scale, ACCENT if playback.loop else SECONDARY):
         playback.loop = not playback.loop
     widgets.show_tooltip("Loop")
     imgui.same_line(0, 4 * scale)

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...editor.animation.session_playback import SessionPlayback
 from ..app_state import AppState
-from ..theme import ACCENT, FRAME, QUIET, TEXT, packed
+from ..theme import ACCENT, FRAME, SECONDARY, TEXT, packed
 from .track import (
     MARK_REACH,
     RED,
@@ -49,7 +49,7 @@ class SessionTrack:
         draw.pop_clip_rect()
         imgui.same_line(0, 12 * scale)
         imgui.align_text_to_frame_padding()
-        imgui.text_colored(ImVec4(*QUIET), label)
+        imgui.text_colored(ImVec4(*SECONDARY), label)
 
     def _handle_mouse(
         self, playback: SessionPlayback, time_scale: TimeScale, marks_top: float, scale: float

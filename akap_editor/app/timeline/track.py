@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ...editor.animation.playback import VisibleRange
 from ...editor.camera import ZOOM_STEP
-from ..theme import ACCENT, QUIET, packed
+from ..theme import ACCENT, SECONDARY, packed
 
 RED = (0.93, 0.33, 0.31, 1.0)
 MARK_REACH = 8  # design points: how near to a mark or a keyframe a press takes it
@@ -68,7 +68,7 @@ def draw_visible_part(visible_range: VisibleRange, corner: ImVec2, width: float,
         ends = visible_range.start, visible_range.start + visible_range.seconds
         left, right = (corner.x + width * time / visible_range.total for time in ends)
         low, high = ImVec2(left, corner.y), ImVec2(right, corner.y + 2 * scale)
-        imgui.get_window_draw_list().add_rect_filled(low, high, packed(QUIET), scale)
+        imgui.get_window_draw_list().add_rect_filled(low, high, packed(SECONDARY), scale)
 
 
 def draw_range_marks(start: float, end: float, bottom: float, scale: float) -> None:

@@ -6,6 +6,7 @@ from threading import Event
 import numpy as np
 import pytest
 
+from akap_editor.app.canvas.scene import scene_overlays
 from akap_editor.app.canvas.vector_field_arrows import arrows, compressed, grid_vertices
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor import gestures
@@ -45,13 +46,13 @@ def test_the_fields_are_seen_during_a_drag_only(pinned):
         hand.yield_(2)
         while pinned.state.is_busy:
             hand.yield_()
-        counts.append([len(s.segments) for s in pinned.state.overlays(1.0).lines])
+        counts.append([len(s.segments) for s in scene_overlays(pinned.state, 1.0).lines])
         hand.mouse_up(0)
 
     pinned.do(actions)
     (outline, u_smooth, u_opt) = counts[0]
     assert outline == u_smooth == u_opt > 30
-    assert pinned.state.overlays(1.0).lines == ()
+    assert scene_overlays(pinned.state, 1.0).lines == ()
 
 
 @pytest.fixture
@@ -96,12 +97,12 @@ def test_fields_are_computed_beside_the_window_and_then_shown(pinned, gate):
     frames = pinned.window.frames
     pinned.frame()
     assert pinned.window.frames == frames + 1
-    assert not pinned.state.overlays(1.0).lines
+    assert not scene_overlays(pinned.state, 1.0).lines
     gate.set()
     seen = []
     while pinned.state.is_busy:
         pinned.frame()
-        seen.append(len(pinned.state.overlays(1.0).lines))
+        seen.append(len(scene_overlays(pinned.state, 1.0).lines))
     pinned.session.commit()
     assert max(seen) > 0
     pinned.settle()

@@ -4,6 +4,7 @@ from imgui_bundle import imgui  # isort: skip
 import numpy as np
 import pytest
 
+from akap_editor.app.canvas.scene import scene_overlays
 from akap_editor.app.canvas.view_options import distortion_colors
 from akap_editor.geometry.distortion import distortion
 from akap_editor.render.overlays import FaceColors
@@ -44,7 +45,7 @@ def test_flipped_and_collapsed_faces_are_off_the_scale(drawing):
 
 
 def exported(ui):
-    return ui.state.exporter.render(ui.document.drawing, ui.session.state.positions)
+    return ui.state.offscreen_renderer.render(ui.document.drawing, ui.session.state.positions)
 
 
 def bend(ui):
@@ -79,12 +80,12 @@ def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned)
     stiffness = pinned.session.state.stiffness
     assert stiffness.max() == 100.0
     assert len(pinned.pins) == 3
-    assert isinstance(pinned.state.overlays(1.0).face_colors, FaceColors)
+    assert isinstance(scene_overlays(pinned.state, 1.0).face_colors, FaceColors)
     tinted = pinned.screenshot()
     x, y = map(round, pinned.to_screen((140.0, 70.0)))
     assert (tinted[y, x] != plain[y, x]).any()
     pinned.key(Key.p)
-    assert pinned.state.overlays(1.0).face_colors is None
+    assert scene_overlays(pinned.state, 1.0).face_colors is None
     assert (pinned.screenshot()[y, x] == plain[y, x]).all()
     pinned.key(Key.s)
     pinned.drag(start, end, button=1)

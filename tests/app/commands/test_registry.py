@@ -5,6 +5,7 @@ import glfw
 import numpy as np
 import pytest
 
+from akap_editor.app.canvas.scene import scene_overlays
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
@@ -222,7 +223,7 @@ CASES = {
     "Save As...": (nothing, lambda ui: ui.file_request is not None and ui.file_request.saving),
     "Export...": (nothing, lambda ui: ui.state.part(ExportPoseDialog).is_open),
     "Close": (nothing, lambda ui: ui.state.document is None),
-    "Quit": (nothing, lambda ui: ui.state.closing),
+    "Quit": (nothing, lambda ui: ui.state.is_closing),
     "Undo": (bent, is_rest),
     "Redo": (undone, lambda ui: ui.session.is_posed),
     "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
@@ -391,7 +392,7 @@ def test_a_shortcut_within_one_frame_is_not_its_key_alone(pinned):
     io.add_key_event(Key.d, False)
     pinned.settle()
     assert not pinned.editor.selection
-    assert pinned.state.overlays(1.0).face_colors is None
+    assert scene_overlays(pinned.state, 1.0).face_colors is None
     assert not io.key_ctrl
 
 

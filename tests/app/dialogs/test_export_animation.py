@@ -168,7 +168,7 @@ def test_where_a_picture_cannot_be_drawn_the_export_ends_with_one_sentence(keyed
     def fails(*_):
         raise InputError("no memory for a picture")
 
-    monkeypatch.setattr(keyed.state.exporter, "render", fails)
+    monkeypatch.setattr(keyed.state.offscreen_renderer, "render", fails)
     export_animation(keyed.state, AnimationExportOptions(), tmp_path / "out.webp")
     keyed.settle()
     assert keyed.state.error == "no memory for a picture"

@@ -98,14 +98,14 @@ def test_the_drawing_is_bent_on_while_its_picture_is_written(pinned, tmp_path, m
     pinned.settle()
     assert pinned.state.notice.startswith("Exported pose.png, ")
     box = crop_box(drawing, pose, "none")
-    expected = pinned.state.exporter.render(drawing, pose, box)
+    expected = pinned.state.offscreen_renderer.render(drawing, pose, box)
     np.testing.assert_array_equal(read_image(path), expected)
 
 
 def test_a_window_that_closes_writes_the_file_first(pinned, tmp_path):
     path = tmp_path / "pose.png"
     export_pose(pinned.state, PoseExportOptions(), path)
-    pinned.state.closing = True
+    pinned.state.is_closing = True
     pinned.window.run()
     assert path.exists()
-    pinned.state.closing = False
+    pinned.state.is_closing = False
