@@ -1,4 +1,4 @@
-"""The dialog of a task: how far it is, and a way out."""
+"""The dialog that shows the progress of a task and can cancel it."""
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
@@ -7,20 +7,20 @@ from ..app_state import AppState
 from ..jobs.task import Task
 from ..theme import ACCENT, SECONDARY
 
-_WIDTH = 420  # points of the design
+_WIDTH = 420  # design points
 
 
 def draw(state: AppState, task: Task, scale: float) -> None:
-    """One frame of the dialog."""
+    """Draw one frame of the dialog for a task. scale: points per design point."""
     if not widgets.begin_dialog(task.title):
         return
     imgui.push_style_color(imgui.Col_.plot_histogram, ImVec4(*ACCENT))
-    done = f"{100 * task.progress.share:.0f} %"
+    percent = f"{100 * task.progress.share:.0f} %"
     imgui.progress_bar(task.progress.share, ImVec2(_WIDTH * scale, 8 * scale), "")
     imgui.pop_style_color()
     imgui.text_colored(ImVec4(*SECONDARY), task.progress.text)
-    imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - imgui.calc_text_size(done).x)
-    imgui.text(done)
+    imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - imgui.calc_text_size(percent).x)
+    imgui.text(percent)
     imgui.spacing()
     if task.finish_early is not None and widgets.button("Stop Here", primary=True):
         task.finish_early()
@@ -30,5 +30,5 @@ def draw(state: AppState, task: Task, scale: float) -> None:
         task.cancel()
         state.task = None
         widgets.close_popup()
-        state.notice = f"{task.title}: canceled"
+        state.notice = f"{task.title}: cancelled"
     imgui.end_popup()

@@ -139,7 +139,7 @@ def test_an_export_is_cancelled_and_leaves_no_file(keyed, tmp_path, monkeypatch)
     assert keyed.state.task is not None
     keyed.dialog("Exporting out.webp", "Cancel")
     assert keyed.state.task is None
-    assert "canceled" in keyed.state.notice
+    assert "cancelled" in keyed.state.notice
     assert list(tmp_path.iterdir()) == []
 
 
