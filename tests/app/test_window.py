@@ -290,7 +290,7 @@ def scene(ui, patch):
 
 
 def preferences(ui, patch):
-    fail_once(patch, ui.state, "remember")
+    fail_once(patch, ui.state, "save_preferences")
 
 
 FAILURES = [

@@ -6,7 +6,6 @@ from dataclasses import dataclass, fields
 import numpy as np
 import pytest
 
-from akap_editor.app.app_state import AppState
 from akap_editor.app.canvas import scene as scene_module
 from akap_editor.app.canvas.scene import MIN_CACHED_FACES
 from akap_editor.editor import gestures
@@ -93,7 +92,7 @@ def draws(monkeypatch):
 
 
 def show(monkeypatch, overlays):
-    monkeypatch.setattr(AppState, "overlays", lambda state, scale: overlays)
+    monkeypatch.setattr("akap_editor.app.canvas.scene.scene_overlays", lambda state, scale: overlays)
 
 
 def line(drawing):
