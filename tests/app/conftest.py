@@ -1,6 +1,7 @@
 """A window on GLFW's null platform, which needs no display, and a drawing to open in it."""
 
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -68,3 +69,12 @@ def pinned(module_window: WindowDriver, document: Document) -> WindowDriver:
     assert editor.session is not None
     module_window.reset(editor.session.document)
     return module_window
+
+
+@pytest.fixture
+def bent(pinned: WindowDriver, tmp_path: Path) -> WindowDriver:
+    """The window with three pins, one of them dragged, not saved; file dialogs start in an empty folder."""
+    pinned.bend()
+    pinned.state.folder = tmp_path
+    assert pinned.editor.is_modified
+    return pinned

@@ -10,17 +10,6 @@ from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.io.akap.pose import load_pose
 from akap_editor.io.images import write_png
 
-
-@pytest.fixture
-def bent(pinned, tmp_path):
-    """Three pins, one of them dragged, not saved; dialogs begin in an empty folder."""
-    start = pinned.to_screen(pinned.pin_position(3))
-    pinned.drag(start, (start[0], start[1] - 120))
-    pinned.state.folder = tmp_path
-    assert pinned.editor.is_modified
-    return pinned
-
-
 # -- masks --------------------------------------------------------------------------------------------------
 
 CUT_OUT = "Cut Out with Mask..."

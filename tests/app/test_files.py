@@ -8,7 +8,6 @@ import pytest
 from PIL import Image
 
 from akap_editor.app.commands.command import CTRL, SHIFT, Key
-from akap_editor.app.dialogs.file_dialog import FileRequest
 from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
@@ -16,24 +15,10 @@ from akap_editor.io.akap.project import load, save
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.open_document import open_document
 from akap_editor.resources import bundled_drawings
+from tests.support.window_driver import state_bits
 
 OPEN, SAVE = "Open picture or drawing", "Save drawing"
 UNSAVED, MESSAGE = "Unsaved changes", "Error"
-
-
-@pytest.fixture
-def bent(pinned, tmp_path):
-    """Three pins, one of them dragged, not saved; dialogs begin in an empty folder."""
-    start = pinned.to_screen(pinned.pin_position(3))
-    pinned.drag(start, (start[0], start[1] - 120))
-    pinned.state.folder = tmp_path
-    assert pinned.editor.is_modified
-    return pinned
-
-
-def bits(state):
-    pins = [(pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes()) for pin in state.pins]
-    return state.positions.tobytes(), pins, state.settings
 
 
 def finish(ui):
@@ -46,7 +31,7 @@ def finish(ui):
 
 
 def test_save_as_and_open_again_restore_every_bit(bent, tmp_path):
-    before = bits(bent.session.state)
+    before = state_bits(bent.session.state)
     bent.menu("File", "Save As...")
     bent.type_name(SAVE, "posed")
     assert bent.file_request is None
@@ -61,149 +46,21 @@ def test_save_as_and_open_again_restore_every_bit(bent, tmp_path):
     assert not bent.state.part(UnsavedChangesDialog).is_open, "undo has brought back what was saved"
     finish(bent)
     assert bent.document.path == tmp_path / "posed.akap"
-    assert bits(bent.session.state) == before
+    assert state_bits(bent.session.state) == before
     assert bent.session.history.depth == 0
     assert not bent.editor.selection
-
-
-def enter_at(ui, item):
-    """Walk to an item by keyboard and press Enter."""
-
-    def walk(hand):
-        hand.nav_move_to(item)
-        hand.key_press(Key.enter)
-
-    ui.do(walk)
-
-
-@pytest.mark.parametrize(("button", "left"), [("Don't Save", False), ("Cancel", True)])
-def test_enter_uses_the_button_that_the_keyboard_is_at(bent, button, left):
-    bent.key(CTRL | Key.w)
-    assert bent.state.part(UnsavedChangesDialog).is_open
-    enter_at(bent, f"//{UNSAVED}###dialog {UNSAVED}/{button}")
-    assert not bent.state.part(UnsavedChangesDialog).is_open
-    assert bent.file_request is None, "nothing is to be saved"
-    assert (bent.state.document is not None) == left
-
-
-def test_enter_goes_into_the_folder_that_the_keyboard_is_at(bent, tmp_path):
-    inner = tmp_path / "inner"
-    inner.mkdir()
-    save(bent.document, inner / "there.akap")
-    bent.key(CTRL | Key.o)
-    enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/###inner")
-    assert bent.file_request.folder == inner
-    enter_at(bent, f"//{OPEN}###dialog {OPEN}/**/###there.akap")
-    assert bent.file_request is None
-    finish(bent)
 
 
 def test_save_asks_once_and_then_writes_to_the_same_file(bent, tmp_path):
     bent.key(CTRL | Key.s)
     bent.dialog(SAVE, "Save")
     path = tmp_path / "figure.akap"
-    assert bits(load(path).state) == bits(bent.session.state)
+    assert state_bits(load(path).state) == state_bits(bent.session.state)
     bent.panel("Reset Pose")
     bent.key(CTRL | Key.s)
     assert bent.file_request is None
-    assert bits(load(path).state) == bits(bent.session.state)
+    assert state_bits(load(path).state) == state_bits(bent.session.state)
     assert not bent.editor.is_modified
-
-
-def test_an_existing_file_is_replaced_only_on_demand(bent, tmp_path):
-    (tmp_path / "old.akap").write_bytes(b"old")
-    bent.key(CTRL | SHIFT | Key.s)
-    bent.type_name(SAVE, "old", enter=False)
-
-    def look(hand):
-        assert hand.item_exists(f"//{SAVE}###dialog {SAVE}/Replace")
-        assert not hand.item_exists(f"//{SAVE}###dialog {SAVE}/Save")
-
-    bent.do(look)
-    bent.dialog(SAVE, "Cancel")
-    assert (tmp_path / "old.akap").read_bytes() == b"old"
-    assert bent.editor.is_modified
-    bent.key(CTRL | SHIFT | Key.s)
-    bent.type_name(SAVE, "old", enter=False)
-    bent.dialog(SAVE, "Replace")
-    assert bits(load(tmp_path / "old.akap").state) == bits(bent.session.state)
-
-
-def test_the_file_dialog_goes_through_folders(bent, tmp_path):
-    inner = tmp_path / "inner" / "deeper"
-    inner.mkdir(parents=True)
-    save(bent.document, inner / "there.akap")
-    write_png(tmp_path / "picture.png", bent.document.drawing.image)
-    (tmp_path / "notes.txt").write_text("not listed")
-    (tmp_path / ".hidden.png").write_bytes(b"")
-    bent.menu("File", "Open...")
-    request = bent.file_request
-    assert request.entries() == [("inner", True), ("picture.png", False)]
-
-    def open_(name):
-        bent.do(lambda hand: hand.item_double_click(f"//{OPEN}###dialog {OPEN}/**/{name}"))
-
-    open_("###inner")
-    assert request.folder == tmp_path / "inner"
-    bent.dialog(OPEN, "\uf062##up")
-    assert request.folder == tmp_path
-    bent.type_name(OPEN, "inner/deeper")
-    assert request.folder == inner
-    assert request.name == ""
-    open_("###there.akap")
-    bent.dialog(UNSAVED, "Don't Save")
-    finish(bent)
-    assert bent.document.path == inner / "there.akap"
-
-
-@pytest.mark.parametrize("chord", [CTRL | Key.o, CTRL | SHIFT | Key.s])
-def test_a_name_can_be_typed_at_once(bent, chord):
-    typed = []
-
-    def actions(hand):
-        hand.key_press(int(chord))
-        hand.yield_(3)
-        hand.key_press(int(CTRL | Key.a))
-        hand.key_chars("mine")
-        hand.yield_(2)
-        typed.append(bent.file_request.name)
-        hand.key_press(Key.escape)
-
-    bent.do(actions)
-    assert typed == ["mine"]
-    assert bent.file_request is None
-
-
-@pytest.mark.parametrize("saving", [False, True])
-def test_no_name_that_can_be_typed_breaks_the_file_dialog(bent, tmp_path, saving):
-    """Each is seen half typed, e.g. the "/" of "/home"."""
-    state = bent.session.state
-    bent.key(CTRL | SHIFT | Key.s if saving else CTRL | Key.o)
-    for name in ("/", "~nobody-of-this-name/x", "..", "x" * 300, "\N{ELEPHANT}", "a/b/c", "\0"):
-        bent.file_request.name = name
-        bent.settle()
-    bent.key(Key.escape)
-    assert bent.file_request is None
-    assert bent.session.state is state
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize(
-    ("name", "saving", "expected"),
-    [
-        ("cat", True, "cat.akap"),
-        ("cat.akap", True, "cat.akap"),
-        (" cat.akap ", True, "cat.akap"),
-        ("sub/cat", True, "sub/cat.akap"),
-        ("folder", True, "folder"),
-        ("cat", False, "cat"),
-        ("/elsewhere/cat.png", False, "/elsewhere/cat.png"),
-    ],
-)
-def test_the_path_that_a_name_means(tmp_path, name, saving, expected):
-    (tmp_path / "folder").mkdir()
-    request = FileRequest("", (".akap", ".png"), tmp_path, print, name, saving)
-    assert request.path == tmp_path / expected
 
 
 def test_a_file_that_cannot_be_written_is_told_and_stays_unsaved(bent, tmp_path):
@@ -262,13 +119,13 @@ def test_discard_goes_on(bent, tmp_path, end):
 
 @pytest.mark.parametrize("end", ENDS)
 def test_save_saves_and_goes_on(bent, tmp_path, end):
-    state = bits(bent.session.state)
+    state = state_bits(bent.session.state)
     end(bent, tmp_path)
     bent.dialog(UNSAVED, "Save")
     bent.type_name(SAVE, "kept")
     finish(bent)
     assert gone_on(bent)
-    assert bits(load(tmp_path / "kept.akap").state) == state
+    assert state_bits(load(tmp_path / "kept.akap").state) == state
 
 
 @pytest.mark.parametrize("end", ENDS)

@@ -1,6 +1,5 @@
-"""The start page, the first steps, and the page of keys."""
+"""The start page, and what the program opens at its start."""
 
-from imgui_bundle import imgui  # isort: skip
 import sys
 from types import SimpleNamespace
 
@@ -8,12 +7,7 @@ import numpy as np
 import pytest
 
 from akap_editor import cli
-from akap_editor.app import files
 from akap_editor.app.commands.command import CTRL, Key
-from akap_editor.app.commands.registry import COMMANDS, MENUS
-from akap_editor.app.commands.shortcuts_page import ShortcutsPage, columns_of, groups
-from akap_editor.app.dialogs.first_steps import STEPS, FirstSteps
-from akap_editor.app.preferences import Preferences
 from akap_editor.errors import InputError
 from akap_editor.io.images import read_image, write_png
 from akap_editor.resources import bundled_drawings
@@ -27,9 +21,6 @@ def closed(ui):
     ui.key(CTRL | Key.w)
     assert ui.state.document is None
     return ui
-
-
-# -- start page ---------------------------------------------------------------------------------------------
 
 
 def test_close_shows_the_start_page_and_nothing_of_the_drawing(ui):
@@ -207,109 +198,3 @@ def test_of_several_dropped_files_the_first_opens_and_that_is_said(ui, tmp_path,
     ui.settle()
     assert ui.document.drawing.name == "one"
     assert ui.state.notice == "Opened one.png, the first of 2 files"
-
-
-# -- first steps --------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def newcomer(ui, tmp_path):
-    """The window of a first run."""
-    ui.state.preferences = Preferences(tmp_path / "preferences.json")
-    ui.state.part(FirstSteps).is_open = None
-    ui.settle()
-    return ui
-
-
-def test_the_steps_follow_what_is_done(newcomer):
-    assert newcomer.state.part(FirstSteps).step(newcomer.state) == 0
-    newcomer.click(newcomer.to_screen((60.0, 80.0)))
-    assert newcomer.state.part(FirstSteps).step(newcomer.state) == 1
-    start = newcomer.to_screen((200.0, 80.0))
-    newcomer.drag(start, (start[0], start[1] - 100))
-    assert newcomer.state.part(FirstSteps).step(newcomer.state) == 2
-    assert newcomer.state.part(FirstSteps).step(newcomer.state) == len(STEPS) - 1
-
-
-def test_the_steps_never_go_back(newcomer):
-    newcomer.click(newcomer.to_screen((60.0, 80.0)))
-    start = newcomer.to_screen((200.0, 80.0))
-    newcomer.drag(start, (start[0], start[1] - 100))
-    seen = []
-    for _ in range(2):
-        newcomer.key(CTRL | Key.z)
-        seen.append(newcomer.state.part(FirstSteps).step(newcomer.state))
-    assert not newcomer.pins
-    assert seen == [2, 2]
-
-
-def test_they_wait_on_the_start_page_for_a_drawing(newcomer, document):
-    files.close_document(newcomer.state)
-    newcomer.settle()
-    bottom = newcomer.editor.canvas[3]
-    files.show_document(newcomer.state, document)
-    newcomer.settle()
-    assert newcomer.editor.canvas[3] < bottom
-    assert newcomer.state.part(FirstSteps).step(newcomer.state) == 0
-
-
-def test_whoever_drags_the_only_pin_is_told_why_nothing_bends(newcomer):
-    start = newcomer.to_screen((200.0, 80.0))
-    newcomer.drag(start, (start[0], start[1] - 100))
-    assert newcomer.session.is_posed
-    assert newcomer.state.part(FirstSteps).step(newcomer.state) == 0
-    newcomer.click(newcomer.to_screen((60.0, 20.0)))  # the head, where it is now
-    assert len(newcomer.pins) == 2
-    assert newcomer.state.part(FirstSteps).step(newcomer.state) == 1
-    end = newcomer.to_screen(newcomer.pin_position(1))
-    newcomer.drag(end, (end[0], end[1] + 100))
-    assert newcomer.state.part(FirstSteps).step(newcomer.state) == 2
-
-
-@pytest.mark.parametrize("steps", [0, 2])
-def test_put_away_they_are_gone_for_good(newcomer, tmp_path, steps):
-    if steps:
-        newcomer.click(newcomer.to_screen((60.0, 80.0)))
-        start = newcomer.to_screen((200.0, 80.0))
-        newcomer.drag(start, (start[0], start[1] - 100))
-    bottom = newcomer.editor.canvas[3]
-    newcomer.do(lambda hand: hand.item_click("//First steps/###away"))
-    assert not newcomer.state.part(FirstSteps).is_open
-    assert newcomer.editor.canvas[3] > bottom, "the canvas has the room again"
-    newcomer.window.remember()
-    assert not FirstSteps.is_wanted(Preferences(tmp_path / "preferences.json"))
-
-
-def test_whoever_has_no_preferences_to_keep_sees_no_first_steps():
-    assert not FirstSteps.is_wanted(Preferences())
-
-
-# -- page of keys -------------------------------------------------------------------------------------------
-
-
-def test_the_page_lists_every_key():
-    lines = [line for _, lines in groups(MENUS, COMMANDS) for line in lines]
-    for command in COMMANDS:
-        if command.key_name:
-            assert (command.key_name, command.label.rstrip(".")) in lines
-    titles = [title for title, _ in groups(MENUS, COMMANDS)]
-    assert len(set(titles)) == len(titles)
-
-
-def test_columns_keep_the_order_and_balance():
-    parts = [(str(size), [("", "")] * size) for size in (10, 6, 7, 13, 4, 2)]
-    columns = columns_of(parts, 3)
-    assert [part for column in columns for part in column] == parts
-    assert len(columns) == 3
-    heights = [sum(len(lines) + 2 for _, lines in column) for column in columns]
-    assert max(heights) < 0.5 * sum(heights)
-    assert columns_of(parts, 1) == [parts]
-
-
-def test_a_question_mark_shows_it_wherever_that_is_on_the_keyboard(ui):
-    imgui.get_io().add_input_character(ord("?"))
-    ui.settle()
-    assert ui.state.part(ShortcutsPage).is_open
-    imgui.get_io().add_input_character(ord("?"))
-    ui.settle()
-    assert not ui.state.part(ShortcutsPage).is_open

@@ -22,7 +22,7 @@ from akap_editor.app.dialogs.file_dialog import FileDialog, FileRequest
 from akap_editor.app.jobs.background_thread import BackgroundThread
 from akap_editor.app.jobs.task import Task
 from akap_editor.app.window import Window
-from akap_editor.editor.document.document import Document
+from akap_editor.editor.document.document import Document, EditState
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.session.session import Session
@@ -266,6 +266,60 @@ class WindowDriver:
 
         self.do(press)
 
+    def keys(self, *chords: int, look: Callable[[], Any] | None = None) -> list[Any]:
+        """Press keys in one go; returns what ``look`` finds after each of them.
+
+        In one go, because Test Engine takes its mouse away at the end of its tests, which ends the crosshair.
+        """
+        seen: list[Any] = []
+
+        def press(hand: Any) -> None:
+            hand.yield_(2)
+            self.editor.last_pointer = None  # so that the crosshair begins in the middle
+            for chord in chords:
+                hand.key_press(int(chord))
+                hand.yield_(3)
+                if look is not None:
+                    self.on_main_thread(hand, lambda: seen.append(look()))
+
+        self.do(press)
+        return seen
+
+    def walk_to(self, label: str, *chords: int) -> None:
+        """Go through the side panel with Tab to an item, and press keys there."""
+
+        def act(hand: Any) -> None:
+            wanted = hand.item_info(f"//Panel/{label}").id_
+            hand.key_press(imgui.Key.tab)
+            for _ in range(80):
+                hand.yield_(2)
+                if imgui.get_current_context().nav_id == wanted:
+                    break
+                hand.key_press(imgui.Key.tab)
+            else:
+                raise AssertionError(f"Tab never comes to {label}")
+            for chord in chords:
+                hand.key_press(int(chord))
+                hand.yield_(3)
+            hand.key_press(imgui.Key.escape)
+
+        self.do(act)
+
+    def enter_at(self, item: str) -> None:
+        """Move the keyboard focus to an item and press Enter."""
+
+        def press(hand: Any) -> None:
+            hand.nav_move_to(item)
+            hand.key_press(imgui.Key.enter)
+
+        self.do(press)
+
+    def bend(self) -> None:
+        """Drag pin 3 upwards, as one undo entry."""
+        start = self.to_screen(self.pin_position(3))
+        self.drag(start, (start[0], start[1] - 120))
+        assert self.session.is_posed
+
     def click(self, point: Point, shift: bool = False) -> None:
         """Click a point of the screen."""
 
@@ -325,3 +379,9 @@ def one_step(task: Task) -> bool:
     except StopIteration:
         return True
     return False
+
+
+def state_bits(state: EditState) -> tuple[object, ...]:
+    """Pins, pose and settings, to compare bit for bit."""
+    pins = [(pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes()) for pin in state.pins]
+    return state.positions.tobytes(), pins, state.settings

@@ -1,4 +1,4 @@
-"""Each command by its menu, its button and its keys; the side panel; the two pages of help."""
+"""Each command by its menu, its button and its keys."""
 
 from imgui_bundle import imgui  # isort: skip
 import glfw
@@ -16,23 +16,13 @@ from akap_editor.app.dialogs.about import AboutDialog
 from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export_pose import ExportPoseDialog
 from akap_editor.app.glfw_window import on_key
-from akap_editor.app.panels import side_panel as panels
-from akap_editor.deform.methods import get_method, method_names, nearest_preset, presets
 from akap_editor.editor import gestures
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.events import PinRequest
 from akap_editor.editor.session.edits import PaintStiffness, SetTargets
 from akap_editor.editor.tools.stiffness_brush import Brush
-from akap_editor.errors import SolverError
 
 ITEMS = [(menu, command) for menu, group in MENUS for command in group if isinstance(command, Command)]
-
-
-def bend(ui):
-    """Pin 3 goes up; one undo entry."""
-    start = ui.to_screen(ui.pin_position(3))
-    ui.drag(start, (start[0], start[1] - 120))
-    assert ui.session.is_posed
 
 
 # -- what each command does: prepare, and a law that holds after it -----------------------------------------
@@ -43,11 +33,11 @@ def nothing(ui):
 
 
 def bent(ui):
-    bend(ui)
+    ui.bend()
 
 
 def undone(ui):
-    bend(ui)
+    ui.bend()
     ui.editor.undo()
 
 
@@ -111,7 +101,7 @@ def keyed(ui):
     ui.state.timeline.is_shown, ui.state.timeline.mode = True, "keyframes"
     ui.settle()
     playback.set_keyframe(0.0)
-    bend(ui)
+    ui.bend()
     playback.set_keyframe(1.0)
     playback.scrub(1.0)
     playback.selected = frozenset({1.0})
@@ -372,7 +362,7 @@ def test_commands_that_have_nothing_to_do_are_disabled(pinned, command):
 
 def test_undo_and_redo_restore_bit_for_bit(pinned):
     rest = pinned.session.state
-    bend(pinned)
+    pinned.bend()
     bent = pinned.session.state
     pinned.key(CTRL | Key.z)
     assert pinned.session.state is rest
@@ -415,152 +405,3 @@ def test_keys_do_nothing_while_a_name_is_typed(pinned):
     assert len(pinned.pins) == 3
     pinned.key(Key.escape)
     assert pinned.file_request is None
-
-
-# -- side panel ---------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("label", "name"), [("Mesh", "show_mesh"), ("Pins", "show_pins"), ("Checkerboard", "show_checkerboard")]
-)
-def test_view_switches(pinned, label, name):
-    before = getattr(pinned.state.view, name)
-    picture = pinned.screenshot()
-    pinned.panel(label)
-    assert getattr(pinned.state.view, name) != before
-    left, top, right, bottom = map(round, pinned.editor.canvas)
-    assert (pinned.screenshot() != picture)[top:bottom, left:right].any()
-    pinned.panel(label)
-    assert getattr(pinned.state.view, name) == before
-    assert not pinned.editor.is_modified
-
-
-def test_the_rest_shape_switch_is_an_edit(pinned):
-    pinned.panel("Remember rest shape")
-    assert pinned.session.state.settings.get("memory") == 0.0
-    pinned.panel("Remember rest shape")
-    assert pinned.session.state.settings.get("memory") == 1.0
-    pinned.key(CTRL | Key.z)
-    assert pinned.session.state.settings.get("memory") == 0.0
-
-
-def test_reset_pose_by_the_panel(pinned):
-    bend(pinned)
-    pinned.panel("Reset Pose")
-    assert not pinned.session.is_posed
-
-
-def pin_in_list(ui, pin, shift=False):
-    """Click a line of the pin list."""
-
-    def click(hand):
-        if shift:
-            hand.key_down(imgui.Key.mod_shift)
-        hand.item_click(f"//Panel/**/  Pin {pin}##pin")
-        if shift:
-            hand.key_up(imgui.Key.mod_shift)
-
-    ui.do(click)
-
-
-def test_the_pin_list_selects(pinned):
-    pin_in_list(pinned, 2)
-    assert pinned.editor.selection == {2}
-    pin_in_list(pinned, 3, shift=True)
-    assert pinned.editor.selection == {2, 3}
-    pin_in_list(pinned, 2, shift=True)
-    assert pinned.editor.selection == {3}
-    pin_in_list(pinned, 1)
-    assert pinned.editor.selection == {1}
-    assert not pinned.editor.is_modified
-    pinned.panel("Remove Selected")
-    assert [pin.id for pin in pinned.pins] == [2, 3]
-
-
-@pytest.mark.parametrize(
-    ("error", "message"),
-    [
-        (SolverError("the numbers are not finite"), "the numbers are not finite"),
-        (
-            KeyError("oops"),
-            "Something went wrong in the program (KeyError: 'oops'). Your drawing is still open.",
-        ),
-    ],
-)
-def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd, error, message):
-    def fail(state, scale):
-        raise error
-
-    with monkeypatch.context() as patch:
-        patch.setattr(panels, "SECTIONS", (*panels.SECTIONS, panels.Section("Broken", fail)))
-        pinned.frame()
-        assert pinned.state.error == message
-    assert ("Traceback" in capfd.readouterr().err) == isinstance(error, KeyError)
-    pinned.settle()
-    pinned.dialog("Error", "OK")
-    assert not pinned.state.error
-    bend(pinned)
-    pinned.menu("Edit", "Undo")
-    assert not pinned.session.is_posed
-
-
-# -- help ---------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("label", "page", "title"),
-    [
-        ("Keyboard Shortcuts", ShortcutsPage, "Keyboard shortcuts"),
-        ("About akap-editor", AboutDialog, "About akap-editor"),
-    ],
-)
-@pytest.mark.parametrize("close", ["Close", "escape", "enter"])
-def test_help_opens_and_closes(pinned, label, page, title, close):
-    pinned.menu("Help", label)
-    assert pinned.state.part(page).is_open
-    if close == "Close":
-        pinned.dialog(title, "Close")
-    else:
-        pinned.key(Key.escape if close == "escape" else Key.enter)
-    assert not pinned.state.part(page).is_open
-    pinned.click(pinned.to_screen((100.0, 80.0)))
-    assert len(pinned.pins) == 4, "the canvas is free again"
-
-
-# -- methods ------------------------------------------------------------------------------------------------
-
-
-def test_every_method_can_be_chosen():
-    assert {preset.method for preset in presets()} == set(method_names())
-
-
-@pytest.mark.parametrize(
-    "preset", [each for each in presets() if each.parameters], ids=lambda each: each.spec
-)
-def test_a_preset_is_chosen_and_keeps_its_memory(pinned, preset):
-    def choose(hand):
-        hand.set_ref("Panel")
-        hand.combo_click(f"##method/{preset.label}")
-
-    pinned.do(choose)
-    settings = pinned.session.state.settings
-    assert settings.method == preset.method
-    memory = {"memory": 1.0} if get_method(preset.method).deformer.has_memory else {}
-    assert dict(settings.parameters) == {**preset.parameters, **memory}
-    assert nearest_preset(settings.method, dict(settings.parameters)) is preset
-
-
-def test_choosing_a_method_in_mid_pose_moves_nothing_and_is_undone(pinned):
-    bend(pinned)
-    pose = pinned.session.state.positions
-
-    def choose(hand):
-        hand.set_ref("Panel")
-        hand.combo_click("##method/As-rigid-as-possible (ARAP)")
-
-    pinned.do(choose)
-    assert pinned.session.state.settings.method == "arap"
-    assert pinned.session.state.positions is pose
-    pinned.menu("Edit", "Undo")
-    assert pinned.session.state.settings.method == "akap"
-    assert pinned.session.state.positions is pose

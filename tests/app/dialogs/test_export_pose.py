@@ -15,15 +15,6 @@ EXPORT, FILE, MESSAGE = "Export", "Export to", "Error"
 BY_SUFFIX = {each.suffix: each for each in EXPORT_FORMATS}
 
 
-@pytest.fixture
-def bent(pinned, tmp_path):
-    """Three pins, one of them dragged; dialogs begin in an empty folder."""
-    start = pinned.to_screen(pinned.pin_position(3))
-    pinned.drag(start, (start[0], start[1] - 120))
-    pinned.state.folder = tmp_path
-    return pinned
-
-
 def dialog(ui):
     return ui.state.part(ExportPoseDialog)
 
