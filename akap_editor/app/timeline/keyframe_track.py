@@ -178,7 +178,7 @@ def _accept_pose(state: AppState, time_scale: TimeScale) -> None:
     if payload is not None and state.document is not None:
         pose = state.document.state.poses[payload.data_id]
         time = snap_time(time_scale.time(imgui.get_mouse_pos().x))
-        state.run_reporting_errors(lambda: playback.set_keyframe(time, pose.positions))
+        state.run_reporting_errors(lambda: playback.set_keyframe(time, pose.positions, pose.crossings))
         playback.scrub(time)
     imgui.end_drag_drop_target()
 

@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from akap_editor.app import files
 from akap_editor.app.commands.command import SHIFT
 from akap_editor.editor import gestures
+from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.replay import replay
 from akap_editor.io.akap.project import load, save
 
@@ -171,6 +172,24 @@ def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
     np.testing.assert_array_equal(keyed.session.present.animation.keyframes[-1].positions, kept)
     keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Down", "//Panel/pose Up"))
     assert [pose.name for pose in keyed.session.present.poses] == ["Down", "Up"]
+
+
+def test_a_pose_that_is_dragged_to_the_timeline_keeps_what_passes_in_front(keyed):
+    playback, session = keyed.state.timeline.keyframe_playback, keyed.session
+    playback.show_present()
+    keyed.editor.apply("Drag Pin", SetTargets({3: (22.0, 46.0)}))
+    keyed.settle()
+    keyed.editor.select({3})
+    gestures.order_limb(keyed.editor, False)
+    gestures.add_pose(keyed.editor, "Folded")
+    gestures.reset_pose(keyed.editor)
+    keyed.settle()
+    keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Folded", "//Timeline/##keys"))
+    folded = session.present.poses[0]
+    assert len(folded.crossings) > 0
+    keyframe = session.present.animation.keyframes[-1]
+    np.testing.assert_array_equal(keyframe.positions, folded.positions)
+    np.testing.assert_array_equal(keyframe.crossings, folded.crossings)
 
 
 def test_onion_skin_is_seen_in_two_tints_and_only_while_nothing_plays(keyed):
