@@ -34,6 +34,12 @@ def preferences_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(scope="session", autouse=True)
+def own_file_dialog() -> None:
+    """Choose files in the editor's own dialog, also on a desktop that has one; see `NativeFileDialog`."""
+    os.environ["AKAP_EDITOR_FILE_DIALOG"] = "own"
+
+
 class ManualClock:
     """A clock that moves only when a test sets `now`, in seconds."""
 

@@ -16,6 +16,7 @@ from akap_editor.editor.tools.keyboard_pointer import BIG_STEP
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
 from tests.support.cartoons import SHARED_DATA
+from tests.support.native_dialog import StandInDialog
 from tests.support.running_program import (
     BOTTOM,
     CORNER,
@@ -353,3 +354,33 @@ def test_a_file_dropped_on_the_window_is_opened(start, picture, tmp_path):
     for place in far_apart(alpha, 4):
         x, y = np.rint(place * zoom + offset).astype(int)
         assert (plain[y, x] != plain[TOP, LEFT]).any(), "the raptor is where its picture says"
+
+
+def test_the_dialog_of_the_system_saves_cancels_and_opens(start, picture, monkeypatch, tmp_path):
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    dialog = StandInDialog(folder, monkeypatch)
+    program = start(picture)
+    before = canvas(program.grab())
+
+    def ask(chord):
+        program.press(chord)
+        program.until(lambda _: dialog.is_open, "the dialog is open")
+        return dialog.arguments
+
+    saved = tmp_path / "käse & co.akap"
+    arguments = ask("ctrl+shift+s")
+    assert "--save" in arguments
+    assert f"--filename={picture.with_suffix('.akap')}" in arguments
+    assert (canvas(program.grab()) == before).all(), "the editor shows no dialog of its own"
+    dialog.answer(saved.with_suffix(""))
+    program.until(lambda _: saved.is_file(), "the file is saved")
+
+    assert "--save" not in ask("ctrl+o")
+    dialog.answer(None)
+    program.until(lambda _: not dialog.is_open, "it is cancelled")
+    ask("ctrl+o")
+    dialog.answer(resource("assets", "drawings", "raptor.png"))
+    program.until(lambda screen: (canvas(screen) != before).any(axis=2).mean() > 0.05, "the raptor is open")
+    program.press("ctrl+q")
+    assert program.exit_code() == 0

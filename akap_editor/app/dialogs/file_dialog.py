@@ -18,10 +18,16 @@ from ..theme import ACCENT, SECONDARY
 
 _WIDTH, _HEIGHT = 520, 260  # of the list of files, in design points
 _OTHER_HEIGHT = 220  # of everything around the list in a low window, in design points
+DIALOG_VARIABLE = "AKAP_EDITOR_FILE_DIALOG"  # environment variable: "own" for this dialog on every system
 
 
 def has_native_dialogs() -> bool:
-    """Whether the system can ask for a file. Without these programs, it would always answer “cancelled”."""
+    """Whether the system's dialog is to ask for a file.
+
+    Without these programs, the system would always answer “cancelled”.
+    """
+    if os.environ.get(DIALOG_VARIABLE) == "own":
+        return False
     return sys.platform in ("win32", "darwin") or any(map(shutil.which, ("zenity", "kdialog", "qarma")))
 
 
