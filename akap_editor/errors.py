@@ -4,6 +4,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from .display_text import display_text
+
 
 class AkapError(Exception):
     """Base of all errors that the package raises on purpose; the message is one line for the user."""
@@ -20,7 +22,7 @@ class FileError(InputError):
     """
 
     def __init__(self, verb: str, path: str | Path, reason: str) -> None:
-        super().__init__(f"Couldn't {verb} “{path}”. {_as_sentence(reason)}")
+        super().__init__(f"Couldn't {verb} “{display_text(path)}”. {_as_sentence(reason)}")
 
 
 class SolverError(AkapError, ArithmeticError):

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..display_text import display_name
 from ..editor import gestures
 from ..editor.background_remesh import BackgroundRemesh
 from ..editor.comparison import MethodComparison
@@ -195,7 +196,7 @@ class AppState:
         if self.document is None:
             return "akap-editor"
         path = self.document.path
-        name = path.name if path is not None else self.document.drawing.name
+        name = display_name(path) if path is not None else self.document.drawing.name
         return f"{name}{' *' if self.editor.is_modified else ''} - akap-editor"
 
     def change_settings(self, settings: Settings) -> None:

@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from ..display_text import display_name, file_stem
 from ..editor import gestures
 from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import apply_mask, remove_background_and_mesh
@@ -34,9 +35,11 @@ def choose_mask(state: AppState) -> None:
 
         def cut() -> None:
             files.show_document(state, cut_out(document, path))
-            state.notice = f"Cut out with {path.name}"
+            state.notice = f"Cut out with {display_name(path)}"
 
-        files.confirm_unsaved(state, lambda: state.run_after_frame(cut, f"Cutting out with {path.name} ..."))
+        files.confirm_unsaved(
+            state, lambda: state.run_after_frame(cut, f"Cutting out with {display_name(path)} ...")
+        )
 
     state.part(FileDialog).ask(FileRequest("Choose mask", PICTURE_SUFFIXES, state.folder, use))
 
@@ -64,7 +67,7 @@ def cut_out(document: Document, mask: Path) -> Document:
 def choose_pose_to_save(state: AppState) -> None:
     """Ask for a pose file, then write pins and pose to it."""
     if state.document is not None:
-        name = f"{state.document.drawing.name}{POSE_SUFFIX}"
+        name = f"{file_stem(state.document.drawing.name)}{POSE_SUFFIX}"
         use = partial(save_pose_file, state)
         state.part(FileDialog).ask(
             FileRequest("Save pose", (POSE_SUFFIX,), state.folder, use, name, saving=True)
@@ -74,7 +77,7 @@ def choose_pose_to_save(state: AppState) -> None:
 def save_pose_file(state: AppState, path: Path) -> None:
     """Write pins and pose to a file."""
     if state.document is not None and state.run_reporting_errors(partial(save_pose, state.document, path)):
-        state.notice = f"Saved {path.name}"
+        state.notice = f"Saved {display_name(path)}"
 
 
 def choose_pose_to_apply(state: AppState) -> None:
@@ -91,7 +94,7 @@ def apply_pose_file(state: AppState, path: Path) -> None:
         assert state.document is not None
         pose = load_pose(path, state.document.drawing)
         gestures.apply_pose(state.editor, pose.pins, pose.positions, pose.crossings)
-        state.notice = f"Applied {path.name}"
+        state.notice = f"Applied {display_name(path)}"
 
     state.run_reporting_errors(apply)
 
@@ -102,7 +105,10 @@ def apply_pose_file(state: AppState, path: Path) -> None:
 def choose_recording_to_save(state: AppState) -> None:
     """Ask for a recording file, then write the session to it."""
     if state.document is not None:
-        name, use = f"{state.document.drawing.name}{RECORDING_SUFFIX}", partial(save_recording_file, state)
+        name, use = (
+            f"{file_stem(state.document.drawing.name)}{RECORDING_SUFFIX}",
+            partial(save_recording_file, state),
+        )
         state.part(FileDialog).ask(
             FileRequest("Save recording", (RECORDING_SUFFIX,), state.folder, use, name, saving=True)
         )
@@ -115,9 +121,9 @@ def save_recording_file(state: AppState, path: Path) -> None:
         session = state.editor.session
         assert session is not None
         write_recording(session.recording, path, session.drawing)
-        state.notice = f"Saved {path.name}, {session.recording.duration:.0f} seconds"
+        state.notice = f"Saved {display_name(path)}, {session.recording.duration:.0f} seconds"
 
-    state.run_after_frame(write, f"Saving {path.name} ...")
+    state.run_after_frame(write, f"Saving {display_name(path)} ...")
 
 
 # -- the reference picture ----------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from ..display_text import display_name, file_stem
 from ..editor.animation.session_playback import SessionPlayback
 from ..editor.document.document import Document
 from ..editor.document.settings import Settings
@@ -55,7 +56,7 @@ def choose_and_open(state: AppState) -> None:
 
 def open_dropped(state: AppState, paths: list[Path]) -> None:
     """Open the first of the files that were dropped on the window."""
-    notice = f"Opened {paths[0].name}, the first of {len(paths)} files" if len(paths) > 1 else ""
+    notice = f"Opened {display_name(paths[0])}, the first of {len(paths)} files" if len(paths) > 1 else ""
     open_path(state, paths[0], notice)
 
 
@@ -73,11 +74,11 @@ def open_path(state: AppState, path: Path, notice: str = "") -> None:
             raise
         show_document(state, document)
         if is_animation(path):
-            state.notice = f"Opened the first frame of the animation {path.name}"
+            state.notice = f"Opened the first frame of the animation {display_name(path)}"
         remember_file(state, path)
         state.notice = notice or state.notice
 
-    confirm_unsaved(state, lambda: state.run_after_frame(read, f"Opening {path.name} ..."))
+    confirm_unsaved(state, lambda: state.run_after_frame(read, f"Opening {display_name(path)} ..."))
 
 
 def _show_recording(state: AppState, path: Path, session: Session, playback: SessionPlayback) -> None:
@@ -86,7 +87,7 @@ def _show_recording(state: AppState, path: Path, session: Session, playback: Ses
     state.editor.take_over(session)
     state.timeline.session_playback, state.timeline.mode, state.timeline.is_shown = playback, "session", True
     remember_file(state, path)
-    state.notice = f"Opened {path.name}; the timeline shows its {playback.duration:.0f} seconds"
+    state.notice = f"Opened {display_name(path)}; the timeline shows its {playback.duration:.0f} seconds"
 
 
 def remember_file(state: AppState, path: Path) -> None:
@@ -114,7 +115,9 @@ def save_as(state: AppState, then: Callable[[], None] | None = None) -> None:
     """Ask for a file and write the document to it; after that, call ``then``."""
     if state.document is None:
         return
-    suggested = state.document.path or state.folder / f"{state.document.drawing.name}{PROJECT_SUFFIX}"
+    suggested = (
+        state.document.path or state.folder / f"{file_stem(state.document.drawing.name)}{PROJECT_SUFFIX}"
+    )
     state.part(FileDialog).ask(
         FileRequest(
             "Save drawing",
@@ -135,7 +138,7 @@ def write_document(state: AppState, path: Path, then: Callable[[], None] | None 
         save_project(state.editor.session.present_document, path)
         state.editor.mark_saved(path)
         remember_file(state, path)
-        state.notice = f"Saved {path.name}"
+        state.notice = f"Saved {display_name(path)}"
 
     if state.run_reporting_errors(write) and then is not None:
         then()
@@ -150,7 +153,7 @@ def confirm_unsaved(state: AppState, proceed: Callable[[], None]) -> None:
     if document is None or not state.editor.is_modified:
         proceed()
         return
-    name = document.path.name if document.path is not None else document.drawing.name
+    name = display_name(document.path) if document.path is not None else document.drawing.name
     question = UnsavedChangesQuestion(name, save=lambda: save(state, proceed), discard=proceed)
     state.part(UnsavedChangesDialog).ask(question)
 

@@ -2,7 +2,9 @@
 
 # imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
 from imgui_bundle import imgui  # isort: skip
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import glfw
@@ -51,6 +53,20 @@ def create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
     glfw.make_context_current(handle)
     glfw.swap_interval(1)
     return handle
+
+
+def set_drop_callback(handle: Any, on_drop: Callable[[list[Path]], None]) -> object:
+    """Let GLFW call ``on_drop`` with the files that are dropped; the result must live as long as the window.
+
+    `glfw.set_drop_callback` raises an exception for names that are not UTF-8.
+    """
+
+    def pass_on(_: object, count: int, names: Any) -> None:
+        on_drop([Path(os.fsdecode(names[index])) for index in range(count)])
+
+    callback: object = glfw._GLFWdropfun(pass_on)  # type: ignore[attr-defined]  # not in its stubs
+    glfw._glfw.glfwSetDropCallback(handle, callback)  # type: ignore[attr-defined]
+    return callback
 
 
 def remembered_size(preferences: Preferences) -> tuple[int, int]:

@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 from PIL import Image
 
+from ..display_text import display_name, display_text
 from ..io.images import Picture, read_image
 from ..resources import bundled_drawings
 from . import files, widgets
@@ -167,11 +168,11 @@ def _draw_recent(state: AppState, width: float) -> None:
         return
     room = int(imgui.get_content_region_avail().y / imgui.get_text_line_height_with_spacing())
     for index, path in enumerate(recent[: max(room, _MIN_RECENT)]):
-        name = widgets.shortened(path.name, 0.4 * width)
+        name = widgets.as_label(widgets.shortened(display_name(path), 0.4 * width))
         if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
             _open(state, path)
-        widgets.show_tooltip(str(path))
-        folder = widgets.shortened(str(path.parent), 0.55 * width, keeps_end=True)
+        widgets.show_tooltip(display_text(path))
+        folder = widgets.shortened(display_text(path.parent), 0.55 * width, keeps_end=True)
         right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
         imgui.same_line(right - imgui.calc_text_size(folder).x)
         imgui.text_colored(ImVec4(*SECONDARY), folder)

@@ -166,6 +166,11 @@ def scroll_to_row(index: int, most: int) -> None:
 # -- text ---------------------------------------------------------------------------------------------------
 
 
+def as_label(text: str) -> str:
+    """A text as a label of ImGui, which shows all of it; in a label ImGui hides what follows ##."""
+    return re.sub("#(?=#)", "#\u200b", text)
+
+
 def secondary_text(text: str) -> None:
     """Draw a text in the secondary color, wrapped at the edge of the window."""
     imgui.push_text_wrap_pos(0.0)

@@ -19,7 +19,7 @@ from ..editor.document.document import Document
 from ..errors import AkapError
 from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
-from . import files, start_page, theme, widgets
+from . import files, glfw_window, start_page, theme, widgets
 from .app_state import AppState, error_message
 from .canvas import split_view
 from .canvas.legend import draw_legend
@@ -118,7 +118,7 @@ class Window:
         They must not raise, because their exception would come out of `glfw.poll_events`; so they only queue.
         """
         glfw.set_key_callback(self.handle, on_key)
-        glfw.set_drop_callback(self.handle, self._on_drop)  # type: ignore[arg-type]  # its stub is wrong
+        self._drop_callback = glfw_window.set_drop_callback(self.handle, self.drop)
         glfw.set_window_refresh_callback(self.handle, lambda _: self._on_refresh())
         glfw.set_window_content_scale_callback(self.handle, lambda *_: self._apply_scale())
         glfw.set_window_close_callback(self.handle, self._on_close)
@@ -378,9 +378,6 @@ class Window:
     def drop(self, paths: list[Path]) -> None:
         """Open files that were dropped on the window, in the next frame."""
         self._dropped.append(paths)
-
-    def _on_drop(self, _: Any, paths: list[str]) -> None:
-        self.drop([Path(path) for path in paths])
 
     def request_close(self) -> None:
         """Close the window after the next frame; ask about unsaved changes first."""

@@ -1,11 +1,13 @@
 """The command line, with one module per command."""
 
 import sys
+from io import TextIOWrapper
 
 import click
 from click.shell_completion import CompletionItem
 
 from .. import __version__
+from ..display_text import display_text
 from ..errors import AkapError
 from .bench import bench
 from .compare import compare_command
@@ -43,12 +45,18 @@ for command in (edit, render, replay_command, compare_command, export_command, i
 
 
 def main() -> None:
-    """Run the command line. An error of the package is one line on stderr and exit code 2."""
+    """Run the command line. An error of the package is one line on stderr and exit code 2.
+
+    What the terminal has no character for is escaped.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     try:
         cli(prog_name="akap-editor", standalone_mode=False)
     except (AkapError, click.ClickException) as error:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
-        click.echo(f"akap-editor: {message}", err=True)
+        click.echo(f"akap-editor: {display_text(message, keeps_lines=True)}", err=True)
         sys.exit(2)
     except click.Abort:
         sys.exit(130)  # the shells' code for Ctrl+C

@@ -8,6 +8,7 @@ import click
 import numpy as np
 
 from ..deform.methods import compared_methods, parse_method
+from ..display_text import display_text
 from ..editor.document.drawing import Drawing, make_drawing
 from ..editor.session.recording import Recording
 from ..errors import InputError, file_errors
@@ -61,7 +62,7 @@ def compare_command(
         page = report.to_html(models, renderer)
     write_atomic(output / "index.html", page.encode("utf-8"))
     write_atomic(output / "comparison.json", report.to_json(models).encode("utf-8"))
-    click.echo(f"Wrote {output / 'index.html'} and {output / 'comparison.json'}")
+    click.echo(f"Wrote {display_text(output / 'index.html')} and {display_text(output / 'comparison.json')}")
 
 
 def _import_report() -> Any:
@@ -103,4 +104,4 @@ def _run_methods(
         counts = [len(each.mesh.vertices) for each in (drawing, *others)]
         rows = sorted((count, d.area, d.angle) for count, d in zip(counts, after, strict=True))
         finer.append(np.array(rows))
-    return Model(drawing.name, path.stem, runs, finer)
+    return Model(drawing.name, display_text(path.stem), runs, finer)

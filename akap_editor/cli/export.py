@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from ..display_text import display_name, display_text
 from ..editor.framing import crop_box, output_size
 from ..errors import InputError
 from ..io.export import EXPORT_FORMATS, ExportOptions, export, format_of
@@ -35,9 +36,9 @@ class ExportResult:
     @property
     def text(self) -> str:
         """A line for people."""
-        companions = ", ".join(path.name for path in self.files[:-1])
+        companions = ", ".join(map(display_name, self.files[:-1]))
         size = f": {self.size[0]} × {self.size[1]} pixels" if self.size else f": {self.label}"
-        return f"{self.files[-1]}{size}" + (f", with {companions}" if companions else "")
+        return f"{display_text(self.files[-1])}{size}" + (f", with {companions}" if companions else "")
 
     @property
     def facts(self) -> dict[str, object]:

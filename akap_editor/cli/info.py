@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from ..display_text import display_text
 from ..io.inspection import inspect
 from .options import FILE
 
@@ -30,9 +31,11 @@ def info(file: Path, as_json: bool) -> None:
         click.echo(json.dumps(record, indent=2))
     else:
         verdict = "sound" if inspection.sound else "not sound"
-        click.echo("\n".join([f"{file}: {inspection.kind}, {verdict}", *_fact_lines(inspection.facts)]))
+        click.echo(
+            "\n".join([f"{display_text(file)}: {inspection.kind}, {verdict}", *_fact_lines(inspection.facts)])
+        )
         for problem in inspection.problems:
-            click.echo(f"  {problem}")
+            click.echo(f"  {display_text(problem)}")
     if not inspection.sound:
         raise SystemExit(1)
 
@@ -47,4 +50,4 @@ def _format_value(value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, list):
         return ", ".join(f"{each:g}" for each in value)
-    return str(value)
+    return display_text(value)

@@ -11,6 +11,7 @@ from typing import Any
 import click
 import numpy as np
 
+from ..display_text import display_text
 from ..editor.document.drawing import Meshing, apply_mask
 from ..errors import FileError, InputError, file_errors
 from ..geometry.validation import as_number
@@ -173,7 +174,9 @@ def _outputs(paths: list[Path], folder: Path | None) -> list[Path | None]:
         raise FileError("save", folder, reason)
     name, count = Counter(path.stem for path in paths).most_common(1)[0]
     if count > 1:
-        raise InputError(f"expected pictures of different names, got {count} whose mesh would be {name}.obj")
+        raise InputError(
+            f"expected pictures of different names, got {count} whose mesh would be {display_text(name)}.obj"
+        )
     return [folder / f"{path.stem}.obj" for path in paths]
 
 
@@ -193,7 +196,7 @@ def _measure_all(
 
 def _describe(row: MeshRow) -> str:
     lines = [
-        f"{row.picture}: {_count_noun(row.parts, 'part')}, {_count_noun(row.holes, 'hole')}, "
+        f"{display_text(row.picture)}: {_count_noun(row.parts, 'part')}, {_count_noun(row.holes, 'hole')}, "
         f"{row.vertices} vertices, {row.faces} faces",
         f"  smallest angle  {row.worst_angle:.1f}°, 1st percentile {row.low_angle:.1f}°",
         f"  covered         {row.covered:.2%} of the visible area; {row.outside:.1%} of the mesh is outside",
@@ -208,7 +211,7 @@ def _describe(row: MeshRow) -> str:
     if not row.cut_out:
         lines.append("  The picture has no transparency, so the mesh is a rectangle; use --mask.")
     if row.mesh is not None:
-        lines.append(f"Wrote {row.mesh}")
+        lines.append(f"Wrote {display_text(row.mesh)}")
     return "\n".join(lines)
 
 
@@ -219,16 +222,17 @@ def _count_noun(count: int, noun: str, plural: str = "") -> str:
 
 def _table(rows: list[MeshRow], failed: int) -> list[str]:
     """One line per picture, and a summary."""
-    width = max([len("picture"), *(len(row.picture) for row in rows)])
+    names = [display_text(row.picture) for row in rows]
+    width = max(map(len, ["picture", *names]))
     lines = [
         f"{'picture':<{width}} {'parts':>6} {'holes':>6} {'specks':>7} {'vertices':>9} {'faces':>7}"
         f" {'1 % angle':>10} {'worst':>6} {'covered':>8} {'outside':>8} {'seconds':>8}"
     ]
     lines += [
-        f"{row.picture:<{width}} {row.parts:>6} {row.holes:>6} {row.specks:>7} {row.vertices:>9}"
+        f"{name:<{width}} {row.parts:>6} {row.holes:>6} {row.specks:>7} {row.vertices:>9}"
         f" {row.faces:>7} {row.low_angle:>9.1f}° {row.worst_angle:>5.1f}° {row.covered:>8.2%}"
         f" {row.outside:>8.1%} {row.seconds:>8.3f}"
-        for row in rows
+        for name, row in zip(names, rows, strict=True)
     ]
     if rows:
         seconds = [row.seconds for row in rows]

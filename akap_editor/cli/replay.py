@@ -7,6 +7,7 @@ from typing import NamedTuple
 import click
 
 from ..deform.pose_interpolation import InterpolationCache
+from ..display_text import display_text
 from ..editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
 from ..editor.animation.keyframe_playback import animation_frame
 from ..editor.animation.motion import Motion, shorten_pauses
@@ -138,8 +139,8 @@ def replay_recording(
                 end_frame.drawing, end_frame.pose, background=background_color, order=end_frame.order
             )
             write_picture(pose, picture)
-            click.echo(f"Wrote {pose}, the last pose")
-    click.echo(f"Wrote {output}, {len(frames)} frames, {written}")
+            click.echo(f"Wrote {display_text(pose)}, the last pose")
+    click.echo(f"Wrote {display_text(output)}, {len(frames)} frames, {written}")
 
 
 def _check_number(option: str, value: float, low: float, high: float) -> None:

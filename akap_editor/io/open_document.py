@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from ..display_text import display_name
 from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import apply_mask, make_drawing
 from ..editor.session.replay import Replay
@@ -33,9 +34,9 @@ def open_document(
     path = as_path(path)
     suffix = path.suffix.lower()
     if mask is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
-        raise FileError("use", mask, f"a mask needs a picture, but {path.name} is none")
+        raise FileError("use", mask, f"a mask needs a picture, but {display_name(path)} is none")
     if threshold is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
-        raise InputError(f"threshold: expected a picture to cut out, got {path.name}")
+        raise InputError(f"threshold: expected a picture to cut out, got {display_name(path)}")
     if suffix == PROJECT_SUFFIX:
         return load(path)
     if suffix == RECORDING_SUFFIX:

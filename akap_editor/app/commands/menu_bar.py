@@ -2,6 +2,7 @@
 
 from imgui_bundle import imgui
 
+from ...display_text import display_text
 from .. import files, widgets
 from ..app_state import AppState
 from .command import ALT, Command, Submenu
@@ -70,8 +71,8 @@ def _draw_submenu(state: AppState, item: Submenu) -> bool:
     if is_open:
         room = _MAX_NAME_WIDTH * imgui.get_font_size()
         for index, (name, path) in enumerate(entries):
-            if imgui.menu_item_simple(f"{widgets.shortened(name, room)}###{index}"):
+            if imgui.menu_item_simple(f"{widgets.as_label(widgets.shortened(name, room))}###{index}"):
                 files.open_path(state, path)
-            widgets.show_tooltip(str(path))
+            widgets.show_tooltip(display_text(path))
         imgui.end_menu()
     return is_open or (bool(entries) and imgui.is_item_focused())

@@ -6,6 +6,7 @@ from dataclasses import replace
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...deform.methods import get_method
+from ...display_text import display_name
 from ...editor import gestures
 from ...editor.editor import Editor
 from ...editor.session.edits import SetStiffness
@@ -27,7 +28,9 @@ from .timeline import ANIMATION, has_selected_keyframes
 
 
 OPEN = Command("Open...", files.choose_and_open, (CTRL | Key.o,), icons.ICON_FA_FOLDER_OPEN)
-OPEN_RECENT = Submenu("Open Recent", lambda state: [(path.name, path) for path in state.preferences.recent])
+OPEN_RECENT = Submenu(
+    "Open Recent", lambda state: [(display_name(path), path) for path in state.preferences.recent]
+)
 OPEN_BUNDLED = Submenu(
     "Open Bundled Drawing", lambda state: [(path.stem.capitalize(), path) for path in bundled_drawings()]
 )

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from imgui_bundle import ImVec2, imgui
 
+from ...display_text import display_name, file_stem
 from ...editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
 from ...editor.document.easing import EASING_LABELS, EASINGS
 from ...editor.framing import Color
@@ -162,9 +163,9 @@ def frame_count(state: AppState, options: AnimationExportOptions) -> int:
 def request_file(state: AppState, options: AnimationExportOptions) -> None:
     """Ask for the file or folder to write, then write it."""
     assert state.document is not None
-    name = state.document.drawing.name + (options.chosen_format.suffix or "-frames")
+    name = file_stem(state.document.drawing.name) + (options.chosen_format.suffix or "-frames")
     if options.chosen_format.is_sheet:
-        name = f"{state.document.drawing.name}-sheet.png"
+        name = f"{file_stem(state.document.drawing.name)}-sheet.png"
     use = partial(export_animation, state, options)
     suffixes = (options.chosen_format.suffix,)
     state.part(FileDialog).ask(
@@ -178,7 +179,7 @@ def export_animation(state: AppState, options: AnimationExportOptions, path: Pat
     def begin() -> None:
         sheet = options.chosen_format.is_sheet and path.suffix.lower() == ".png"
         animation_format(path, sheet)  # raises InputError
-        state.task = Task(f"Exporting {path.name}", _export_steps(state, options, path, sheet))
+        state.task = Task(f"Exporting {display_name(path)}", _export_steps(state, options, path, sheet))
 
     state.run_after_frame(begin)
 
@@ -202,10 +203,10 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
             for _ in encoder.take(picture):
                 yield progress._replace(is_blocked=True)
         for _ in encoder.finish():
-            yield Progress(0.95, f"Writing {path.name}", is_blocked=True)
+            yield Progress(0.95, f"Writing {display_name(path)}", is_blocked=True)
     finally:
         encoder.close()
-    state.notice = f"Exported {path.name}, {len(frames)} frames, {encoder.said}"
+    state.notice = f"Exported {display_name(path)}, {len(frames)} frames, {encoder.said}"
 
 
 def _draw_options(options: AnimationExportOptions, scale: float) -> None:

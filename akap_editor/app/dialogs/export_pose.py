@@ -6,6 +6,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from ...display_text import display_name, file_stem
 from ...editor.document.document import Document
 from ...editor.framing import CROPS, MAX_SIZE, Color, crop_box, output_size
 from ...errors import InputError
@@ -50,7 +51,7 @@ class PoseExportOptions:
 
     def file_name(self, document: Document) -> str:
         """The suggested file name; differs from the picture's, which may be in the same folder."""
-        return f"{document.drawing.name}-{'rest' if self.rest else 'posed'}{self.format.suffix}"
+        return f"{file_stem(document.drawing.name)}-{'rest' if self.rest else 'posed'}{self.format.suffix}"
 
 
 class ExportPoseDialog:
@@ -110,13 +111,13 @@ def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None
 
     def work(painter: Painter) -> str:
         *companions, _ = export(document, path, options.export_options, painter)
-        said = f"Exported {', '.join([path.name, *(each.name for each in companions)])}"
+        said = f"Exported {', '.join(map(display_name, [path, *companions]))}"
         if format_of(path).uses_framing:
             width, height = options.output_size(document)
             said += f", {width} × {height} pixels"
         return said
 
-    state.notice = f"Exporting {path.name} ..."
+    state.notice = f"Exporting {display_name(path)} ..."
     state.pose_exports.begin(work)
 
 

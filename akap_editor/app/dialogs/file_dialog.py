@@ -12,6 +12,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import portable_file_dialogs as native
 
+from ...display_text import display_name, display_text
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT, SECONDARY
@@ -81,6 +82,7 @@ class FileDialog:
         self.request: FileRequest | None = None
         self._native: Any = None
         self._is_new = False  # whether the name has yet to get the keyboard focus
+        self._replaces_native = False  # whether this request is one that the system's dialog cannot answer
 
     @property
     def is_open(self) -> bool:
@@ -103,29 +105,36 @@ class FileDialog:
 
     def ask(self, request: FileRequest) -> None:
         """Show the dialog."""
-        self.request, self._is_new = request, True
+        self.request, self._is_new, self._replaces_native = request, True, False
 
     def draw(self, state: AppState, scale: float) -> None:
         """Draw one frame. scale: points per design point."""
         request = self.request
         if request is None:
             return
-        if self.uses_native:
+        if self.uses_native and not self._replaces_native:
             self._poll_native(request)
         elif widgets.begin_dialog(request.title):
             self._draw_fields(request, scale)
             imgui.end_popup()
 
     def _poll_native(self, request: FileRequest) -> None:
-        if self._native is None:
-            self._native = _open_native(request)
-        elif self._native.ready(0):
+        """Open the system's dialog, or take its answer; a name that is no text is left to this dialog."""
+        try:
+            if self._native is None:
+                self._native = _open_native(request)
+                return
+            if not self._native.ready(0):
+                return
             result = self._native.result()
-            self._native, self.request = None, None
-            path = result if isinstance(result, str) else next(iter(result), "")
-            if path:
-                request.name = path
-                request.use(request.path)
+        except UnicodeError:  # a name that is not UTF-8, which the library cannot pass on
+            self._native, self._replaces_native = None, True
+            return
+        self._native, self.request = None, None
+        path = result if isinstance(result, str) else next(iter(result), "")
+        if path:
+            request.name = path
+            request.use(request.path)
 
     def _draw_fields(self, request: FileRequest, scale: float) -> None:
         _draw_folder(request, scale)
@@ -134,12 +143,14 @@ class FileDialog:
         if self._is_new:
             imgui.set_keyboard_focus_here()
             self._is_new = False
-        _, request.name = imgui.input_text("##name", request.name)
+        is_edited, name = imgui.input_text("##name", display_text(request.name))
+        if is_edited:  # until then, the name is the file's own, also if it cannot be shown
+            request.name = name
         replaces = request.saving and bool(request.name.strip()) and os.path.isfile(request.path)
         if replaces:
             warning = " already exists and will be replaced"
             room = _WIDTH * scale - imgui.calc_text_size(warning).x
-            imgui.text_colored(ImVec4(*ACCENT), widgets.shortened(request.path.name, room) + warning)
+            imgui.text_colored(ImVec4(*ACCENT), widgets.shortened(display_name(request.path), room) + warning)
         imgui.spacing()
         imgui.begin_disabled(not request.name.strip())
         is_accepted = widgets.button(
@@ -180,7 +191,7 @@ def _draw_folder(request: FileRequest, scale: float) -> None:
     widgets.show_tooltip("Parent folder")
     imgui.same_line()
     imgui.align_text_to_frame_padding()
-    folder = widgets.shortened(str(request.folder), (_WIDTH - 50) * scale, keeps_end=True)
+    folder = widgets.shortened(display_text(request.folder), (_WIDTH - 50) * scale, keeps_end=True)
     imgui.text_colored(ImVec4(*SECONDARY), folder)
 
 
@@ -197,9 +208,16 @@ def _draw_entries(request: FileRequest, scale: float) -> bool:
     for name, is_folder in request.entries():
         icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
         flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups
-        label = widgets.shortened(name, imgui.get_content_region_avail().x - 2 * imgui.get_font_size())
-        is_clicked = imgui.selectable(f"{icon}  {label}###{name}", name == request.name, flags)[0]
-        widgets.show_tooltip(name if label != name else "")
+        shown = display_text(name)
+        label = widgets.shortened(shown, imgui.get_content_region_avail().x - 2 * imgui.get_font_size())
+        imgui.push_id(
+            name.encode(errors="surrogatepass").hex()
+        )  # names that are shown alike are different items
+        is_clicked = imgui.selectable(
+            f"{icon}  {widgets.as_label(label)}###{shown}", name == request.name, flags
+        )[0]
+        imgui.pop_id()
+        widgets.show_tooltip(shown if label != shown else "")
         if is_clicked and not is_folder:
             request.name, is_chosen = name, is_confirmed
         elif is_clicked and is_confirmed:

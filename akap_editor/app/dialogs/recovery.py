@@ -4,6 +4,7 @@ import time
 
 from imgui_bundle import ImVec2, imgui
 
+from ...display_text import display_text
 from ...editor.document.document import Document
 from ...editor.framing import frame_box
 from ...errors import AkapError
@@ -118,7 +119,9 @@ def _draw_facts(copy: RecoveryCopy, document: Document, count: int, width: float
     widgets.paragraph(
         f"Last change: {time.strftime('%d %B, %H:%M', time.localtime(copy.time))}", width, SECONDARY
     )
-    origin = f"File: {document.path}" if document.path is not None else "Not saved to a file yet"
+    origin = (
+        f"File: {display_text(document.path)}" if document.path is not None else "Not saved to a file yet"
+    )
     widgets.paragraph(origin, width, SECONDARY)
     if count > 1:
         widgets.paragraph(f"{count - 1} more to recover", width, SECONDARY)

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+from ...display_text import display_name
 from ...editor.animation.session_playback import SessionPlayback
 from ...editor.session.replay import Replay
 from ...editor.session.session import Session
@@ -46,4 +47,4 @@ def open_recording(path: Path, show: Show) -> Task:
         playback.follow(session)
         show(session, playback)
 
-    return Task(f"Opening {path.name}", steps(), finish_early)
+    return Task(f"Opening {display_name(path)}", steps(), finish_early)

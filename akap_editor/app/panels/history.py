@@ -26,7 +26,7 @@ def draw(state: AppState, scale: float) -> None:
         is_undone = index > depth
         if is_undone:
             imgui.push_style_color(imgui.Col_.text, ImVec4(*SECONDARY))
-        if imgui.selectable(f"  {label}##step {index}", index == depth)[0]:
+        if imgui.selectable(f"  {widgets.as_label(label)}##step {index}", index == depth)[0]:
             state.notice = ""
             state.run_reporting_errors(lambda index=index: state.editor.undo_or_redo_to(index))  # type: ignore[misc]
         if is_undone:

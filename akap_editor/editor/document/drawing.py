@@ -6,11 +6,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...display_text import display_text
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import as_channel, as_instance, as_picture, as_points, freeze
 from ...meshing.background import remove_background
 from ...meshing.picture_mesh import mesh_picture
+
+MAX_NAME = 255  # characters
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,8 @@ class Drawing:
     """A picture and the mesh that carries it; arrays are read-only.
 
     image: (h, w, 4) uint8 RGBA, straight alpha; mesh: the rest pose; uv: (n, 2) float32 texture coordinates,
-    (0, 0) at the picture's top left corner; name: for titles and file names; meshing: how the mesh was made,
+    (0, 0) at the picture's top left corner; name: for titles and file names, at most `MAX_NAME` characters,
+    those that cannot be shown are escaped; meshing: how the mesh was made,
     None if unknown; original: (h, w, 4) uint8, the picture before its background was removed, None if it
     was not. Raises InputError on wrong shapes or dtypes.
     """
@@ -49,10 +53,12 @@ class Drawing:
     def __post_init__(self) -> None:
         image = as_picture(self.image, "image")
         as_instance(self.mesh, "mesh", TriMesh)
+        name = display_text(as_instance(self.name, "name", str))[:MAX_NAME]
         uv = as_points(self.uv, "uv", len(self.mesh.vertices)).astype(np.float32)
         if image.flags.writeable or not image.flags.owndata:
             image = freeze(image.copy())
         object.__setattr__(self, "image", image)
+        object.__setattr__(self, "name", name)
         object.__setattr__(self, "uv", freeze(uv))
 
     @cached_property

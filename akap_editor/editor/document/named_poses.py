@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...display_text import display_text
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints, as_pixels, freeze
 from .crossings import as_crossings, no_crossings
@@ -31,7 +32,8 @@ class NamedPose:
     """A pose (n, 2) float64, in pixels, with a name that is not empty and unique in its document.
 
     crossings: which part passes in front, (s, 2), see `EditState`.
-    Raises InputError on an empty or too long name, or a bad pose.
+    Characters of the name that cannot be shown are escaped. Raises InputError on an empty or too long name,
+    or a bad pose.
     """
 
     name: str
@@ -42,6 +44,7 @@ class NamedPose:
         if not self.name.strip() or len(self.name) > MAX_POSE_NAME:
             expected = f"a name of 1 to {MAX_POSE_NAME} characters"
             raise InputError(f"pose: expected {expected}, got {self.name[:99]!r}")
+        object.__setattr__(self, "name", display_text(self.name))
         object.__setattr__(self, "positions", as_pose(self.positions, "pose"))
         object.__setattr__(self, "crossings", as_crossings(self.crossings))
 

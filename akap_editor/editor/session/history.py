@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ...display_text import display_text
 from ..document.document import EditState
 
 MAX_ENTRIES = 1000
@@ -30,12 +31,12 @@ class History:
     def begin(self, label: str, state: EditState) -> None:
         """Open a gesture that starts from ``state``."""
         assert self._open is None, "a gesture is already open"
-        self._open = HistoryEntry(label, state)
+        self._open = HistoryEntry(display_text(label), state)
 
     def rename(self, label: str) -> None:
         """Replace the label of the open gesture."""
         assert self._open is not None, "no gesture is open"
-        self._open = HistoryEntry(label, self._open.state)
+        self._open = HistoryEntry(display_text(label), self._open.state)
 
     def commit(self, join: bool = False) -> None:
         """End the open gesture as one entry, and clear redo.

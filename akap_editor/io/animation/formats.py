@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ...display_text import display_name
 from ...errors import FileError, InputError, join_with_or
 from ..atomic import Write, write_atomic
 from ..images import Picture, write_png
@@ -44,7 +45,7 @@ def _write_pictures(path: Path, frames: Iterable[Picture], *_: object) -> str:
 
 def _write_sheet(path: Path, frames: Iterable[Picture], fps: float, _: int, write: Write) -> str:
     columns, rows = write_sheet(path, frames, fps, write)
-    return f"a sheet of {columns} x {rows} sprites, and its index {path.with_suffix('.json').name}"
+    return f"a sheet of {columns} x {rows} sprites, and its index {display_name(path.with_suffix('.json'))}"
 
 
 def _write_last(path: Path, frames: Iterable[Picture], *_: object) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...display_text import display_name, display_text
 from ...errors import FileError, InputError
 from ..atomic import Write, os_error_reason, write_atomic
 from ..images import Picture, encode_png, write_png
@@ -67,7 +68,7 @@ def write_sheet(
         sheet[y : y + h, x : x + w] = image[top:bottom, left:right]
         index.append(
             {
-                "filename": f"{path.stem}-{number:04d}",
+                "filename": f"{display_text(path.stem)}-{number:04d}",
                 "frame": {"x": x, "y": y, "w": w, "h": h},
                 "rotated": False,
                 "trimmed": (w, h) != (width, height),
@@ -78,7 +79,7 @@ def write_sheet(
         )
     meta = {
         "app": "akap-editor",
-        "image": path.name,
+        "image": display_name(path),
         "format": "RGBA8888",
         "size": {"w": sheet.shape[1], "h": sheet.shape[0]},
         "scale": "1",

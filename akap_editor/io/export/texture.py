@@ -6,6 +6,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter
 from scipy.spatial import cKDTree
 
+from ...display_text import display_text
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats
 from ..images import Picture, encode_png
@@ -44,5 +45,8 @@ def y_up(drawing: Drawing, points: Floats) -> Floats:
 
 
 def companion_stem(stem: str) -> str:
-    """The stem for a file that the exported file names; without spaces, where some readers stop."""
-    return re.sub(r"\s+", "_", stem)
+    """The stem for a file that the exported file names.
+
+    It is text, and without spaces or signs at which some readers stop.
+    """
+    return re.sub(r"[\s#\\]+", "_", display_text(stem))

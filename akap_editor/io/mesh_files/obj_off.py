@@ -64,7 +64,7 @@ def decode_text(data: bytes) -> str:
     """The text of a mesh or material file: UTF-8 or UTF-16 by its byte order mark; never fails."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return data.decode("utf-16", errors="replace")
-    return data.decode("utf-8-sig", errors="replace")
+    return data.decode("utf-8-sig", errors="surrogateescape")
 
 
 def parse_obj(text: str) -> PolygonMesh:

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ import pytest
 from akap_editor.errors import InputError
 from akap_editor.io.export import EXPORT_FORMATS, ExportOptions, export, format_of
 from akap_editor.io.images import read_image, write_png
+from akap_editor.io.open_document import open_document
+from tests.support.names import assert_readable, strange_names
 
 OUTSIDE = {".obj": ["cat-texture.png", "cat.mtl"], ".spine.json": ["cat-texture.png"]}
 
@@ -133,3 +136,44 @@ def test_faces_are_in_the_order_in_which_they_pass_one_another(bent, painter, tm
     np.testing.assert_array_equal(record["faces"], faces)
     np.testing.assert_array_equal(record["order"], order)
     assert [pin["depth"] for pin in record["pins"]] == [3, -3]
+
+
+def every_text(record):
+    """All texts in a JSON record, keys too."""
+    if isinstance(record, dict):
+        return [text for pair in record.items() for each in pair for text in every_text(each)]
+    if isinstance(record, list):
+        return [text for each in record for text in every_text(each)]
+    return [record] if isinstance(record, str) else []
+
+
+@pytest.mark.parametrize("stem", strange_names())
+@pytest.mark.parametrize("each", EXPORT_FORMATS, ids=lambda each: each.suffix)
+def test_files_of_strange_names_are_sound(bent, painter, tmp_path, each, stem):
+    """The drawing is named like the file it came from, and is exported to a file of that name."""
+    document = replace(bent, drawing=replace(bent.drawing, name=stem))
+    *companions, main = export(document, tmp_path / f"{stem}{each.suffix}", ExportOptions(), painter)
+    assert main == tmp_path / f"{stem}{each.suffix}"
+    for path in companions:
+        assert_readable(path.name)
+    data = main.read_bytes()
+    if each.suffix == ".glb":
+        data = data[20 : 20 + int.from_bytes(data[12:16], "little")]
+    if each.suffix == ".png":
+        assert read_image(main).shape[2] == 4
+        return
+    text = data.decode()
+    assert_readable(text)
+    if each.suffix == ".svg":
+        title = ElementTree.fromstring(text).find("{http://www.w3.org/2000/svg}title")
+        assert title.text == document.drawing.name
+    elif each.suffix == ".obj":
+        material = next(path for path in companions if path.suffix == ".mtl")
+        assert text.splitlines()[0] == f"mtllib {material.name}"
+        opened = open_document(main)
+        assert opened.drawing.name == document.drawing.name
+        assert len(opened.drawing.mesh.vertices) == len(document.drawing.mesh.vertices)
+        assert opened.drawing.size == document.drawing.size, "with its texture"
+    else:
+        for each_text in every_text(json.loads(text)):
+            assert_readable(each_text)

@@ -187,6 +187,12 @@ def test_textures_in_folders_below_the_mesh(tmp_path, name):
     assert read_mesh(written(tmp_path, "fish.obj", TEXTURED)).image.tolist() == pixels.tolist()
 
 
+def test_a_texture_whose_name_is_not_utf_8(tmp_path):
+    pixels = picture_at(tmp_path / "caf\udce9.png")
+    (tmp_path / "a.mtl").write_bytes(b"newmtl m\nmap_Kd caf\xe9.png\n")
+    assert read_mesh(written(tmp_path, "fish.obj", TEXTURED)).image.tolist() == pixels.tolist()
+
+
 @pytest.mark.parametrize("name", ["../tex.png", "link/tex.png", "..\\tex.png"])
 def test_no_texture_outside_the_folder_of_the_mesh_is_read(tmp_path, name):
     (tmp_path / "inside").mkdir()
