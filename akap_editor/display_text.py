@@ -1,8 +1,8 @@
 """Text as people can read it: names of files and drawings with whatever cannot be shown escaped.
 
-To the system a name is bytes, and may hold anything: bytes that are not UTF-8 (lone surrogates in Python), line
-feeds, escape sequences of terminals, marks that reverse the direction of reading. Whatever shows a name or writes
-it into a file of another program asks here first.
+To the system a name is bytes, and may hold anything: bytes that are not UTF-8 (lone surrogates in Python),
+line feeds, escape sequences of terminals, marks that reverse the direction of reading. Whatever shows a name
+or writes it into a file of another program asks here first.
 """
 
 import re

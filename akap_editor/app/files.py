@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..io.akap.project import PROJECT_SUFFIX
 from ..io.akap.project import save as save_project
 from ..io.akap.recording import RECORDING_SUFFIX
+from ..io.atomic import resolved
 from ..io.images import has_transparency, is_animation
 from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document, opening_notes
 from ..resources import bundled_drawings
@@ -92,8 +93,8 @@ def _show_recording(state: AppState, path: Path, session: Session, playback: Ses
 
 def remember_file(state: AppState, path: Path) -> None:
     """Start the next file dialog in this file's folder, and list the file among the recent ones."""
-    state.folder = path.resolve().parent
-    if path.resolve() not in map(Path.resolve, bundled_drawings()):
+    state.folder = resolved(path).parent
+    if resolved(path) not in map(resolved, bundled_drawings()):
         state.preferences.add_recent(path)
         state.save_preferences()  # now, so that it survives a crash
 
@@ -122,7 +123,7 @@ def save_as(state: AppState, then: Callable[[], None] | None = None) -> None:
         FileRequest(
             "Save drawing",
             (PROJECT_SUFFIX,),
-            suggested.resolve().parent,
+            resolved(suggested).parent,
             lambda path: write_document(state, path, then),
             suggested.name,
             saving=True,

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import platformdirs
 
 from ..errors import FileError, InputError
-from ..io.atomic import os_error_reason, read_file, write_atomic
+from ..io.atomic import os_error_reason, read_file, resolved, write_atomic
 
 CONFIG_FOLDER_VARIABLE = "AKAP_EDITOR_CONFIG"  # environment variable: another folder, e.g. for tests
 FILE_NAME = "preferences.json"
@@ -110,9 +110,9 @@ class Preferences:
 
     def add_recent(self, path: Path) -> None:
         """Put a file that was opened or saved first in the list."""
-        path = path.resolve()
+        path = resolved(path)
         self.put("recent", [str(path), *(str(other) for other in self.recent if other != path)][:MAX_RECENT])
 
     def remove_recent(self, path: Path) -> None:
         """Remove a file that cannot be opened any more from the list."""
-        self.put("recent", [str(other) for other in self.recent if other not in (path, path.resolve())])
+        self.put("recent", [str(other) for other in self.recent if other not in (path, resolved(path))])

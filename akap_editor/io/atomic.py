@@ -9,7 +9,7 @@ import stat
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from ..errors import FileError, InputError
 
@@ -52,25 +52,27 @@ def write_atomic(path: str | Path, data: bytes) -> None:
 
     If anything fails, the old file stays as it was and no temporary file is left; only if the process is
     killed, a file .akap-*.tmp may remain. After the call, the new file survives a power cut, as far as the
-    system can promise it. A link is followed; the permission bits of the old file are kept, those of a new
-    file follow the umask. Raises FileError.
+    system can promise it. A link is followed; permission bits, owner and group of the old file are kept, and
+    nobody else may read the temporary one; the bits of a new file follow the umask. Raises FileError, also
+    for a link that leads to itself.
     """
     path = as_path(path)
     try:
-        target = path.resolve()
+        target = _link_target(path)
         exists = target.exists()
         if exists and not target.is_file():  # moving over a device would destroy it
             raise OSError(errno.EINVAL, "it is not a regular file")
         if exists and not os.access(target, os.W_OK):  # moving over a protected file would succeed
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         temporary = target.with_name(f"{TEMPORARY_PREFIX}{secrets.token_hex(8)}{TEMPORARY_SUFFIX}")
-        file = temporary.open("xb")
+        file = open_new(temporary, 0o600 if exists else 0o666)
         try:
             with file:
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
             if exists:
+                _keep_owner(target.stat(), temporary)
                 shutil.copymode(target, temporary)
             os.replace(temporary, target)
             _flush_folder(target.parent)
@@ -81,10 +83,41 @@ def write_atomic(path: str | Path, data: bytes) -> None:
         raise FileError("save", path, os_error_reason(error)) from error
 
 
+def open_new(path: Path, mode: int) -> BinaryIO:
+    """A file to write that did not exist; the umask takes bits from ``mode``. Raises OSError."""
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    return os.fdopen(os.open(path, flags, mode), "wb")
+
+
+def resolved(path: Path) -> Path:
+    """The absolute path without links, as far as there are files; unlike `Path.resolve` it never fails."""
+    try:
+        return Path(os.path.realpath(path))
+    except ValueError:  # no file has such a name
+        return path.absolute()
+
+
 def os_error_reason(error: OSError | ValueError) -> str:
     """The cause alone, e.g. "permission denied", without number and file name."""
     text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return text[:1].lower() + text[1:]
+
+
+def _link_target(path: Path) -> Path:
+    """The file that a link leads to in the end, or ``path`` itself. Raises OSError."""
+    try:
+        return path.resolve()
+    except RuntimeError as error:  # of Python 3.12 and before
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP)) from error
+
+
+def _keep_owner(old: os.stat_result, new: Path) -> None:
+    """Give a file the owner and group of the one that it replaces, as far as the user may: root, others."""
+    if os.name != "posix":
+        return
+    for owner in {(old.st_uid, old.st_gid), (-1, old.st_gid)}:
+        with suppress(OSError):
+            os.chown(new, *owner)
 
 
 def _flush_folder(folder: Path) -> None:

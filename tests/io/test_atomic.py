@@ -7,7 +7,7 @@ import pytest
 
 from akap_editor.errors import InputError
 from akap_editor.io import atomic
-from akap_editor.io.atomic import read_file, write_atomic
+from akap_editor.io.atomic import read_file, resolved, write_atomic
 
 posix = pytest.mark.skipif(os.name != "posix", reason="permission bits, links and pipes are those of POSIX")
 
@@ -38,8 +38,8 @@ class FullDisk:
 
 
 def fail_to_write(monkeypatch):
-    real = Path.open
-    monkeypatch.setattr(Path, "open", lambda path, mode="r": FullDisk(real(path, mode)))
+    real = atomic.open_new
+    monkeypatch.setattr(atomic, "open_new", lambda path, mode: FullDisk(real(path, mode)))
 
 
 def test_written_is_what_is_read(tmp_path):
@@ -51,7 +51,7 @@ def test_written_is_what_is_read(tmp_path):
 
 
 FAILURES = {
-    "open": lambda patch: patch.setattr(Path, "open", fail),
+    "open": lambda patch: patch.setattr(atomic, "open_new", fail),
     "write": fail_to_write,
     "flush to disk": lambda patch: patch.setattr(atomic.os, "fsync", fail),
     "permission bits": lambda patch: patch.setattr(atomic.shutil, "copymode", fail),
@@ -111,6 +111,56 @@ def test_link_stays_a_link(tmp_path):
     write_atomic(link, b"new")
     assert link.is_symlink()
     assert target.read_bytes() == b"new"
+
+
+@posix
+@pytest.mark.parametrize("bits", [0o600, 0o640, 0o400])
+def test_while_it_is_written_nobody_else_reads_a_file(tmp_path, monkeypatch, bits):
+    """Its content is complete when it is flushed, and it has its last bits only when it is in place."""
+    path, seen, flush = tmp_path / "private.bin", [], os.fsync
+
+    def look(descriptor):
+        seen.append(stat.S_IMODE(os.fstat(descriptor).st_mode))
+        flush(descriptor)
+
+    path.write_bytes(b"old")
+    path.chmod(bits)
+    monkeypatch.setattr(atomic.os, "fsync", look)
+    monkeypatch.setattr(atomic.os, "access", lambda *_: True)  # also for those who are not root
+    write_atomic(path, b"new")
+    assert seen[0] == 0o600
+    assert stat.S_IMODE(path.stat().st_mode) == bits
+
+
+@posix
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() != 0, reason="only root can give files away")
+def test_root_saves_a_file_and_it_stays_its_owner_s(tmp_path):
+    path = tmp_path / "of somebody.bin"
+    path.write_bytes(b"old")
+    os.chown(path, 1234, 2345)
+    path.chmod(0o640)
+    write_atomic(path, b"new")
+    status = path.stat()
+    assert (status.st_uid, status.st_gid, stat.S_IMODE(status.st_mode)) == (1234, 2345, 0o640)
+
+
+@posix
+@pytest.mark.parametrize("target", ["loop.bin", "other.bin"])
+def test_links_that_lead_to_themselves_are_refused_in_a_sentence(tmp_path, target):
+    (tmp_path / "loop.bin").symlink_to(tmp_path / target)
+    if target != "loop.bin":
+        (tmp_path / target).symlink_to(tmp_path / "loop.bin")
+    before = sorted(os.listdir(tmp_path))
+    with pytest.raises(
+        InputError, match=r"^Couldn't save “.*loop\.bin”\. Too many levels of symbolic links\.$"
+    ):
+        write_atomic(tmp_path / "loop.bin", b"new")
+    with pytest.raises(
+        InputError, match=r"^Couldn't open “.*loop\.bin”\. Too many levels of symbolic links\.$"
+    ):
+        read_file(tmp_path / "loop.bin", "a picture")
+    assert sorted(os.listdir(tmp_path)) == before
+    assert resolved(tmp_path / "loop.bin").parent == tmp_path
 
 
 def test_protected_file_is_not_replaced(tmp_path, monkeypatch):

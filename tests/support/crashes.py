@@ -51,12 +51,7 @@ class Piecewise:
 
 def kill_at(chance: int) -> None:
     """SIGKILL to this process at its n-th line of the code that writes files."""
-    whole = Path.open
-
-    def pieces(path, mode="r", *options, **more):
-        return Piecewise(path, mode) if "b" in mode and mode != "rb" else whole(path, mode, *options, **more)
-
-    Path.open = pieces
+    atomic.open_new = lambda path, _: Piecewise(path, "xb")
     left = chance
     code = {atomic.__file__, __file__}
 

@@ -10,7 +10,7 @@ from ...errors import InputError, file_errors
 from ...geometry.mesh import TriMesh, signed_areas
 from ...geometry.validation import Floats
 from ..akap.project import MAX_DOCUMENT_VERTICES
-from ..atomic import read_file
+from ..atomic import read_file, resolved
 from ..images import read_image
 from .materials import parse_textures
 from .obj_off import PARSERS, PolygonMesh, decode_text
@@ -141,7 +141,7 @@ def _find(folder: Path, name: str) -> Path | None:
                 return None
             exact = min(same)
         place = exact
-    return place if place.is_file() and place.resolve().is_relative_to(folder.resolve()) else None
+    return place if place.is_file() and resolved(place).is_relative_to(resolved(folder)) else None
 
 
 def _exists(path: Path) -> bool:
