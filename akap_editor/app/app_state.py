@@ -22,7 +22,7 @@ from ..render.offscreen import OffscreenRenderer
 from .canvas.view_options import ViewOptions
 from .jobs.background_thread import BackgroundThread, Wake, no_window
 from .jobs.pose_export import PoseExportQueue
-from .jobs.task import Task
+from .jobs.task import Progress, Steps, Task
 from .preferences import Preferences
 from .thumbnails import Thumbnails
 from .timeline.timeline import Timeline
@@ -80,7 +80,7 @@ class AppState:
     _parts: dict[type, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.remesher = BackgroundRemesh(self.editor, BackgroundThread("mesh", self.wake))
+        self.remesher = BackgroundRemesh(self.editor, BackgroundThread("mesh", self.wake), self.wake)
         self.pose_exports = PoseExportQueue(self.wake)
         self.timeline = Timeline(self.editor)
 
@@ -136,11 +136,27 @@ class AppState:
         return bool(self._new_jobs or self._due_jobs) or can_task_advance or self.timeline.playback.is_playing
 
     @property
+    def is_waiting(self) -> bool:
+        """Whether what is going on must end before anything can be edited or any command be run."""
+        return bool(self._new_jobs or self._due_jobs) or (self.task is not None and self.task.is_blocking)
+
+    @property
+    def is_canvas_waiting(self) -> bool:
+        """Whether the canvas takes no input: `is_waiting`, or another mesh is being made."""
+        return self.is_waiting or self.remesher.is_busy
+
+    @property
     def is_busy(self) -> bool:
         """Whether anything moves or is computed, be it in a thread; when it ends, the window is idle."""
         is_moving = self.editor.is_moving or self.comparison.is_moving or self.timeline.playback.is_playing
         is_computing = self.view.is_computing or self.remesher.is_busy or self.pose_exports.is_busy
         return is_moving or is_computing or self.needs_frame or self.task is not None
+
+    def begin_task(self, task: Task) -> None:
+        """Begin long work; it ends the one that is under way."""
+        if self.task is not None:
+            self.task.cancel()
+        self.task = task
 
     def run_after_frame(self, job: Callable[[], None], notice: str = "") -> None:
         """Run ``job`` after the next whole frame, which shows ``notice``."""
@@ -157,15 +173,33 @@ class AppState:
         if self.task is not None:
             self.run_reporting_errors(self._advance_task)
             return self.task is None or not self.task.progress.is_blocked
-        has_changed = bool(jobs)
-        try:
-            has_changed |= self.remesher.advance()
-        except Exception as error:  # a dialog would interrupt the drag of a slider
-            self.notice = error_message(error)
+        has_changed = bool(jobs) | self._advance_remesh()
+        if self.remesher.is_busy and not self.remesher.is_dragging:
+            self.begin_task(
+                Task("Making the mesh", self._remesh_steps(), is_shown_late=True, blocks_at_once=False)
+            )
         return has_changed or (self.notice, self.error) != messages
 
     def _advance_exports(self) -> None:
         self.notice = self.pose_exports.advance(self.offscreen_renderer) or self.notice
+
+    def _advance_remesh(self) -> bool:
+        """Start or take over a mesh; whether the drawing changed."""
+        try:
+            return self.remesher.advance()
+        except Exception as error:  # a dialog would interrupt the drag of a slider
+            self.notice = error_message(error)
+            return False
+
+    def _remesh_steps(self) -> Steps:
+        """Wait for the mesh, unless its slider is dragged again; the end before that cancels it."""
+        try:
+            while self.remesher.is_busy and not self.remesher.is_dragging:
+                yield Progress(*self.remesher.progress, is_blocked=True)
+                self._advance_remesh()
+        except GeneratorExit:
+            self.remesher.cancel()
+            raise
 
     def _advance_task(self) -> None:
         """Run a slice of the task, which is dropped when it is done or raises an exception."""

@@ -16,6 +16,7 @@ from ..io.open_document import PICTURE_SUFFIXES
 from . import files
 from .app_state import AppState
 from .dialogs.file_dialog import FileDialog, FileRequest
+from .jobs.background_task import background_task
 
 # -- masks --------------------------------------------------------------------------------------------------
 
@@ -33,13 +34,14 @@ def choose_mask(state: AppState) -> None:
         if document is None:
             return
 
-        def cut() -> None:
-            files.show_document(state, cut_out(document, path))
+        def show(masked: Document) -> None:
+            files.show_document(state, masked)
             state.notice = f"Cut out with {display_name(path)}"
 
-        files.confirm_unsaved(
-            state, lambda: state.run_after_frame(cut, f"Cutting out with {display_name(path)} ...")
+        task = background_task(
+            f"Cutting out with {display_name(path)}", partial(cut_out, document, path), show, state.wake
         )
+        files.confirm_unsaved(state, lambda: state.begin_task(task))
 
     state.part(FileDialog).ask(FileRequest("Choose mask", PICTURE_SUFFIXES, state.folder, use))
 

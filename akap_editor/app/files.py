@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 from ..display_text import display_name, file_stem
 from ..editor.animation.session_playback import SessionPlayback
@@ -21,7 +22,11 @@ from ..resources import bundled_drawings
 from .app_state import AppState, error_message
 from .dialogs.file_dialog import FileDialog, FileRequest
 from .dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
-from .jobs.open_recording import open_recording
+from .jobs.background_task import background_task
+from .jobs.open_recording import ReadRecording, read_for_replay, replay_task
+from .jobs.task import Task
+
+T = TypeVar("T")
 
 # -- opening ------------------------------------------------------------------------------------------------
 
@@ -64,22 +69,45 @@ def open_dropped(state: AppState, paths: list[Path]) -> None:
 def open_path(state: AppState, path: Path, notice: str = "") -> None:
     """Open a picture, drawing or recording, after asking about unsaved changes; then show ``notice``."""
 
-    def read() -> None:
-        try:
-            if path.suffix.lower() == RECORDING_SUFFIX:
-                state.task = open_recording(path, partial(_show_recording, state, path))
-                return
-            document = open_document(path)
-        except InputError:
-            state.preferences.remove_recent(path)
-            raise
+    def begin() -> None:
+        state.notice = ""
+        if path.suffix.lower() == RECORDING_SUFFIX:
+            _begin_recording(state, path)
+        else:
+            _begin_document(state, path, notice)
+
+    confirm_unsaved(state, begin)
+
+
+def _begin_document(state: AppState, path: Path, notice: str) -> None:
+    """Read a picture or drawing in a thread, then show it."""
+
+    def show(document: Document) -> None:
         show_document(state, document)
         if is_animation(path):
             state.notice = f"Opened the first frame of the animation {display_name(path)}"
         remember_file(state, path)
         state.notice = notice or state.notice
 
-    confirm_unsaved(state, lambda: state.run_after_frame(read, f"Opening {display_name(path)} ..."))
+    state.begin_task(_opening_task(state, path, partial(open_document, path), show))
+
+
+def _begin_recording(state: AppState, path: Path) -> None:
+    """Read a recording in a thread, then replay it."""
+
+    def begin_replay(read: ReadRecording) -> None:
+        state.begin_task(replay_task(read, partial(_show_recording, state, path)))
+
+    state.begin_task(_opening_task(state, path, partial(read_for_replay, path), begin_replay))
+
+
+def _opening_task(state: AppState, path: Path, read: Callable[[], T], show: Callable[[T], None]) -> Task:
+    """A task that reads a file and shows it; a file that cannot be read is no recent one any more."""
+
+    def forget() -> None:
+        state.preferences.remove_recent(path)
+
+    return background_task(f"Opening {display_name(path)}", read, show, state.wake, forget)
 
 
 def _show_recording(state: AppState, path: Path, session: Session, playback: SessionPlayback) -> None:

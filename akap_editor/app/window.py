@@ -26,6 +26,7 @@ from .canvas.legend import draw_legend
 from .canvas.pin_markers import draw_markers
 from .canvas.pointer_input import Canvas
 from .canvas.scene import Scene
+from .canvas.waiting import WaitingPlate
 from .commands.focus_navigation import handle_focus_keys
 from .commands.palette import Palette
 from .commands.registry import run_pressed
@@ -91,6 +92,7 @@ class Window:
         self.after_draw: list[Callable[[], None]] = []
         self._fixed_scale, self._is_drawing, self._has_focus = scale, False, False
         self._failures_in_a_row = 0
+        self._drops_input = False  # whether events that came while a job blocked the loop are still queued
         self._frames_due = SETTLE_FRAMES
         self._dropped: list[list[Path]] = []
         self._title = ""
@@ -210,7 +212,8 @@ class Window:
     @property
     def needs_frame(self) -> bool:
         """Whether a frame is due now. A frame that is due later comes with an event or a `wake`."""
-        return self._frames_due > 0 or self._woken.is_set() or self.state.needs_frame or bool(self._dropped)
+        has_dropped_files = bool(self._dropped) and not self.state.is_waiting
+        return self._frames_due > 0 or self._woken.is_set() or self.state.needs_frame or has_dropped_files
 
     @property
     def _is_animated(self) -> bool:
@@ -242,10 +245,13 @@ class Window:
         """Sleep until an event, a `wake`, a due tooltip, a blink of a caret, or the answer of a dialog."""
         is_typing, tooltip_delay = imgui.get_io().want_text_input, widgets.tooltip_due()
         limit = tooltip_delay or (BLINK_SECONDS if is_typing else IDLE_SECONDS)
+        dialog_delay = self.state.task.seconds_until_shown if self.state.task is not None else 0.0
+        if dialog_delay > 0:
+            limit = min(limit, dialog_delay)
         if self.state.part(FileDialog).native_is_open:
             limit = min(limit, NATIVE_DIALOG_SECONDS)
         has_happened = self._wait(limit)
-        if has_happened or tooltip_delay or self.state.part(FileDialog).native_is_answered:
+        if has_happened or tooltip_delay or dialog_delay or self.state.part(FileDialog).native_is_answered:
             self._frames_due = SETTLE_FRAMES
         elif is_typing:
             self._frames_due = 1
@@ -295,6 +301,7 @@ class Window:
             action()
         glfw.swap_buffers(self.handle)
         self._update_title()
+        self._drops_input |= self.state.is_waiting
         if self.state.run_pending():
             self._frames_due = SETTLE_FRAMES
 
@@ -302,7 +309,7 @@ class Window:
         """Build ImGui's part of the frame, take in the input, and step the drawing."""
         state = self.state
         self._watch_focus()
-        while self._dropped:
+        while self._dropped and not state.is_waiting:
             files.open_dropped(state, self._dropped.pop(0))
         handle_focus_keys(state)
         is_modal = _popup_is_open()  # also before, because the key that closes a dialog must do nothing else
@@ -312,10 +319,11 @@ class Window:
         state.part(Palette).draw(state, self.scale)
         dialogs.draw(state, self.scale)
         self._canvas.draw_popup(state, self.scale)
-        is_modal = is_modal or _popup_is_open()
+        is_modal = is_modal or _popup_is_open() or state.is_waiting or self._drops_input
+        self._drops_input = self._drops_input and imgui.get_current_context().input_events_queue.size() > 0
         if not imgui.get_io().want_text_input and not is_modal:
             run_pressed(state)
-        if is_modal:
+        if is_modal or state.is_canvas_waiting:
             self._canvas.cancel_input(state)
         else:
             self._canvas.read_input(state)
@@ -326,6 +334,7 @@ class Window:
         state.editor.start_next_step()
         draw_markers(state, self.scale)
         draw_legend(state.view, state.editor, self.scale)
+        state.part(WaitingPlate).draw(state, self.scale)
 
     def _recover(self, recovery: Any, message: str) -> None:
         """Show an error message; repair ImGui's stacks, or else the next frame would fail."""

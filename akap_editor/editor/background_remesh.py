@@ -1,8 +1,11 @@
 """Remeshes the open drawing in a thread while the user moves the sliders."""
 
+from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
+from threading import Event
 
+from ..progress import Cancelled, listening, part
 from .document.document import EditState
 from .document.drawing import Drawing, Meshing
 from .document.remesh import remesh_drawing, transfer_state
@@ -30,11 +33,12 @@ class SliderGesture:
 
 @dataclass(frozen=True, eq=False)
 class _Job:
-    """A mesh that is being made, and the state carried over to it."""
+    """A mesh that is being made, and the state carried over to it; ``cancelled`` ends it early."""
 
     gesture: SliderGesture
     meshing: Meshing
     result: Future[tuple[Drawing, EditState]]
+    cancelled: Event
 
 
 class BackgroundRemesh:
@@ -42,11 +46,17 @@ class BackgroundRemesh:
 
     The mesh is computed by ``worker``, by default inside `advance`. `advance` takes it over and is to be
     called after each frame.
+
+    notify: called by the worker when `progress` has changed.
     """
 
-    def __init__(self, editor: Editor, worker: Executor = INLINE) -> None:
+    def __init__(
+        self, editor: Editor, worker: Executor = INLINE, notify: Callable[[], None] = lambda: None
+    ) -> None:
         self._editor = editor
         self._worker = worker
+        self._notify = notify
+        self.progress = 0.0, ""
         self._gesture: SliderGesture | None = None
         self._requested: Meshing | None = None
         self._job: _Job | None = None
@@ -60,6 +70,11 @@ class BackgroundRemesh:
             return None
         current = session.drawing.meshing or Meshing(vertices=len(session.drawing.mesh.vertices))
         return self._requested or current
+
+    @property
+    def is_dragging(self) -> bool:
+        """Whether a slider is dragged."""
+        return self._is_dragging
 
     @property
     def is_active(self) -> bool:
@@ -79,6 +94,18 @@ class BackgroundRemesh:
         if self._gesture is None or not self._is_dragging or self._gesture.session is not session:
             self._gesture = SliderGesture(session, session.drawing, session.state)
         self._requested, self._is_dragging = meshing, dragging
+
+    def cancel(self) -> None:
+        """Give up the mesh that is being made, and undo the ones that the same gesture has made before."""
+        gesture, job = self._gesture, self._job
+        self._gesture = self._requested = self._job = None
+        self._is_dragging = False
+        if job is not None:
+            job.cancelled.set()
+        if gesture is None or gesture.entry is None or self._editor.is_busy:
+            return
+        if gesture.session is self._editor.session and gesture.entry is gesture.session.history.last:
+            gesture.session.undo()
 
     def end_drag(self) -> None:
         """End the gesture; its last request is still made."""
@@ -111,11 +138,23 @@ class BackgroundRemesh:
             self.advance()
 
     def _start(self, gesture: SliderGesture, meshing: Meshing) -> None:
-        def make() -> tuple[Drawing, EditState]:
-            drawing = remesh_drawing(gesture.start_drawing, meshing)
-            return drawing, transfer_state(gesture.start_state, gesture.start_drawing.mesh, drawing)
+        cancelled = Event()
 
-        self._job = _Job(gesture, meshing, self._worker.submit(make))
+        def hear(share: float, text: str) -> None:
+            if cancelled.is_set():
+                raise Cancelled("cancelled")
+            self.progress = share, text
+            self._notify()
+
+        def make() -> tuple[Drawing, EditState]:
+            with listening(hear):
+                with part(0.0, 0.7):
+                    drawing = remesh_drawing(gesture.start_drawing, meshing)
+                with part(0.7, 1.0):
+                    state = transfer_state(gesture.start_state, gesture.start_drawing.mesh, drawing)
+            return drawing, state
+
+        self._job = _Job(gesture, meshing, self._worker.submit(make), cancelled)
 
     def _take_over(self, gesture: SliderGesture, drawing: Drawing, state: EditState) -> bool:
         """Replace the gesture's entry in the history, so that the whole gesture is one entry."""

@@ -8,6 +8,7 @@ from ..editor.document.drawing import apply_mask, make_drawing
 from ..editor.session.replay import Replay
 from ..errors import FileError, InputError, file_errors
 from ..meshing.faint import DEFAULT_THRESHOLD, faint_share, fitting_threshold
+from ..progress import announce, part
 from .akap.project import PROJECT_SUFFIX, load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
 from .atomic import as_path
@@ -32,6 +33,7 @@ def open_document(
     Raises InputError, which names the file, or SolverError if a recording cannot be replayed.
     """
     path = as_path(path)
+    announce(0.0, "Reading the file")
     suffix = path.suffix.lower()
     if mask is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
         raise FileError("use", mask, f"a mask needs a picture, but {display_name(path)} is none")
@@ -50,7 +52,9 @@ def open_document(
             image = apply_mask(image, shown)
         if threshold is None:
             threshold = fitting_threshold(image[..., 3])
-        return new_document(make_drawing(image, threshold=threshold, name=path.stem))
+        with part(0.25, 1.0):
+            drawing = make_drawing(image, threshold=threshold, name=path.stem)
+        return new_document(drawing)
 
 
 def opening_notes(document: Document) -> list[str]:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..geometry.mesh import TriMesh
 from ..geometry.validation import as_number
+from ..progress import announce
 from .outline import cut_out
 from .triangle_process import TRIANGLE
 from .triangulate import MAX_VERTICES, MIN_VERTICES, triangulate
@@ -44,11 +45,14 @@ def mesh_picture(
     as_number(vertices, "vertices", MIN_VERTICES, MAX_VERTICES)
     TRIANGLE.start()  # it starts while the outline is computed
     max_points, fewest = OUTLINE_SHARE * vertices, np.inf
-    for _ in range(MAX_OUTLINES):
+    for number in range(MAX_OUTLINES):
+        share = 1 - 0.5**number  # an unknown number of rounds, each less likely than the one before
+        announce(share, "Finding the outline")
         cut = cut_out(alpha, threshold, expand, max_points=max_points)
         if cut.points >= fewest:
             break
         fewest = cut.points
+        announce(share + 0.25 * 0.5**number, f"Triangulating {cut.points:,} points of the outline")
         mesh = triangulate(cut.parts, vertices)
         if len(mesh.vertices) <= (1 + EXCESS_TOLERANCE) * vertices:
             break

@@ -13,6 +13,7 @@ from akap_editor.editor.editor import Editor
 from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.stepper import INLINE
 from akap_editor.errors import InputError
+from akap_editor.progress import Cancelled
 from tests.support.executors import HeldExecutor
 
 
@@ -151,3 +152,31 @@ def test_a_mesh_that_cannot_be_made_is_an_error_and_changes_nothing(editor, reme
         remesher.finish()
     assert editor.session.state is state
     assert not remesher.is_busy
+
+
+def test_a_cancelled_mesh_is_never_shown_and_those_before_it_are_undone(editor, held, thread):
+    before = editor.session.state
+    held.request(Meshing(300), dragging=True)
+    held.advance()
+    thread.work()
+    held.advance()
+    assert editor.session.state is not before
+    held.request(Meshing(600), dragging=True)
+    held.advance()
+    held.cancel()
+    assert not held.is_active
+    assert editor.session.state is before
+    thread.work()
+    assert isinstance(thread.last.exception(), Cancelled), "it ended at its first stage"
+    assert not held.advance()
+    assert editor.session.state is before
+
+
+def test_progress_grows_while_a_mesh_is_made(editor):
+    heard = []
+    remesher = BackgroundRemesh(editor, INLINE, lambda: heard.append(remesher.progress))
+    remesher.request(Meshing(300))
+    remesher.finish()
+    shares = [share for share, _ in heard]
+    assert shares == sorted(shares)
+    assert len({text for _, text in heard}) > 2

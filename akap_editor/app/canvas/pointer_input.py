@@ -43,6 +43,7 @@ class Canvas:
         """Cancel the gesture and release the held keys: a dialog or another window gets the rest of them."""
         self._last_position, self._last_interruption = _mouse_position(), imgui.get_frame_count()
         state.editor.cancel()
+        state.editor.pointer_left()
         for name in HELD_KEYS:
             state.editor.handle_event(KeyEvent(name, pressed=False))
 

@@ -40,7 +40,7 @@ def draw(state: AppState, scale: float) -> None:
     """Draw the dialog that must be answered first, if any. An error and a running task go before all."""
     if state.error:
         message.draw(state, scale)
-    elif state.task is not None:
+    elif state.task is not None and state.task.is_blocking:
         progress.draw(state, state.task, scale)
     else:
         for kind in DIALOGS:

@@ -114,6 +114,8 @@ class FileDialog:
             return
         if self.uses_native and not self._replaces_native:
             self._poll_native(request)
+            if self.request is request:
+                self._draw_native_note(request)
         elif widgets.begin_dialog(request.title):
             self._draw_fields(request, scale)
             imgui.end_popup()
@@ -135,6 +137,18 @@ class FileDialog:
         if path:
             request.name = path
             request.use(request.path)
+
+    def _draw_native_note(self, request: FileRequest) -> None:
+        """Say that the window waits; the system's dialog may take a second to appear, or be hidden."""
+        if not widgets.begin_dialog(request.title):
+            return
+        imgui.text_colored(ImVec4(*SECONDARY), "Waiting for the file dialog of the system.")
+        imgui.spacing()
+        if widgets.button("Cancel") or widgets.cancel_pressed():
+            self._native.kill()
+            self._native = None
+            self._close()
+        imgui.end_popup()
 
     def _draw_fields(self, request: FileRequest, scale: float) -> None:
         _draw_folder(request, scale)

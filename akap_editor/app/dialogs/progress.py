@@ -12,6 +12,9 @@ _WIDTH = 420  # design points
 
 def draw(state: AppState, task: Task, scale: float) -> None:
     """Draw one frame of the dialog for a task. scale: points per design point."""
+    if task.seconds_until_shown > 0:
+        _draw_invisible(task)
+        return
     if not widgets.begin_dialog(task.title):
         return
     imgui.push_style_color(imgui.Col_.plot_histogram, ImVec4(*ACCENT))
@@ -32,3 +35,12 @@ def draw(state: AppState, task: Task, scale: float) -> None:
         widgets.close_popup()
         state.notice = f"{task.title}: cancelled"
     imgui.end_popup()
+
+
+def _draw_invisible(task: Task) -> None:
+    """Take all input, as the dialog does, while the window looks as before."""
+    imgui.push_style_var(imgui.StyleVar_.alpha, 0.0)
+    if widgets.begin_dialog(task.title):
+        imgui.end_popup()
+    imgui.pop_style_var()
+    imgui.get_current_context().dim_bg_ratio = 0.0

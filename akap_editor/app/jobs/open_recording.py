@@ -1,10 +1,12 @@
 """Opens a recording: replays it, so that it ends in a session that one can continue."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from ...display_text import display_name
 from ...editor.animation.session_playback import SessionPlayback
+from ...editor.session.recording import Recording
 from ...editor.session.replay import Replay
 from ...editor.session.session import Session
 from ...errors import FileError, file_errors
@@ -14,18 +16,32 @@ from .task import Progress, Steps, Task
 Show = Callable[[Session, SessionPlayback], None]
 
 
-def open_recording(path: Path, show: Show) -> Task:
-    """A task that replays the recording in a file and passes the session and its playback to ``show``.
+@dataclass(frozen=True, eq=False)
+class ReadRecording:
+    """The recording in a file, ready to be replayed on its drawing."""
 
-    If the task is finished early, the session ends there. Raises InputError if the file is no recording or an
-    empty one; the task raises it at an event that cannot be replayed.
-    """
+    path: Path
+    recording: Recording
+    replay: Replay
+
+
+def read_for_replay(path: Path) -> ReadRecording:
+    """Read a recording and make its drawing. Raises InputError if it is no recording or an empty one."""
     recording = read_recording(path)
-    with file_errors("open", path):
-        replay = Replay(recording, recorded_drawing(recording))
-    playback = SessionPlayback(replay.clock)
     if not recording.events:
         raise FileError("open", path, "the recording is empty")
+    with file_errors("open", path):
+        return ReadRecording(path, recording, Replay(recording, recorded_drawing(recording)))
+
+
+def replay_task(read: ReadRecording, show: Show) -> Task:
+    """A task that replays a recording and passes the session and its playback to ``show``.
+
+    If the task is finished early, the session ends there. It raises InputError at an event that cannot be
+    replayed.
+    """
+    recording, replay = read.recording, read.replay
+    playback = SessionPlayback(replay.clock)
     is_finished_early = False
 
     def finish_early() -> None:
@@ -34,7 +50,7 @@ def open_recording(path: Path, show: Show) -> Task:
 
     def steps() -> Steps:
         times = [float(recorded["t"]) for recorded in recording.events]
-        with file_errors("open", path):
+        with file_errors("open", read.path):
             for count, event in enumerate(replay.events(), start=1):
                 is_last_of_its_time = count == len(times) or times[count] > event.time
                 if is_last_of_its_time:
@@ -47,4 +63,4 @@ def open_recording(path: Path, show: Show) -> Task:
         playback.follow(session)
         show(session, playback)
 
-    return Task(f"Opening {display_name(path)}", steps(), finish_early)
+    return Task(f"Opening {display_name(read.path)}", steps(), finish_early)

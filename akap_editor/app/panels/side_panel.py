@@ -163,7 +163,7 @@ def _draw_status_bar(state: AppState, scale: float) -> None:
         imgui.align_text_to_frame_padding()
         zoom = f"{state.editor.camera.zoom * 100:.0f} %" if state.document is not None else ""
         zoom_left = imgui.get_window_width() - imgui.calc_text_size(zoom).x - 16 * scale
-        text = state.notice or state.editor.hint
+        text = state.notice or (f"{state.task.title} ..." if state.task is not None else state.editor.hint)
         shortened = widgets.shortened(text, zoom_left - 30 * scale)
         imgui.text_colored(ImVec4(*(ACCENT if state.notice else TEXT)), shortened)
         widgets.show_tooltip(text if shortened != text else "")

@@ -12,6 +12,7 @@ from ...geometry.mesh import TriMesh
 from ...geometry.validation import as_channel, as_instance, as_picture, as_points, freeze
 from ...meshing.background import remove_background
 from ...meshing.picture_mesh import mesh_picture
+from ...progress import announce, part
 
 MAX_NAME = 255  # characters
 
@@ -101,7 +102,10 @@ def remove_background_and_mesh(image: NDArray[np.uint8], meshing: Meshing, name:
     if meshing.background is None:
         return mesh_drawing(image, meshing, name)
     original = image if not image.flags.writeable else freeze(image.copy())
-    return mesh_drawing(remove_background(image, meshing.background), meshing, name, original)
+    announce(0.0, "Removing the background")
+    cut_out = remove_background(image, meshing.background)
+    with part(0.4, 1.0):
+        return mesh_drawing(cut_out, meshing, name, original)
 
 
 def mesh_drawing(

@@ -1,6 +1,7 @@
 """Remeshing: another mesh for a posed drawing; pins, poses and stiffness are transferred to it."""
 
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import shapely
@@ -11,6 +12,7 @@ from ...geometry.mesh import TriMesh, barycentric, signed_areas
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints
 from ...overlap.overlaps import transferred_overlaps
+from ...progress import announce
 from .crossings import overlaps_of
 from .document import EditState
 from .drawing import Drawing, Meshing, mesh_drawing, remove_background_and_mesh
@@ -52,6 +54,7 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
     removed. Each face gets the stiffness of the nearest old one. Raises InputError if faces flip that cannot
     be unflipped.
     """
+    announce(0.0, "Transferring pins and poses")
     new_mesh = drawing.mesh
     is_at_rest = np.array_equal(state.positions, mesh.vertices)
     positions = new_mesh.vertices if is_at_rest else map_points(new_mesh.vertices, mesh, state.positions)
@@ -68,7 +71,12 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
     def map_pose(pose: Floats) -> Floats:
         return map_points(new_mesh.vertices, mesh, pose)
 
+    poses_to_map = 1 + len(state.poses) + len(state.animation.keyframes)
+    mapped_poses = count(1)
+
     def map_crossings(old: EditState | NamedPose | Keyframe, pose: Floats) -> Ints:
+        number = next(mapped_poses)
+        announce(number / (poses_to_map + 1), f"Transferring pose {number} of {poses_to_map}")
         overlaps = overlaps_of(mesh, state.pins, old.positions, old.crossings)
         return transferred_overlaps(new_mesh, pose, overlaps, mesh, faces.astype(np.int32)).crossings
 

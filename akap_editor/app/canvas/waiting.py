@@ -1,0 +1,39 @@
+"""Says on the canvas that it takes no input, because something else is going on."""
+
+import time
+
+from imgui_bundle import ImVec2, imgui
+
+from ..app_state import AppState
+from ..jobs.task import LATE_SECONDS
+from ..theme import DARK, TEXT, packed
+
+_TOP = 16  # design points between the canvas and the plate
+
+
+class WaitingPlate:
+    """A text at the top of the canvas; like a dialog, it appears after a moment."""
+
+    def __init__(self) -> None:
+        self._since: float | None = None
+
+    def draw(self, state: AppState, scale: float) -> None:
+        """Draw one frame; while the canvas waits, the pointer over it is a barred circle."""
+        if not state.is_canvas_waiting:
+            self._since = None
+            return
+        now = time.perf_counter()
+        self._since = now if self._since is None else self._since
+        left, top, right, bottom = state.editor.canvas
+        pointer = imgui.get_mouse_pos()
+        if left <= pointer.x < right and top <= pointer.y < bottom:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.not_allowed)
+        if now < self._since + LATE_SECONDS or state.task is not None:  # the dialog of the task says more
+            return
+        text = state.remesher.progress[1] or "Making the mesh"
+        size, margin = imgui.calc_text_size(text), 10 * scale
+        x, y = (left + right - size.x) / 2, top + _TOP * scale
+        draw = imgui.get_background_draw_list()
+        low, high = ImVec2(x - margin, y - margin / 2), ImVec2(x + size.x + margin, y + size.y + margin / 2)
+        draw.add_rect_filled(low, high, packed(DARK, 0.85), 5 * scale)
+        draw.add_text(ImVec2(x, y), packed(TEXT), text)
