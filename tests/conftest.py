@@ -4,6 +4,8 @@ import os
 
 # Before numpy is loaded: on small machines, threads of BLAS wait for one another longer than they work.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Mesa complains on stderr if it cannot keep its cache of shaders in HOME.
+os.environ.setdefault("MESA_SHADER_CACHE_DISABLE", "true")
 
 import json
 from pathlib import Path

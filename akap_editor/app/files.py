@@ -12,7 +12,7 @@ from ..editor.document.document import Document
 from ..editor.document.settings import Settings
 from ..editor.session.session import Session
 from ..errors import InputError
-from ..io.akap.project import PROJECT_SUFFIX
+from ..io.akap.project import PROJECT_SUFFIX, has_changed_on_disk
 from ..io.akap.project import save as save_project
 from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.atomic import resolved
@@ -21,6 +21,7 @@ from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document, o
 from ..resources import bundled_drawings
 from .app_state import AppState, error_message
 from .dialogs.file_dialog import FileDialog, FileRequest
+from .dialogs.replace_files import ReplaceFilesDialog, ReplaceQuestion
 from .dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
 from .jobs.background_task import background_task
 from .jobs.open_recording import ReadRecording, read_for_replay, replay_task
@@ -131,13 +132,25 @@ def remember_file(state: AppState, path: Path) -> None:
 
 
 def save(state: AppState, then: Callable[[], None] | None = None) -> None:
-    """Write the document to its own file, or ask for one if it has none; after that, call ``then``."""
+    """Write the document to its own file, or ask for one if it has none; after that, call ``then``.
+
+    If another program has changed the file, ask before replacing it.
+    """
     if state.document is None:
         return
-    if state.document.path is None:
+    path = state.document.path
+    if path is None:
         save_as(state, then)
+    elif has_changed_on_disk(state.document):
+        text = (
+            f"“{display_name(path)}” has been changed by another program, or in another window, since it was "
+            "opened or saved here. Replacing it loses these changes."
+        )
+        replace_it = partial(write_document, state, path, then)
+        rename = partial(save_as, state, then)
+        state.part(ReplaceFilesDialog).ask(ReplaceQuestion(text, replace_it, "Save As...", rename))
     else:
-        write_document(state, state.document.path, then)
+        write_document(state, path, then)
 
 
 def save_as(state: AppState, then: Callable[[], None] | None = None) -> None:
@@ -164,8 +177,8 @@ def write_document(state: AppState, path: Path, then: Callable[[], None] | None 
 
     def write() -> None:
         assert state.editor.session is not None
-        save_project(state.editor.session.present_document, path)
-        state.editor.mark_saved(path)
+        saved = save_project(state.editor.session.present_document, path)
+        state.editor.mark_saved(path, saved.digest)
         remember_file(state, path)
         state.notice = f"Saved {display_name(path)}"
 

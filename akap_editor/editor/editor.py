@@ -81,10 +81,10 @@ class Editor:
         self.session = None
         self.select(())
 
-    def mark_saved(self, path: Path | None) -> None:
-        """Note that the file at ``path`` holds the current state."""
+    def mark_saved(self, path: Path | None, digest: str = "") -> None:
+        """Note that the file at ``path``, with this ``digest``, holds the current state; see `Document`."""
         if self.session is not None:
-            self.session.mark_saved(path)
+            self.session.mark_saved(path, digest)
 
     @property
     def is_modified(self) -> bool:

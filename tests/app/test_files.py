@@ -8,6 +8,7 @@ import pytest
 from PIL import Image
 
 from akap_editor.app.commands.command import CTRL, SHIFT, Key
+from akap_editor.app.dialogs.replace_files import ReplaceFilesDialog
 from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
@@ -18,7 +19,7 @@ from akap_editor.resources import bundled_drawings
 from tests.support.window_driver import state_bits
 
 OPEN, SAVE = "Open picture or drawing", "Save drawing"
-UNSAVED, MESSAGE = "Unsaved changes", "Error"
+UNSAVED, MESSAGE, REPLACE = "Unsaved changes", "Error", "Replace files"
 
 
 def finish(ui):
@@ -61,6 +62,45 @@ def test_save_asks_once_and_then_writes_to_the_same_file(bent, tmp_path):
     assert bent.file_request is None
     assert state_bits(load(path).state) == state_bits(bent.session.state)
     assert not bent.editor.is_modified
+
+
+@pytest.fixture
+def changed_elsewhere(bent, tmp_path):
+    """A saved drawing that is changed again, while its file was changed by another program."""
+    path = tmp_path / "figure.akap"
+    bent.key(CTRL | Key.s)
+    bent.dialog(SAVE, "Save")
+    path.write_bytes(b"of another program")
+    bent.panel("Reset Pose")
+    return path
+
+
+@pytest.mark.parametrize("button", ["Replace", "Cancel", "Save As..."])
+def test_a_file_that_another_program_has_changed_is_not_replaced_unasked(bent, changed_elsewhere, button):
+    bent.key(CTRL | Key.s)
+    assert changed_elsewhere.read_bytes() == b"of another program"
+    assert bent.editor.is_modified
+    bent.dialog(REPLACE, button)
+    if button == "Save As...":
+        bent.type_name(SAVE, "mine")
+    saved = {"Replace": changed_elsewhere, "Save As...": changed_elsewhere.with_name("mine.akap")}.get(button)
+    assert bent.editor.is_modified == (saved is None)
+    if saved is not None:
+        assert state_bits(load(saved).state) == state_bits(bent.session.state)
+        assert bent.document.path == saved
+    assert (changed_elsewhere.read_bytes() == b"of another program") == (button != "Replace")
+    bent.key(CTRL | Key.s)
+    assert bent.state.part(ReplaceFilesDialog).is_open == (button == "Cancel"), "it is asked until answered"
+    bent.key(Key.escape)
+
+
+@pytest.mark.parametrize("button", ["Replace", "Cancel"])
+def test_closing_after_the_question_about_a_changed_file(bent, changed_elsewhere, button):
+    bent.key(CTRL | Key.w)
+    bent.dialog(UNSAVED, "Save")
+    bent.dialog(REPLACE, button)
+    assert (bent.state.document is None) == (button == "Replace")
+    assert (changed_elsewhere.read_bytes() == b"of another program") == (button == "Cancel")
 
 
 def test_a_file_that_cannot_be_written_is_told_and_stays_unsaved(bent, tmp_path):

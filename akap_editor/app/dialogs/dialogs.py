@@ -11,6 +11,7 @@ from .export_animation import ExportAnimationDialog
 from .export_pose import ExportPoseDialog
 from .file_dialog import FileDialog
 from .recovery import RecoveryDialog
+from .replace_files import ReplaceFilesDialog
 from .unsaved_changes import UnsavedChangesDialog
 
 
@@ -26,6 +27,7 @@ class Dialog(Protocol):
 
 
 DIALOGS: tuple[type[Dialog], ...] = (
+    ReplaceFilesDialog,
     UnsavedChangesDialog,
     RecoveryDialog,
     FileDialog,

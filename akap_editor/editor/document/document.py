@@ -81,13 +81,15 @@ class EditState:
 class Document:
     """An open drawing with its state.
 
-    revision: grows with every change of ``state``; path: the .akap file, None if there is none.
+    revision: grows with every change of ``state``; path: the .akap file, None if there is none; digest: of
+    the bytes of this file when they were read or written here, "" if unknown.
     """
 
     drawing: Drawing
     state: EditState
     revision: int = 0
     path: Path | None = None
+    digest: str = ""
 
     @property
     def face_order(self) -> Ints | None:

@@ -363,9 +363,12 @@ class Session:
 
     # -- files ---------------------------------------------------------------------------------------------
 
-    def mark_saved(self, path: Path | None) -> None:
-        """Note that the file at ``path`` holds the present state; None for a file that is no document."""
-        self.document = replace(self.document, path=path)
+    def mark_saved(self, path: Path | None, digest: str = "") -> None:
+        """Note that the file at ``path`` holds the present state; None for a file that is no document.
+
+        digest: of the file, see `Document`.
+        """
+        self.document = replace(self.document, path=path, digest=digest)
         self._saved_state = self.present
 
     def mark_unsaved(self) -> None:

@@ -17,7 +17,7 @@ from ...editor.document.document import Document, EditState
 from ...errors import InputError, file_errors
 from ..atomic import TEMPORARY_PREFIX, TEMPORARY_SUFFIX, read_file, write_atomic
 from .archive import Archive
-from .json_records import parse_record, require
+from .json_records import optional, parse_record, require
 from .project import PROJECT_SUFFIX, decode_document, encode_document
 
 STATE_FOLDER_VARIABLE = "AKAP_EDITOR_STATE"  # environment variable with another folder, e.g. for tests
@@ -25,7 +25,7 @@ FIRST_COPY_SECONDS = 3.0  # from the first change to the first copy
 COPY_SECONDS = 60.0  # from a change that is not in the copy to the next one
 STALE_SECONDS = 3600.0  # age of a temporary file that no running program can still be writing
 COPY_GESTURES = 10
-ORIGIN_ENTRY = "autosave.json"  # only in recovery copies: the path of the document's own file
+ORIGIN_ENTRY = "autosave.json"  # only in recovery copies: path and digest of the document's own file
 MAX_ORIGIN_BYTES = 2**16
 
 
@@ -63,17 +63,19 @@ class RecoveryCopy:
             return 0.0
 
     def read(self) -> Document:
-        """The document, with the ``path`` of its own file, None if it was never saved. Raises InputError."""
+        """The document, with ``path`` and ``digest`` of its own file, if it has one. Raises InputError."""
         data = read_file(self.path, "a copy of a drawing")
         with file_errors("recover", self.path):
             document = decode_document(data)
-            origin = require(parse_record(Archive(data).read(ORIGIN_ENTRY, MAX_ORIGIN_BYTES)), "path", str)
-        return replace(document, path=Path(origin) if origin else None)
+            origin = parse_record(Archive(data).read(ORIGIN_ENTRY, MAX_ORIGIN_BYTES))
+            path, digest = require(origin, "path", str), optional(origin, "digest", str, "")
+        return replace(document, path=Path(path) if path else None, digest=digest)
 
     def write(self, document: Document) -> None:
         """Replace the copy. Raises InputError."""
-        origin = json.dumps({"path": str(document.path.absolute()) if document.path else ""})
-        write_atomic(self.path, encode_document(document, [(ORIGIN_ENTRY, origin.encode(), True)]))
+        path = str(document.path.absolute()) if document.path else ""
+        origin = json.dumps({"path": path, "digest": document.digest}).encode()
+        write_atomic(self.path, encode_document(document, [(ORIGIN_ENTRY, origin, True)]))
 
     def discard(self) -> None:
         """Delete the copy."""

@@ -1,5 +1,6 @@
 """Reads and writes .akap files, which hold a document, as described in docs/file-format.md."""
 
+import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,7 +13,7 @@ from PIL import Image
 
 from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing, Meshing
-from ...errors import InputError, error_context, file_errors
+from ...errors import FileError, InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
 from ..atomic import as_path, read_file, write_atomic
@@ -53,7 +54,7 @@ THUMBNAIL_SIDE = 256
 
 
 def save(document: Document, path: str | Path) -> Document:
-    """Write an .akap file, whole or not at all; return the document with its ``path`` set.
+    """Write an .akap file, whole or not at all; return the document with its ``path`` and ``digest`` set.
 
     Equal documents give equal bytes. Raises FileError if the file cannot be written, or could not be opened
     again, e.g. for two pins with one id; then the old file stays.
@@ -63,7 +64,7 @@ def save(document: Document, path: str | Path) -> Document:
     with file_errors("save", path):
         data = encode_document(document)
     write_atomic(path, data)
-    return replace(document, path=Path(path))
+    return replace(document, path=Path(path), digest=_digest(data))
 
 
 def load(path: str | Path) -> Document:
@@ -74,7 +75,24 @@ def load(path: str | Path) -> Document:
     data = read_file(path, "an .akap file")
     with file_errors("open", path):
         document = decode_document(data)
-    return replace(document, path=Path(path))
+    return replace(document, path=Path(path), digest=_digest(data))
+
+
+def has_changed_on_disk(document: Document) -> bool:
+    """Whether another program has written the document's file since it was opened or saved here.
+
+    False if there is no such file any more, or nothing is known about it.
+    """
+    if document.path is None or not document.digest:
+        return False
+    try:
+        return _digest(read_file(document.path, "an .akap file")) != document.digest
+    except FileError:
+        return False
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
 
 
 def encode_document(document: Document, more: Sequence[ArchiveEntry] = ()) -> bytes:

@@ -26,7 +26,7 @@ from akap_editor.io.akap.autosave import (
     STALE_SECONDS,
     Autosave,
 )
-from akap_editor.io.akap.project import encode_document, load
+from akap_editor.io.akap.project import encode_document, has_changed_on_disk, load, save
 from tests.io.akap.test_project import assert_equal
 
 
@@ -306,6 +306,17 @@ def test_an_adopted_copy_lives_until_the_drawing_is_saved(folder, document):
     assert_equal(load(copy.path), changed)
     watch.see(changed, modified=False)
     assert os.listdir(folder) == []
+
+
+def test_a_recovered_drawing_knows_whether_its_file_was_changed_meanwhile(folder, document, tmp_path):
+    own = save(document, tmp_path / "own.akap")
+    dead = Watch(folder)
+    dead.autosave.rescue(moved(own, 1))
+    (copy,) = Watch(folder).autosave.claim_lost_copies()
+    assert copy.read().path == own.path
+    assert not has_changed_on_disk(copy.read())
+    save(moved(own, 2), own.path)
+    assert has_changed_on_disk(copy.read())
 
 
 def test_rescue_writes_at_once(folder, document):

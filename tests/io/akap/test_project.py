@@ -21,8 +21,23 @@ from akap_editor.editor.document.settings import Settings
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io import atomic
-from akap_editor.io.akap.project import load, save
+from akap_editor.io.akap.project import has_changed_on_disk, load, save
 from akap_editor.io.images import encode_png, read_image
+
+# What happens to a file after it was saved, and whether that is a change.
+EVENTS = {
+    "nothing": (lambda path, other: None, False),
+    "touched": (lambda path, other: os.utime(path, (0, 0)), False),
+    "the same bytes again": (lambda path, other: path.write_bytes(path.read_bytes()), False),
+    "another version": (lambda path, other: path.write_bytes(other), True),
+    "another version in its place": (lambda path, other: atomic.write_atomic(path, other), True),
+    "a version of the same time": (
+        lambda path, other: (path.write_bytes(other), os.utime(path, ns=(path.stat().st_mtime_ns,) * 2)),
+        True,
+    ),
+    "damaged": (lambda path, other: path.write_bytes(b""), True),
+    "removed": (lambda path, other: path.unlink(), False),
+}
 
 ENTRIES = [
     "mimetype",
@@ -595,3 +610,18 @@ def test_a_removed_background_comes_back_with_its_tolerance(tmp_path):
         path.write_bytes(pack(spoiled))
         with pytest.raises(InputError, match="original.png" if name == "original.png" else "background"):
             load(path)
+
+
+@pytest.mark.parametrize("event", EVENTS)
+@pytest.mark.parametrize("begins", ["saved", "opened"])
+def test_what_another_program_did_to_the_file_is_noticed(document, tmp_path, event, begins):
+    other = document.with_state(replace(document.state, positions=document.state.positions + 1))
+    path = tmp_path / "own.akap"
+    own = save(document, path)
+    own = own if begins == "saved" else load(path)
+    happens, is_change = EVENTS[event]
+    save(other, tmp_path / "other.akap")
+    happens(path, (tmp_path / "other.akap").read_bytes())
+    assert has_changed_on_disk(own) == is_change
+    assert not has_changed_on_disk(save(own, path)), "what is saved over it is known"
+    assert not has_changed_on_disk(document), "a document without a file"

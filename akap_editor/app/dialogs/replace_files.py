@@ -1,0 +1,64 @@
+"""The dialog that asks before files are replaced that the user did not name, or that others have changed."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from .. import widgets
+from ..app_state import AppState
+
+_WIDTH = 420  # design points
+
+
+@dataclass(frozen=True)
+class ReplaceQuestion:
+    """Files that are about to be replaced.
+
+    text: says which and why this is asked; replace: replaces them; rename_label, rename: the button that
+    leads to another name, and what it does.
+    """
+
+    text: str
+    replace: Callable[[], None]
+    rename_label: str
+    rename: Callable[[], None]
+
+
+class ReplaceFilesDialog:
+    """Asks one question at a time; Cancel does nothing."""
+
+    def __init__(self) -> None:
+        self._question: ReplaceQuestion | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a question is to be answered."""
+        return self._question is not None
+
+    def ask(self, question: ReplaceQuestion) -> None:
+        """Show the dialog."""
+        self._question = question
+
+    def draw(self, _: AppState, scale: float) -> None:
+        """Draw one frame. scale: points per design point."""
+        question = self._question
+        if question is None or not widgets.begin_dialog("Replace files"):
+            return
+        widgets.paragraph(question.text, _WIDTH * scale)
+        imgui.spacing()
+        if widgets.button(question.rename_label, primary=True) or widgets.confirm_pressed():
+            self._close()
+            question.rename()
+        imgui.same_line()
+        if widgets.button("Replace"):
+            self._close()
+            question.replace()
+        imgui.same_line()
+        if widgets.button("Cancel") or widgets.cancel_pressed():
+            self._close()
+        imgui.end_popup()
+
+    def _close(self) -> None:
+        self._question = None
+        widgets.close_popup()
