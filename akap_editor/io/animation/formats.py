@@ -9,7 +9,8 @@ from ...display_text import display_name
 from ...errors import FileError, InputError, join_with_or
 from ..atomic import Write, write_atomic
 from ..images import Picture, write_png
-from .animated_images import write_apng, write_gif, write_webp
+from .animated_images import write_apng, write_webp
+from .gif import write_gif
 from .sprite_sheet import write_frames, write_sheet
 from .video import require_av, write_mp4, write_webm
 

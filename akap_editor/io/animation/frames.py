@@ -1,10 +1,13 @@
-"""Checks of the pictures that become an animation."""
+"""Checks of the pictures that become an animation, and how long each is shown."""
 
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 
 from ...errors import InputError
 from ...geometry.validation import as_picture
 from ..images import Picture
+
+MAX_ANIMATION_PIXELS = 1_000_000_000  # of all frames together
 
 
 def checked_frames(frames: Iterable[Picture]) -> Iterator[Picture]:
@@ -22,3 +25,29 @@ def checked_frames(frames: Iterable[Picture]) -> Iterator[Picture]:
         yield image
     if first is None:
         raise InputError("frames: expected at least one frame, got none")
+
+
+def collect_frames(frames: Iterable[Picture], max_side: int, suffix: str) -> list[Picture]:
+    """Copies of all frames, (h, w, 4) uint8 each.
+
+    Raises InputError as `checked_frames`, for more than ``max_side`` pixels a side, and for more than
+    `MAX_ANIMATION_PIXELS`. suffix: the format's ending, for messages.
+    """
+    images: list[Picture] = []
+    pixels = 0
+    for image in checked_frames(frames):
+        height, width = image.shape[:2]
+        if max(width, height) > max_side:
+            raise InputError(f"{suffix}: expected at most {max_side} pixels a side, got {width} x {height}")
+        pixels += width * height
+        if pixels > MAX_ANIMATION_PIXELS:
+            most = MAX_ANIMATION_PIXELS // (width * height)
+            raise InputError(f"frames: expected at most {most} frames of {width} x {height} pixels, got more")
+        images.append(image.copy())  # the caller may draw the next frame into the same array
+    return images
+
+
+def frame_durations(count: int, fps: float, unit: int) -> list[int]:
+    """Durations of frames in ms: multiples of ``unit`` ms whose sums never drift from the rate."""
+    ticks = [round(1000 / unit * number / fps) for number in range(count + 1)]
+    return [unit * (end - start) for start, end in pairwise(ticks)]
