@@ -76,7 +76,13 @@ _FORMATS = [
     help="Easing of the whole animation.",
 )
 @click.option("--ping-pong", is_flag=True, help="Play forwards, then backwards.")
-@click.option("--plays", default=0, show_default=True, help="How often the animation plays; 0 for forever.")
+@click.option(
+    "--plays",
+    type=int,
+    metavar="NUMBER",
+    help="How often the animation plays; 0 for forever, the default, unless the drawing says that it plays "
+    "once.",
+)
 def replay_command(
     recording: Path, output: Path, drawing: Path | None, pose: Path | None, **options: object
 ) -> None:
@@ -109,7 +115,7 @@ def replay_recording(
     speed: float = 1.0,
     ease: str = "none",
     ping_pong: bool = False,
-    plays: int = 0,
+    plays: int | None = None,
 ) -> None:
     """Do what the command does. Raises InputError before anything is written."""
     from ..render.offscreen import OffscreenRenderer
@@ -117,21 +123,23 @@ def replay_recording(
     _check_number("--fps", fps, 1, 120)
     _check_number("--size", size, 16, 8192)
     _check_number("--speed", speed, 0.01, 100)
-    _check_number("--plays", plays, 0, MAX_PLAYS)
+    _check_number("--plays", plays or 0, 0, MAX_PLAYS)
     background_color = parse_color(background)
     chosen = animation_format(output, sheet)
+    fps = min(fps, chosen.max_fps)
     if pose is not None:
         check_png(pose)
     source = _open_source(path, drawing_path, method, variant, pause)
+    plays = source.plays if plays is None else plays
     first, last = _range(source.duration, start, end)
     times = [last] if chosen.is_still else frame_times(first, last, fps, speed, ease)
     with file_errors("replay", path), click.progressbar(source.play(times), len(times), "Bending") as bar:
         frames = list(bar)
-    is_loop = chosen.repeats and plays != 1 and loops_seamlessly(frames[0], frames[-1])
+    is_loop = plays != 1 and loops_seamlessly(frames[0], frames[-1])
     end_frame, frames = frames[-1], playing_order(frames, ping_pong, is_loop)
     make_folder_of(output)
     with OffscreenRenderer() as renderer:
-        pictures = paint_frames(frames, renderer, size, background_color)
+        pictures = paint_frames(frames, renderer, size, background_color, chosen.is_video)
         with click.progressbar(pictures, len(frames), "Drawing") as bar:
             written = write_animation(output, bar, fps, plays, sheet)
         if pose is not None:
@@ -163,9 +171,13 @@ def _range(duration: float, start: float | None, end: float | None) -> tuple[flo
 
 
 class _Source(NamedTuple):
-    """A recording or keyframes: seconds, and a function that gives the frames at ascending times."""
+    """A recording or keyframes.
+
+    duration: seconds; plays: how often it is shown, 0 for forever; play: gives the frames at ascending times.
+    """
 
     duration: float
+    plays: int
     play: Callable[[Sequence[float]], Iterator[Frame]]
 
 
@@ -191,7 +203,9 @@ def _open_recording(
         recording = shorten_pauses(recording, pause)
     drawing = open_document(drawing_path).drawing if drawing_path is not None else recorded_drawing(recording)
     return _Source(
-        recording.duration, lambda times: Motion(drawing, replay(recording, drawing, change)).frames(times)
+        recording.duration,
+        0,
+        lambda times: Motion(drawing, replay(recording, drawing, change)).frames(times),
     )
 
 
@@ -201,7 +215,9 @@ def _open_keyframes(path: Path) -> _Source:
     if not animation.keyframes:
         raise FileError("replay", path, "the drawing has no keyframes; add some, or replay a recording")
     return _Source(
-        animation.duration, lambda times: (animation_frame(document, cache, time) for time in times)
+        animation.duration,
+        0 if animation.loop else 1,
+        lambda times: (animation_frame(document, cache, time) for time in times),
     )
 
 

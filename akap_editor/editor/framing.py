@@ -69,6 +69,25 @@ def output_size(box: Box, scale: float) -> tuple[int, int]:
     return max(1, ceil(width - _ROUNDING)), max(1, ceil(height - _ROUNDING))
 
 
+def fitted_box(box: Box, longest_side: int, is_even: bool = False) -> tuple[Box, float]:
+    """The box that is shown, and its scale, of pictures with at most ``longest_side`` pixels a side.
+
+    They are never enlarged. is_even: extend the box on the right and at the bottom, so that width and height
+    in pixels are even. Raises InputError as `output_size`.
+    """
+    x0, y0, x1, y1 = box
+    limit = longest_side - longest_side % 2 if is_even else longest_side
+    scale = min(1.0, limit / max(x1 - x0, y1 - y0))
+    width, height = output_size(box, scale)
+    while is_even and width % 2:
+        x1 += 1
+        width, _ = output_size((x0, y0, x1, y1), scale)
+    while is_even and height % 2:
+        y1 += 1
+        _, height = output_size((x0, y0, x1, y1), scale)
+    return (x0, y0, x1, y1), scale
+
+
 def _bounding_box(points: Sequence[Floats]) -> Box:
     low = np.min([each.min(axis=0) for each in points], axis=0)
     high = np.max([each.max(axis=0) for each in points], axis=0)

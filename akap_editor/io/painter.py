@@ -5,7 +5,7 @@ from typing import Protocol
 
 from ..editor.animation.frames import Frame
 from ..editor.document.drawing import Drawing
-from ..editor.framing import Box, Color, frame_box, output_size, union_of_boxes
+from ..editor.framing import Box, Color, fitted_box, frame_box, union_of_boxes
 from ..geometry.validation import Floats, Ints
 from ..overlap.seams import CutMesh
 from .images import Picture
@@ -31,16 +31,20 @@ class Painter(Protocol):
 
 
 def paint_frames(
-    frames: Sequence[Frame], painter: Painter, longest_side: float, background: Color | None
+    frames: Sequence[Frame],
+    painter: Painter,
+    longest_side: int,
+    background: Color | None,
+    is_even: bool = False,
 ) -> Iterator[Picture]:
     """The pictures of an animation's frames, all of one size, each drawn when it is asked for.
 
-    They show the drawing's frame and all poses. longest_side: in pixels, at most: a drawing is not enlarged.
+    They show the drawing's frame and all poses. longest_side: in pixels, at most: a drawing is not enlarged;
+    is_even: whether width and height must be even, see `fitted_box`.
     Raises InputError at once if the pictures would be too large.
     """
     box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])
-    scale = min(1.0, longest_side / max(box[2] - box[0], box[3] - box[1]))
-    output_size(box, scale)
+    box, scale = fitted_box(box, longest_side, is_even)
     return (
         painter.render(frame.drawing, frame.pose, box, scale, background, frame.order) for frame in frames
     )

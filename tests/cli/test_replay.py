@@ -306,6 +306,65 @@ def test_what_plays_for_ever_and_ends_as_it_begins_shows_its_end_once(replay_bar
         assert f"{count} frames" in out
 
 
+@pytest.fixture
+def round_trip(posed, tmp_path):
+    """round.akap and once.akap: to the bent pose and back in a second, over and over, and once."""
+    document = open_document(tmp_path / "posed.akap")
+    keys = *document.state.animation.keyframes, Keyframe(1.0, document.drawing.mesh.vertices)
+    for name, loop in (("round", True), ("once", False)):
+        save(
+            document.with_state(replace(document.state, animation=Animation(keys, loop=loop))),
+            tmp_path / f"{name}.akap",
+        )
+
+
+FORMATS = [*(f"out{suffix}" for suffix in (".gif", ".webp", ".apng", ".mp4", ".webm")), "frames", "sheet.png"]
+
+
+@pytest.mark.parametrize(
+    ("output", "name", "options", "count"),
+    [
+        *((output, "round", (), 10) for output in FORMATS),
+        *((output, "once", (), 11) for output in FORMATS),
+        ("out.gif", "once", ("--plays", 0), 10),
+        ("out.gif", "round", ("--plays", 1), 11),
+        ("frames", "round", ("--ping-pong",), 20),
+    ],
+)
+def test_the_frames_of_a_loop_are_the_same_in_every_format(
+    replay_bar, round_trip, tmp_path, output, name, options, count
+):
+    if output.endswith((".mp4", ".webm")):
+        pytest.importorskip("av")
+    options = "-o", output, "--fps", 10, "--size", 45, *options, *(["--sheet"] if "sheet" in output else [])
+    code, out, _ = replay_bar(*options, recording=f"{name}.akap")
+    assert code == 0
+    assert f"{count} frames" in out
+    assert frames_in(tmp_path / output) == count
+
+
+def frames_in(path):
+    """The number of frames in a file or folder."""
+    if path.is_dir():
+        return len(list(path.glob("*.png")))
+    if path.suffix == ".png":
+        return len(json.loads(path.with_suffix(".json").read_text())["frames"])
+    if path.suffix in (".mp4", ".webm"):
+        import av
+
+        with av.open(str(path)) as container:
+            return sum(1 for _ in container.decode(video=0))
+    with Image.open(path) as opened:
+        return opened.n_frames
+
+
+@pytest.mark.parametrize(("name", "plays"), [("once", None), ("round", 0)])
+def test_a_drawing_says_how_often_its_keyframes_play(replay_bar, round_trip, tmp_path, name, plays):
+    assert replay_bar("-o", "out.gif", "--fps", 10, "--size", 45, recording=f"{name}.akap")[0] == 0
+    with Image.open(tmp_path / "out.gif") as opened:
+        assert opened.info.get("loop") == plays
+
+
 @pytest.mark.parametrize(
     ("keyframes", "options"),
     [("posed", ["--ping-pong"]), ("round", []), ("round", ["--ping-pong"])],

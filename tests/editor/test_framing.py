@@ -8,6 +8,7 @@ from akap_editor.editor.framing import (
     CROPS,
     MAX_SIZE,
     crop_box,
+    fitted_box,
     frame_box,
     output_size,
     union_of_boxes,
@@ -86,3 +87,22 @@ def test_size_in_pixels(box, scale, size):
 def test_bad_sizes_are_refused(box, scale, message):
     with pytest.raises(InputError, match=message):
         output_size(box, scale)
+
+
+@pytest.mark.parametrize("is_even", [False, True])
+@pytest.mark.parametrize("longest", [16, 17, 99, 640, 641])
+@pytest.mark.parametrize("box", [(0, 0, 100, 80), (0, 0, 640, 481), (-3, 5, 638, 480), (0, 0, 1777, 900)])
+def test_pictures_fit_the_longest_side_and_are_never_enlarged(box, longest, is_even):
+    shown, scale = fitted_box(box, longest, is_even)
+    size = output_size(shown, scale)
+    width, height = box[2] - box[0], box[3] - box[1]
+    assert scale <= 1
+    assert max(size) <= longest
+    assert max(size) >= min(longest, max(width, height)) - is_even
+    assert shown[:2] == box[:2]
+    assert shown[2] >= box[2]
+    assert shown[3] >= box[3]
+    if is_even:
+        assert [side % 2 for side in size] == [0, 0]
+    else:
+        assert shown == box

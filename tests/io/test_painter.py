@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.animation.frames import Frame
-from akap_editor.editor.framing import MAX_SIZE
+from akap_editor.editor.framing import MAX_SIZE, output_size
 from akap_editor.errors import InputError
 from akap_editor.io.painter import paint_frames
 
@@ -47,6 +47,13 @@ def test_large_drawings_are_reduced_to_the_longest_side(drawing):
     list(paint_frames([Frame(drawing, drawing.mesh.vertices * 10)], painter, 16, None))
     _, _, box, scale, _, _ = painter.calls[0]
     assert scale == pytest.approx(16 / max(box[2] - box[0], box[3] - box[1]))
+
+
+def test_sizes_are_even_where_a_format_needs_it(drawing):
+    painter = RecordingPainter()
+    list(paint_frames([Frame(drawing, drawing.mesh.vertices)], painter, 7, None, is_even=True))
+    _, _, box, scale, _, _ = painter.calls[0]
+    assert [side % 2 for side in output_size(box, scale)] == [0, 0]
 
 
 def test_pictures_are_drawn_one_at_a_time(drawing):

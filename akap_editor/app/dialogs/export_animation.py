@@ -1,7 +1,7 @@
 """The dialog that exports the played range of the timeline as an animation."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,6 +12,7 @@ from ...display_text import display_name, file_stem
 from ...editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
 from ...editor.document.easing import EASING_LABELS, EASINGS
 from ...editor.framing import Color
+from ...errors import InputError
 from ...io.animation.formats import ANIMATION_FORMATS, AnimationFormat, animation_format, write_animation
 from ...io.painter import paint_frames
 from .. import widgets
@@ -19,6 +20,7 @@ from ..app_state import AppState
 from ..jobs.frame_encoder import FrameEncoder
 from ..jobs.task import Progress, Steps, Task
 from ..preferences import Preferences
+from .animation_size import AnimationSize
 from .export_widgets import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
 from .file_dialog import FileDialog, FileRequest
 
@@ -27,7 +29,7 @@ PREFERENCE = "animation"  # name of the stored options
 DIALOG_FORMATS = tuple(each for each in ANIMATION_FORMATS if not each.is_still)
 FRAME_RATES = (12, 24, 30, 60)
 LIMITS = {"fps": (1.0, 120.0), "size": (16, 8192), "speed": (0.01, 100.0)}
-_WIDTH, _HEIGHT, _LIST_WIDTH = 600, 292, 190  # design points
+_WIDTH, _HEIGHT, _LIST_WIDTH = 600, 324, 190  # design points
 
 T = TypeVar("T")
 
@@ -66,13 +68,18 @@ class AnimationExportOptions:
         """The color behind the drawing; None for transparent."""
         return self.background if self.opaque or not self.chosen_format.has_transparency else None
 
+    @property
+    def written_fps(self) -> float:
+        """Frames per second of the file: the rate that was chosen, or the highest of the format."""
+        return min(self.fps, self.chosen_format.max_fps)
+
     def frame_times(self, start: float, end: float) -> list[float]:
         """Times on the timeline in seconds, one per frame, in ascending order."""
-        return frame_times(start, end, self.fps, self.speed, self.ease)
+        return frame_times(start, end, self.written_fps, self.speed, self.ease)
 
     def playing_order(self, frames: Sequence[T], first: Frame, last: Frame) -> list[T]:
         """Frames, or their times, in the order in which they are shown. first, last: ends of the motion."""
-        is_loop = self.chosen_format.repeats and self.loop and loops_seamlessly(first, last)
+        is_loop = self.loop and loops_seamlessly(first, last)
         return playing_order(frames, self.ping_pong, is_loop)
 
     def remember(self, preferences: Preferences) -> None:
@@ -103,13 +110,17 @@ class ExportAnimationDialog:
 
     def __init__(self) -> None:
         self.is_open = False
+        self._size = AnimationSize()
 
     def open(self, state: AppState) -> None:
-        """Show the dialog if there is a range to export; playback stops."""
-        start, end = state.timeline.playback.played_range
+        """Show the dialog if there is a range to export; playback stops. It loops if playback does."""
+        playback = state.timeline.playback
+        start, end = playback.played_range
         if state.document is not None and end > start:
-            if state.timeline.playback.is_playing:
-                state.timeline.playback.stop()
+            if playback.is_playing:
+                playback.stop()
+            options = AnimationExportOptions.remembered(state.preferences)
+            replace(options, loop=playback.loop).remember(state.preferences)
             self.is_open = True
 
     def draw(self, state: AppState, scale: float) -> None:
@@ -127,7 +138,7 @@ class ExportAnimationDialog:
         size = ImVec2((_WIDTH - _LIST_WIDTH - 18) * scale, height)
         imgui.begin_child("##options", size, widgets.NAV_FLATTENED)
         _draw_options(options, scale)
-        _draw_result(state, options, scale)
+        _draw_result(state, options, self._size, scale)
         imgui.end_child()
         imgui.spacing()
         options.remember(state.preferences)
@@ -192,8 +203,14 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
         frames.append(frame_at(state, time))
         yield Progress(0.3 * number / len(times), f"Posing frame {number + 1} of {len(times)}")
     frames = options.playing_order(frames, frames[0], frames[-1])
-    pictures = paint_frames(frames, state.offscreen_renderer, options.size, options.visible_background)
-    export = partial(write_animation, path, fps=options.fps, plays=options.plays, sheet=sheet)
+    pictures = paint_frames(
+        frames,
+        state.offscreen_renderer,
+        options.size,
+        options.visible_background,
+        options.chosen_format.is_video,
+    )
+    export = partial(write_animation, path, fps=options.written_fps, plays=options.plays, sheet=sheet)
     encoder = FrameEncoder(export, state.wake)
     try:
         for number, picture in enumerate(pictures):
@@ -232,10 +249,12 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     widgets.show_tooltip("Easing of the whole animation, in addition to that of keyframes.")
     widgets.switch_label("Playback", LABEL_WIDTH * scale)
     _, options.ping_pong = widgets.switch("Ping-pong", options.ping_pong, "Play forwards, then backwards.")
+    imgui.same_line(0, 16 * scale)
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
+    tooltip = "If the motion ends as it begins, its last frame is left out."
     if options.chosen_format.repeats:
-        imgui.same_line(0, 16 * scale)
-        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
-        _, options.loop = widgets.switch("Loop forever", options.loop, "Off: the animation plays once.")
+        tooltip += " Off: the animation plays once."
+    _, options.loop = widgets.switch("Loop forever", options.loop, tooltip)
     options.opaque, options.background = background_field(
         options.opaque,
         options.background,
@@ -245,9 +264,30 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     )
 
 
-def _draw_result(state: AppState, options: AnimationExportOptions, scale: float) -> None:
-    """Draw the number of frames and seconds."""
+def _draw_result(
+    state: AppState, options: AnimationExportOptions, measured_size: AnimationSize, scale: float
+) -> None:
+    """Draw the number of frames, the seconds and the size in pixels of what is written."""
     count = frame_count(state, options)
-    seconds = f"{count / options.fps:.1f}".removesuffix(".0")
+    seconds = f"{count / options.written_fps:.1f}".removesuffix(".0")
+    text = f"{count} frame{'s' * (count != 1)}, {seconds} s"
+    if options.written_fps < options.fps:
+        text += f" at {options.written_fps:g} fps"
     widgets.label("Result", LABEL_WIDTH * scale)
-    imgui.text(f"{count} frame{'s' * (count != 1)}, {seconds} s")
+    imgui.text(text)
+    widgets.label("", LABEL_WIDTH * scale)
+    imgui.text(size_text(state, options, measured_size))
+
+
+def size_text(state: AppState, options: AnimationExportOptions, measured_size: AnimationSize) -> str:
+    """The size of the pictures that are written, in words; an ellipsis until it is known."""
+    times = options.frame_times(*state.timeline.playback.played_range)
+    try:
+        size = measured_size.measure(state, times, options.size, options.chosen_format.is_video)
+    except InputError as error:
+        return str(error)
+    if size is None:
+        return "..."
+    # of a sheet, margins that are empty in all frames are cropped
+    most = "at most " if options.chosen_format.is_sheet else ""
+    return f"{most}{size[0]} × {size[1]} px"

@@ -10,6 +10,7 @@ from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
 from ..document.crossings import draw_order
 from ..document.document import Document
+from ..document.drawing import Drawing
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
 from ..document.pin import Pin
 from ..document.pin_angles import pins_fixed_at_pose
@@ -125,6 +126,18 @@ class KeyframePlayback(Playback):
             return None
         mesh, pins = session.drawing.mesh, session.present.pins
         return animation_crossings(self._interpolation, self._crossings, mesh, pins, animation, time)
+
+    @property
+    def content(self) -> tuple[object, ...]:
+        """What the poses depend on; equal as long as they are the same."""
+        return self._editor.session, self.animation
+
+    def pose_at(self, time: float) -> tuple[Drawing, Floats]:
+        """The drawing and its pose (n, 2) at a time; there must be keyframes."""
+        session, pose = self._editor.session, self.pose(time)
+        assert session is not None
+        assert pose is not None, "expected keyframes"
+        return session.drawing, pose
 
     def frame(self, time: float) -> Frame:
         """The frame at a time; there must be keyframes."""

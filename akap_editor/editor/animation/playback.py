@@ -4,6 +4,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from time import monotonic
 
+from ...geometry.validation import Floats
+from ..document.drawing import Drawing
+
 MIN_VISIBLE_SECONDS = 0.5
 
 
@@ -68,6 +71,15 @@ class Playback(ABC):
     @abstractmethod
     def duration(self) -> float:
         """Seconds from 0 to the end of the motion."""
+
+    @property
+    @abstractmethod
+    def content(self) -> tuple[object, ...]:
+        """What the poses depend on; equal as long as they are the same."""
+
+    @abstractmethod
+    def pose_at(self, time: float) -> tuple[Drawing, Floats]:
+        """The drawing and its pose (n, 2) at a time; there must be a motion."""
 
     @abstractmethod
     def scrub(self, time: float) -> None:

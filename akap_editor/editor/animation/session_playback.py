@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from time import monotonic
 
 from ...deform.pose_interpolation import InterpolationCache
+from ...geometry.validation import Floats
 from ..document.crossings import crossings_in_pose, draw_order
 from ..document.document import EditState
 from ..document.drawing import Drawing
@@ -130,12 +131,30 @@ class SessionPlayback(Playback):
             self.marked_range = None if is_empty else (self.take_start, self.duration)
             self.take_start = None
 
+    @property
+    def content(self) -> tuple[object, ...]:
+        """What the poses depend on; equal as long as they are the same."""
+        return self._session, len(self.snapshots), *self.snapshots[-1:]
+
+    def pose_at(self, time: float) -> tuple[Drawing, Floats]:
+        """The drawing and its pose (n, 2) at a time, see `frame`; there must be a snapshot."""
+        snapshot = self.snapshot_at(time)
+        return snapshot.drawing, self._pose(time)
+
     def frame(self, time: float) -> Frame:
         """The frame at a time; between two snapshots each edge rotates and grows at a constant rate.
 
         After a long pause the motion takes only its last `MAX_MOVE_SECONDS`. A pose that no step led to
         appears at once.
         """
+        snapshot, pose = self.snapshot_at(time), self._pose(time)
+        mesh, state = snapshot.drawing.mesh, snapshot.state
+        crossings = state.crossings
+        if pose is not state.positions:
+            crossings = crossings_in_pose(mesh, state.pins, state.positions, crossings, pose)
+        return Frame(snapshot.drawing, pose, draw_order(mesh, state.pins, pose, crossings))
+
+    def _pose(self, time: float) -> Floats:
         index = self._index(time)
         snapshot = self.snapshots[index]
         following = self.snapshots[min(index + 1, len(self.snapshots) - 1)]
@@ -147,7 +166,4 @@ class SessionPlayback(Playback):
         if time > start and is_continuous:
             share = min((time - start) / (following.time - start), 1.0)
             pose = self._interpolation.pose(mesh, pose, following.state.positions, share)
-        state, crossings = snapshot.state, snapshot.state.crossings
-        if pose is not state.positions:
-            crossings = crossings_in_pose(mesh, state.pins, state.positions, crossings, pose)
-        return Frame(snapshot.drawing, pose, draw_order(mesh, state.pins, pose, crossings))
+        return pose

@@ -10,7 +10,7 @@ from ...errors import FileError, InputError, join_with_or
 from ..atomic import Write, write_atomic
 from ..images import Picture, write_png
 from .animated_images import write_apng, write_webp
-from .gif import write_gif
+from .gif import MAX_GIF_FPS, write_gif
 from .sprite_sheet import write_frames, write_sheet
 from .video import require_av, write_mp4, write_webm
 
@@ -25,8 +25,9 @@ class AnimationFormat:
 
     label: name on the screen; suffix: ending of file names, "" for a folder; about: description for the user;
     has_transparency: whether the background can be transparent; repeats: whether the file says how often it
-    plays; is_video: whether the package av is needed; is_sheet: whether all frames are in one picture;
-    is_still: whether only the last frame is written. writer: see `write_animation`.
+    plays; is_video: whether the package av is needed, and width and height must be even; is_sheet: whether
+    all frames are in one picture; is_still: whether only the last frame is written; max_fps: frames per
+    second, at most. writer: see `write_animation`.
     """
 
     label: str
@@ -38,6 +39,7 @@ class AnimationFormat:
     is_video: bool = False
     is_sheet: bool = False
     is_still: bool = False
+    max_fps: float = 120.0
 
 
 def _write_pictures(path: Path, frames: Iterable[Picture], *_: object) -> str:
@@ -60,7 +62,12 @@ ANIMATION_FORMATS = (
         "WebP", ".webp", "An animation for the web: all colors, soft edges, small.", write_webp, repeats=True
     ),
     AnimationFormat(
-        "GIF", ".gif", "An animation that plays everywhere: 255 colors, hard edges.", write_gif, repeats=True
+        "GIF",
+        ".gif",
+        "An animation that plays everywhere: 255 colors, hard edges.",
+        write_gif,
+        repeats=True,
+        max_fps=MAX_GIF_FPS,
     ),
     AnimationFormat(
         "APNG", ".apng", "An animation: all colors, soft edges, large.", write_apng, repeats=True

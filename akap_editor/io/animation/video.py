@@ -1,7 +1,8 @@
 """Writes videos: MP4 and WebM, with FFmpeg inside the package av.
 
 Both writers take frames (h, w, 4) uint8, straight alpha, all of one size, which are read once, in order; only
-the compressed video is held in memory. Frames of odd size get one more column or row. fps: frames per second;
+the compressed video is held in memory. Frames of odd size get one more column or row, which repeats the last
+one. fps: frames per second;
 write: writes the encoded file. They return a few words on the result, and raise InputError for bad frames, if
 the file cannot be written, or if av is not installed.
 """
@@ -99,7 +100,7 @@ def _encode(av: Any, codec: _Codec, frames: Iterable[Picture], fps: float) -> by
 
 def _prepared(image: Picture, has_transparency: bool) -> Picture:
     """A frame of even size, without invisible colors that would bleed into visible pixels."""
-    image = np.pad(image, ((0, image.shape[0] % 2), (0, image.shape[1] % 2), (0, 0)))
+    image = np.pad(image, ((0, image.shape[0] % 2), (0, image.shape[1] % 2), (0, 0)), mode="edge")
     if not has_transparency:
         alpha = image[..., 3:].astype(np.uint16)
         image[..., :3] = (image[..., :3] * alpha + _WHITE * (255 - alpha) + 127) // 255

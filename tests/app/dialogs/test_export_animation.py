@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 from PIL import Image
 
 from akap_editor.app.commands.command import CTRL, SHIFT
+from akap_editor.app.dialogs.animation_size import AnimationSize
 from akap_editor.app.dialogs.export_animation import (
     DIALOG_FORMATS,
     PREFERENCE,
@@ -19,6 +20,7 @@ from akap_editor.app.dialogs.export_animation import (
     export_animation,
     frame_at,
     frame_count,
+    size_text,
 )
 from akap_editor.app.preferences import Preferences
 from akap_editor.errors import InputError
@@ -120,6 +122,67 @@ def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
         assert f"{count} frames" in keyed.state.notice
     playback.mark_range(end=0.4)
     assert frame_count(keyed.state, AnimationExportOptions("APNG", fps=10)) == 5
+
+
+@pytest.fixture
+def round_trip(keyed):
+    """A third keyframe, which equals the first one."""
+    playback = keyed.state.timeline.keyframe_playback
+    playback.set_keyframe(0.8, playback.animation.keyframes[0].positions)
+    return keyed
+
+
+@pytest.mark.parametrize("longest", [45, 8192])
+@pytest.mark.parametrize("kind", DIALOG_FORMATS, ids=[each.label for each in DIALOG_FORMATS])
+def test_what_the_dialog_says_is_what_is_written(round_trip, tmp_path, kind, longest):
+    if kind.is_video:
+        pytest.importorskip("av")
+    state = round_trip.state
+    options = AnimationExportOptions(kind.label, fps=10, size=longest)
+    count, said = frame_count(state, options), size_text(state, options, AnimationSize(clock=lambda: 0.0))
+    export_animation(state, options, tmp_path / f"out{kind.suffix}")
+    round_trip.settle()
+    assert not state.error
+    assert (count, size_of(tmp_path / f"out{kind.suffix}")) == (8, said)
+    assert "8 frames" in state.notice
+
+
+def size_of(path):
+    """The size of what was exported, in the dialog's words."""
+    if path.with_suffix(".json").exists():
+        size = json.loads(path.with_suffix(".json").read_text())["frames"][0]["sourceSize"]
+        return f"at most {size['w']} × {size['h']} px"
+    if path.suffix in (".mp4", ".webm"):
+        import av
+
+        with av.open(str(path)) as container:
+            return f"{container.streams.video[0].width} × {container.streams.video[0].height} px"
+    with Image.open(path / "frame-0000.png" if path.is_dir() else path) as opened:
+        return f"{opened.size[0]} × {opened.size[1]} px"
+
+
+def test_the_size_is_measured_beside_the_dialog(keyed):
+    state, now = keyed.state, iter(range(100))
+    size, times = AnimationSize(clock=lambda: next(now)), [0.0, 0.1, 0.2, 0.4]
+    assert [size.measure(state, times, 40, False) for _ in range(3)] == [None] * 3
+    assert max(size.measure(state, times, 40, False)) == 40
+    assert max(size.measure(state, times, 20, False)) == 20, "at once"
+    assert size.measure(state, times[1:], 40, False) is None, "other poses"
+
+
+def test_the_dialog_loops_if_playback_does(keyed):
+    playback = keyed.state.timeline.keyframe_playback
+    for loop in (False, True):
+        playback.loop = loop
+        keyed.state.part(ExportAnimationDialog).open(keyed.state)
+        keyed.dialog(TITLE, "Cancel")
+        assert AnimationExportOptions.remembered(keyed.state.preferences).loop == loop
+
+
+def test_a_gif_has_the_rate_that_players_show(keyed):
+    assert AnimationExportOptions("GIF", fps=60).written_fps == 50
+    assert frame_count(keyed.state, AnimationExportOptions("GIF", fps=60)) == 21
+    assert frame_count(keyed.state, AnimationExportOptions("APNG", fps=60)) == 25
 
 
 def test_background_and_size(keyed, tmp_path):

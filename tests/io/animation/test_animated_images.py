@@ -4,8 +4,8 @@ from PIL import Image
 
 from akap_editor.errors import InputError
 from akap_editor.io.animation import frames as animation_frames
-from akap_editor.io.animation.frames import frame_durations
 from akap_editor.io.animation.formats import write_animation
+from akap_editor.io.animation.frames import frame_durations
 from akap_editor.io.images import read_image
 from tests.support.animations import played
 

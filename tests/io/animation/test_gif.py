@@ -126,4 +126,3 @@ def test_colors_do_not_flicker(tmp_path):
         assert (other[16:] != first[16:]).any()
     error = np.abs(first[..., :3].astype(int) - still[..., :3])[:16]
     assert error.mean() < 25  # 255 colors for a cube of 256**3: cells with a side of about 40
-

@@ -55,10 +55,35 @@ def test_webm_keeps_transparency_and_the_colour_at_the_rim(tmp_path):
         assert np.abs(frame[inside][:, :3].astype(int) - (220, 40, 30)).max() < 40, "also at the rim"
 
 
-def test_odd_sizes_get_one_more_row_and_column(tmp_path):
-    write_animation(tmp_path / "a.mp4", [disc(0, 47, 63)], 10)
-    came, _ = decoded(tmp_path / "a.mp4")
-    assert came[0].shape == (48, 64, 4)
+def stripes(height, width):
+    """A picture whose last row and column differ from those before, and from each other."""
+    image = np.full((height, width, 4), (40, 90, 200, 255), dtype=np.uint8)
+    image[-9:], image[:, -9:] = (210, 60, 60, 255), (60, 180, 60, 255)
+    return image
+
+
+@pytest.mark.parametrize("suffix", ["mp4", "webm"])
+@pytest.mark.parametrize("shape", [(47, 63), (48, 63), (47, 64), (48, 64), (1, 1), (1, 5)])
+def test_the_row_and_column_added_to_odd_sizes_continue_the_picture(tmp_path, suffix, shape):
+    image, (height, width) = stripes(*shape), shape
+    write_animation(tmp_path / f"a.{suffix}", [image], 10)
+    (came, *_), _ = decoded(tmp_path / f"a.{suffix}", "libvpx-vp9" if suffix == "webm" else None)
+    wanted = np.pad(image, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge")
+    assert came.shape == wanted.shape
+    assert error(came, wanted) < 6
+    assert error(came[-1], wanted[-1]) < 12
+    assert error(came[:, -1], wanted[:, -1]) < 12
+
+
+@pytest.mark.parametrize(("suffix", "background"), [("mp4", 255), ("webm", 0)])
+def test_the_row_and_column_added_to_odd_sizes_continue_the_background(tmp_path, suffix, background):
+    write_animation(tmp_path / f"a.{suffix}", [disc(0, 47, 63)], 10)
+    (came, *_), _ = decoded(tmp_path / f"a.{suffix}", "libvpx-vp9" if suffix == "webm" else None)
+    assert came.shape == (48, 64, 4)
+    assert np.abs(came[-1, :, 3].astype(int) - background).max() < 4
+    assert np.abs(came[:, -1, 3].astype(int) - background).max() < 4
+    if suffix == "mp4":
+        assert came[-1].min() > 250
 
 
 @pytest.mark.parametrize(
