@@ -6,7 +6,6 @@ import pytest
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.document.drawing import Drawing
 from akap_editor.geometry.mesh import TriMesh
-from akap_editor.render.colormaps import diverging, sequential
 from akap_editor.render.overlays import FaceColors, LineSegments, Overlays, Reference
 from akap_editor.render.renderer import TRANSPARENT, Background
 
@@ -140,25 +139,3 @@ def test_faces_are_drawn_in_the_order_given(renderer, shoot, plain):
 
 
 # -- color scales -------------------------------------------------------------------------------------------
-
-
-def luminance(colors):
-    linear = np.where(colors <= 0.04045, colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4)
-    return linear @ [0.2126, 0.7152, 0.0722]
-
-
-def test_the_sequential_scale_grows_lighter_throughout():
-    colors = sequential()
-    assert (np.diff(luminance(colors)) > 0).all()
-    assert ((colors >= 0) & (colors <= 1)).all()
-
-
-def test_the_diverging_scale_is_lightest_in_its_middle_and_even_on_both_sides():
-    light = luminance(diverging())
-    assert (np.diff(light[:32]) > 0).all()
-    assert (np.diff(light[32:]) < 0).all()
-    assert np.abs(light - light[::-1]).max() < 0.06
-    blue, orange = diverging()[[0, -1]]
-    assert blue.argmax() == 2
-    assert orange.argmax() == 0
-    assert np.ptp(diverging()[31]) < 0.05, "no change is no color"

@@ -32,13 +32,13 @@ def parse_textures(text: str) -> dict[str, str]:
 
 def _without_options(value: str) -> str:
     """The file name after the options of a texture, without quotes; it may hold spaces."""
-    words = value.split()
-    while words and words[0].lower() in _OPTION_VALUES:
-        option, rest = words[0].lower(), words[1:]
-        most = _OPTION_VALUES[option]
-        if most == 3:
-            most = next((k for k, word in enumerate(rest[:3]) if not _NUMBER.fullmatch(word)), 3)
-        words, value = rest[most:], value
-        for _ in range(1 + most):
-            value = value.split(maxsplit=1)[1] if len(value.split(maxsplit=1)) == 2 else ""
+    while parts := value.split(maxsplit=1):
+        count = _OPTION_VALUES.get(parts[0].lower())
+        if count is None:
+            break
+        if count == 3:
+            following = value.split()[1:4]
+            count = next((k for k, word in enumerate(following) if not _NUMBER.fullmatch(word)), 3)
+        parts = value.split(maxsplit=1 + count)
+        value = parts[1 + count] if len(parts) > 1 + count else ""
     return value.strip().strip('"')
