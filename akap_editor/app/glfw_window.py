@@ -1,4 +1,4 @@
-"""The GLFW window: its creation, its remembered size and position, and its key callback."""
+"""The GLFW window: its creation, its remembered size and position, its key callback and ImGui's drawing."""
 
 # imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
 from imgui_bundle import imgui  # isort: skip
@@ -105,3 +105,13 @@ def on_key(window: Any, key: int, scancode: int, action: int, mods: int) -> None
         io = imgui.get_io()
         io.add_key_event(_UNUSED_KEY, True)
         io.add_key_event(_UNUSED_KEY, False)
+
+
+def render_imgui() -> None:
+    """End ImGui's frame. A function, so that tests can replace it by one that works with the Test Engine."""
+    imgui.render()
+
+
+def draw_imgui() -> None:
+    """Draw ImGui's part of the frame with OpenGL."""
+    imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())

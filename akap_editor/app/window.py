@@ -33,7 +33,15 @@ from .commands.registry import run_pressed
 from .dialogs import dialogs
 from .dialogs.file_dialog import FileDialog, has_native_dialogs
 from .dialogs.recovery import RecoveryDialog
-from .glfw_window import create_window, on_key, remembered_position, remembered_size, screens
+from .glfw_window import (
+    create_window,
+    draw_imgui,
+    on_key,
+    remembered_position,
+    remembered_size,
+    render_imgui,
+    screens,
+)
 from .panels import side_panel
 from .preferences import Preferences
 from .termination import TerminationSignals, rescue_on_lost_display
@@ -53,11 +61,6 @@ def _precompile() -> None:
 
     precompile()
     precompile_overlaps()
-
-
-def render_imgui() -> None:
-    """End ImGui's frame. A function, so that tests can replace it by one that works with the Test Engine."""
-    imgui.render()
 
 
 class Window:
@@ -295,7 +298,7 @@ class Window:
                 self.state.editor.cancel()
         render_imgui()
         self._scene.draw(self.state, framebuffer, glfw.get_window_size(self.handle), self.scale)
-        imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
+        draw_imgui()
         self.frames += 1
         for action in self.after_draw:
             action()

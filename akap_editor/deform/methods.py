@@ -8,6 +8,7 @@ import inspect
 import reprlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cache, cached_property
 from types import MappingProxyType
 from typing import Any
 
@@ -84,7 +85,7 @@ class MethodPreset:
         """The method's name in `METHODS`."""
         return self.spec.partition(":")[0]
 
-    @property
+    @cached_property
     def parameters(self) -> Parameters:
         """The parameters that differ from the method's defaults."""
         return parse_method(self.spec)[1]
@@ -358,8 +359,14 @@ def make_deformer(method: str, mesh: TriMesh, /, **parameters: Any) -> Deformer:
 
 def default_parameters(method: str) -> Parameters:
     """All parameters of a method with the constructor's defaults. Raises InputError for an unknown method."""
-    arguments = list(inspect.signature(get_method(method).deformer).parameters.values())[1:]
-    return {argument.name: argument.default for argument in arguments}
+    return dict(_constructor_defaults(get_method(method).deformer))
+
+
+@cache  # panels ask in every frame
+def _constructor_defaults(deformer: type[Deformer]) -> tuple[tuple[str, Any], ...]:
+    """Names and default values of a deformer's arguments behind the mesh."""
+    arguments = list(inspect.signature(deformer).parameters.values())[1:]
+    return tuple((argument.name, argument.default) for argument in arguments)
 
 
 def presets() -> list[MethodPreset]:

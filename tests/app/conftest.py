@@ -12,7 +12,7 @@ from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import Drawing, make_drawing
 from akap_editor.editor.editor import Editor
 from tests.support.pictures import figure_picture
-from tests.support.window_driver import Window, WindowDriver, render_unlocked
+from tests.support.window_driver import DeferredPainter, Window, WindowDriver, render_unlocked
 
 
 @pytest.fixture(scope="session")
@@ -35,8 +35,11 @@ def document(drawing: Drawing) -> Document:
 def new_window() -> Iterator[Callable[..., WindowDriver]]:
     """Makes the module's window."""
     made: list[WindowDriver] = []
+    painter = DeferredPainter()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("akap_editor.app.window.render_imgui", render_unlocked)
+        patch.setattr("akap_editor.app.window.draw_imgui", painter.defer)
+        patch.setattr(Window, "screenshot", lambda window: painter.screenshot(window))
 
         def make(**options: object) -> WindowDriver:
             made.append(WindowDriver(Window(null=True, **options)))

@@ -19,6 +19,7 @@ from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.commands.command import Command
 from akap_editor.app.dialogs.file_dialog import FileDialog, FileRequest
+from akap_editor.app.glfw_window import draw_imgui
 from akap_editor.app.jobs.background_thread import BackgroundThread
 from akap_editor.app.jobs.task import Task
 from akap_editor.app.window import Window
@@ -37,6 +38,29 @@ DEADLINE = 60.0  # seconds; a slow machine takes a few
 # locked, a deadlock; a call through ctypes releases the lock.
 render_unlocked = ctypes.CDLL(native.__file__)._ZN5ImGui6RenderEv
 render_unlocked.restype, render_unlocked.argtypes = None, []
+
+_take_screenshot = Window.screenshot
+
+
+class DeferredPainter:
+    """Draws ImGui's part of a frame only if a picture of the frame is taken.
+
+    With software OpenGL the drawing is half the cost of a test, and most tests look at no picture.
+    """
+
+    def __init__(self) -> None:
+        self._is_due = False
+
+    def defer(self) -> None:
+        """Stands in for `draw_imgui`."""
+        self._is_due = True
+
+    def screenshot(self, window: Window) -> NDArray[np.uint8]:
+        """Stands in for `Window.screenshot`."""
+        if self._is_due:
+            draw_imgui()
+            self._is_due = False
+        return _take_screenshot(window)
 
 
 class WindowDriver:

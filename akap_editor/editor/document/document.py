@@ -1,6 +1,7 @@
 """The open document: a drawing and the state that undo restores. Values are replaced, never changed."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +43,7 @@ class EditState:
             object.__setattr__(self, "stiffness", as_floats(self.stiffness, "stiffness"))
         object.__setattr__(self, "crossings", as_crossings(self.crossings))
 
-    @property
+    @cached_property  # asked for several times a frame
     def points(self) -> MeshPoints:
         """The places of the pins on the mesh, (k,), in order."""
         return pin_points(self.pins)
