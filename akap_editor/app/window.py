@@ -33,15 +33,7 @@ from .commands.registry import run_pressed
 from .dialogs import dialogs
 from .dialogs.file_dialog import FileDialog, has_native_dialogs
 from .dialogs.recovery import RecoveryDialog
-from .glfw_window import (
-    create_window,
-    draw_imgui,
-    on_key,
-    remembered_position,
-    remembered_size,
-    render_imgui,
-    screens,
-)
+from .glfw_window import create_window, on_key, remembered_position, remembered_size, screens
 from .panels import side_panel
 from .preferences import Preferences
 from .termination import TerminationSignals, rescue_on_lost_display
@@ -296,9 +288,9 @@ class Window:
             self._recover(recovery, error_message(error))
             if not isinstance(error, AkapError):  # a bug must not cost unsaved work
                 self.state.editor.cancel()
-        render_imgui()
+        glfw_window.render_imgui()
         self._scene.draw(self.state, framebuffer, glfw.get_window_size(self.handle), self.scale)
-        draw_imgui()
+        glfw_window.draw_imgui()
         self.frames += 1
         for action in self.after_draw:
             action()

@@ -37,8 +37,8 @@ def new_window() -> Iterator[Callable[..., WindowDriver]]:
     made: list[WindowDriver] = []
     painter = DeferredPainter()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("akap_editor.app.window.render_imgui", render_unlocked)
-        patch.setattr("akap_editor.app.window.draw_imgui", painter.defer)
+        patch.setattr("akap_editor.app.glfw_window.render_imgui", render_unlocked)
+        patch.setattr("akap_editor.app.glfw_window.draw_imgui", painter.defer)
         patch.setattr(Window, "screenshot", lambda window: painter.screenshot(window))
 
         def make(**options: object) -> WindowDriver:
