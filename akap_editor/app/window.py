@@ -86,11 +86,10 @@ class Window:
         self.frames = 0
         self.after_draw: list[Callable[[], None]] = []
         self._fixed_scale, self._is_drawing, self._has_focus = scale, False, False
-        self._failures_in_a_row = 0
+        self._failures_in_a_row, self._title = 0, ""
         self._drops_input = False  # whether events that came while a job blocked the loop are still queued
         self._frames_due = SETTLE_FRAMES
         self._dropped: list[list[Path]] = []
-        self._title = ""
         # GLFW's null platform has no events to wait for and would return at once
         wait_for_wake: Callable[[float], object] = self._woken.wait
         self.wait_for_events = wait_for_wake if null else glfw.wait_events_timeout
