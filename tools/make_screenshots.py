@@ -19,8 +19,8 @@ from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.commands.palette import Palette
 from akap_editor.app.commands.registry import PALETTE_ITEMS, SHORTCUTS
-from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
-from akap_editor.app.dialogs.export_pose import ExportPoseDialog
+from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
+from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.app.dialogs.first_steps import FirstSteps
 from akap_editor.app.glfw_window import DEFAULT_SIZE
 from akap_editor.app.preferences import Preferences

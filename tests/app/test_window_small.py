@@ -8,7 +8,7 @@ import pytest
 
 from akap_editor.app import files, widgets
 from akap_editor.app.commands import registry as commands
-from akap_editor.app.dialogs.export_pose import ExportPoseDialog
+from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
 from akap_editor.app.glfw_window import MIN_SIZE
 from akap_editor.editor import gestures

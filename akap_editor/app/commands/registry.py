@@ -16,7 +16,7 @@ from .. import file_commands, files
 from ..app_state import AppState
 from ..canvas.view_options import Measure
 from ..dialogs.about import AboutDialog
-from ..dialogs.export_pose import ExportPoseDialog
+from ..dialogs.export.pose import ExportPoseDialog
 from ..panels.method_parameters import with_default_values
 from .command import CTRL, SHIFT, Command, Key, Menu, Submenu, always, has_drawing
 from .keyboard_pointer import CONTEXT_MENU, CROSSHAIR, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN

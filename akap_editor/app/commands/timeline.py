@@ -7,7 +7,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...editor.animation.keyframe_playback import TIME_STEP, KeyframePlayback
 from ...editor.animation.playback import Playback
 from ..app_state import AppState
-from ..dialogs.export_animation import ExportAnimationDialog
+from ..dialogs.export.animation import ExportAnimationDialog
 from ..timeline.timeline import snap_time
 from .command import CTRL, SHIFT, Command, Key, has_drawing
 

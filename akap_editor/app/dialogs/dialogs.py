@@ -7,8 +7,8 @@ from ..app_state import AppState
 from ..commands.shortcuts_page import ShortcutsPage
 from . import message, progress
 from .about import AboutDialog
-from .export_animation import ExportAnimationDialog
-from .export_pose import ExportPoseDialog
+from .export.animation import ExportAnimationDialog
+from .export.pose import ExportPoseDialog
 from .file_dialog import FileDialog
 from .recovery import RecoveryDialog
 from .replace_files import ReplaceFilesDialog

@@ -6,7 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...render.overlays import Rgba
 from .. import widgets
 from ..app_state import AppState
-from ..dialogs.export_animation import ExportAnimationDialog
+from ..dialogs.export.animation import ExportAnimationDialog
 from ..theme import ACCENT, SECONDARY, TEXT
 from . import keyframe_menus
 from .keyframe_track import KeyframeTrack

@@ -13,8 +13,8 @@ from akap_editor.app.commands.palette import Palette
 from akap_editor.app.commands.registry import COMMANDS, MENUS
 from akap_editor.app.commands.shortcuts_page import ShortcutsPage
 from akap_editor.app.dialogs.about import AboutDialog
-from akap_editor.app.dialogs.export_animation import ExportAnimationDialog
-from akap_editor.app.dialogs.export_pose import ExportPoseDialog
+from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
+from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.app.glfw_window import on_key
 from akap_editor.editor import gestures
 from akap_editor.editor.camera import Camera

@@ -6,7 +6,7 @@ from threading import Event
 import numpy as np
 import pytest
 
-from akap_editor.app.dialogs.export_pose import PoseExportOptions, export_pose
+from akap_editor.app.dialogs.export.pose import PoseExportOptions, export_pose
 from akap_editor.app.jobs.pose_export import PoseExportQueue
 from akap_editor.editor import gestures
 from akap_editor.editor.framing import crop_box

@@ -7,7 +7,7 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
-from akap_editor.app.dialogs.export_animation import AnimationExportOptions, export_animation
+from akap_editor.app.dialogs.export.animation import AnimationExportOptions, export_animation
 from akap_editor.editor.session.replay import replay
 
 

@@ -6,17 +6,17 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ...display_text import display_name, file_stem
-from ...editor.document.document import Document
-from ...editor.framing import CROPS, MAX_SIZE, Color, crop_box, output_size
-from ...errors import InputError
-from ...io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of
-from ...io.painter import Painter
-from .. import widgets
-from ..app_state import AppState
-from ..theme import ACCENT
-from .export_widgets import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
-from .file_dialog import FileDialog, FileRequest
+from ....display_text import display_name, file_stem
+from ....editor.document.document import Document
+from ....editor.framing import CROPS, MAX_SIZE, Color, crop_box, output_size
+from ....errors import InputError
+from ....io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of
+from ....io.painter import Painter
+from ... import widgets
+from ...app_state import AppState
+from ...theme import ACCENT
+from ..file_dialog import FileDialog, FileRequest
+from .fields import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
 
 SCALES = (0.5, 1.0, 2.0, 4.0)
 SMALLEST_SCALE, LARGEST_SCALE = 0.01, 100.0

@@ -11,8 +11,7 @@ from imgui_bundle import imgui
 from PIL import Image
 
 from akap_editor.app.commands.command import CTRL, SHIFT
-from akap_editor.app.dialogs.animation_size import AnimationSize
-from akap_editor.app.dialogs.export_animation import (
+from akap_editor.app.dialogs.export.animation import (
     DIALOG_FORMATS,
     PREFERENCE,
     AnimationExportOptions,
@@ -22,6 +21,7 @@ from akap_editor.app.dialogs.export_animation import (
     frame_count,
     size_text,
 )
+from akap_editor.app.dialogs.export.animation_size import AnimationSize
 from akap_editor.app.preferences import Preferences
 from akap_editor.errors import InputError
 from tests.support.window_driver import one_step

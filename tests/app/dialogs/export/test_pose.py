@@ -5,7 +5,7 @@ import pygltflib
 import pytest
 
 from akap_editor.app.commands.command import CTRL, Key
-from akap_editor.app.dialogs.export_pose import ExportPoseDialog
+from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.editor.framing import crop_box
 from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import read_image

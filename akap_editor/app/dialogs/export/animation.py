@@ -8,21 +8,21 @@ from typing import Any, TypeVar
 
 from imgui_bundle import ImVec2, imgui
 
-from ...display_text import display_name, file_stem
-from ...editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
-from ...editor.document.easing import EASING_LABELS, EASINGS
-from ...editor.framing import Color
-from ...errors import InputError
-from ...io.animation.formats import ANIMATION_FORMATS, AnimationFormat, animation_format, write_animation
-from ...io.painter import paint_frames
-from .. import widgets
-from ..app_state import AppState
-from ..jobs.frame_encoder import FrameEncoder
-from ..jobs.task import Progress, Steps, Task
-from ..preferences import Preferences
+from ....display_text import display_name, file_stem
+from ....editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
+from ....editor.document.easing import EASING_LABELS, EASINGS
+from ....editor.framing import Color
+from ....errors import InputError
+from ....io.animation.formats import ANIMATION_FORMATS, AnimationFormat, animation_format, write_animation
+from ....io.painter import paint_frames
+from ... import widgets
+from ...app_state import AppState
+from ...jobs.frame_encoder import FrameEncoder
+from ...jobs.task import Progress, Steps, Task
+from ...preferences import Preferences
+from ..file_dialog import FileDialog, FileRequest
 from .animation_size import AnimationSize
-from .export_widgets import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
-from .file_dialog import FileDialog, FileRequest
+from .fields import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
 
 PREFERENCE = "animation"  # name of the stored options
 

@@ -5,9 +5,9 @@ from typing import Protocol, TypeVar
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ...editor.framing import Color
-from .. import widgets
-from ..theme import SECONDARY
+from ....editor.framing import Color
+from ... import widgets
+from ...theme import SECONDARY
 
 LABEL_WIDTH = 104  # design points
 

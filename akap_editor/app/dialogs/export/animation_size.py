@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from time import perf_counter
 
-from ...editor.framing import Box, fitted_box, frame_box, output_size, union_of_boxes
-from ...errors import InputError
-from ..app_state import AppState
+from ....editor.framing import Box, fitted_box, frame_box, output_size, union_of_boxes
+from ....errors import InputError
+from ...app_state import AppState
 
 _SLICE = 0.01  # seconds of measuring in a frame of the window
 

@@ -1,0 +1,1 @@
+"""The dialogs that export a pose or an animation."""
