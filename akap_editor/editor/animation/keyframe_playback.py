@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 from time import monotonic
 from typing import Literal
 
-from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
 from ..document.crossings import draw_order
 from ..document.document import Document
 from ..document.drawing import Drawing
+from ..document.easing import NEW_EASING
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
 from ..document.pin import Pin
 from ..document.pin_angles import pins_fixed_at_pose
@@ -20,6 +20,7 @@ from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
 from .crossing_blend import CrossingBlend
 from .frames import Frame
+from .keyframe_poses import KeyframePoses
 from .playback import Playback, VisibleRange
 
 TIME_STEP = 0.05  # seconds: times snap to multiples of it, and keys move by it
@@ -54,7 +55,7 @@ class KeyframePlayback(Playback):
         super().__init__(clock)
         self.onion_skin = OnionSkin()
         self._editor = editor
-        self._interpolation = InterpolationCache()
+        self._poses = KeyframePoses()
         self._crossings = CrossingBlend()
         self._session: Session | None = None
         self._reset()
@@ -117,7 +118,7 @@ class KeyframePlayback(Playback):
         session, animation = self._editor.session, self.animation
         if session is None or not animation.keyframes:
             return None
-        return animation_pose(self._interpolation, session.drawing.mesh, animation, time)
+        return self._poses.moment(session.drawing.mesh, animation, time).pose
 
     def _pose_and_crossings(self, time: float) -> tuple[Floats, Ints] | None:
         """The pose (n, 2) at a time and its crossings (s, 2); None without keyframes."""
@@ -125,7 +126,7 @@ class KeyframePlayback(Playback):
         if session is None or not animation.keyframes:
             return None
         mesh, pins = session.drawing.mesh, session.present.pins
-        return animation_crossings(self._interpolation, self._crossings, mesh, pins, animation, time)
+        return animation_crossings(self._poses, self._crossings, mesh, pins, animation, time)
 
     @property
     def content(self) -> tuple[object, ...]:
@@ -237,7 +238,10 @@ class KeyframePlayback(Playback):
         if positions is None and self.is_previewing:
             positions, crossings = session.state.positions, session.state.crossings
         label = "Update Keyframe" if time in self.animation.times else "Add Keyframe"
-        self._edit(label, SetKeyframe(time, positions, None, crossings))
+        edits: list[KeyframeEdit] = [SetKeyframe(time, positions, None, crossings)]
+        if not self.animation.keyframes and self.animation.ease != NEW_EASING:
+            edits.insert(0, SetEasing(None, NEW_EASING))
+        self._edit(label, *edits)
         self.selected, self.time = frozenset({time}), time
 
     def delete_keyframes(self) -> None:
@@ -308,26 +312,18 @@ class KeyframePlayback(Playback):
         if not copy and playhead in moves:
             self.time = moves[playhead]
 
-    def _edit(self, label: str, edit: KeyframeEdit) -> None:
+    def _edit(self, label: str, *edits: KeyframeEdit) -> None:
         session = self._editor.session
         if session is None or self._editor.is_busy:
             return
         session.end_preview()
-        self._editor.apply(label, edit)
+        self._editor.apply(label, *edits)
         if self.is_previewing:
             self._show()
 
 
-def animation_pose(
-    interpolation: InterpolationCache, mesh: TriMesh, animation: Animation, time: float
-) -> Floats:
-    """The pose (n, 2) of an animation of a mesh at a time; there must be keyframes."""
-    start, end, share = animation.keyframes_around(time)
-    return interpolation.pose(mesh, start.positions, end.positions, share)
-
-
 def animation_crossings(
-    interpolation: InterpolationCache,
+    poses: KeyframePoses,
     blend: CrossingBlend,
     mesh: TriMesh,
     pins: Sequence[Pin],
@@ -335,22 +331,16 @@ def animation_crossings(
     time: float,
 ) -> tuple[Floats, Ints]:
     """The pose (n, 2) of an animation at a time and its crossings (s, 2); there must be keyframes."""
-    start, end, share = animation.keyframes_around(time)
-
-    def pose_at(share: float) -> Floats:
-        return interpolation.pose(mesh, start.positions, end.positions, share)
-
+    start, end, share, pose_at = poses.moment(mesh, animation, time)
     return blend.crossings(mesh, pins, start, end, share, pose_at)
 
 
 def animation_frame(
-    document: Document, interpolation: InterpolationCache, time: float, blend: CrossingBlend | None = None
+    document: Document, poses: KeyframePoses, time: float, blend: CrossingBlend | None = None
 ) -> Frame:
     """The frame of a document's animation at a time; there must be keyframes."""
     mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
-    pose, crossings = animation_crossings(
-        interpolation, blend or CrossingBlend(), mesh, pins, animation, time
-    )
+    pose, crossings = animation_crossings(poses, blend or CrossingBlend(), mesh, pins, animation, time)
     return Frame(document.drawing, pose, draw_order(mesh, pins, pose, crossings))
 
 

@@ -10,8 +10,24 @@ EASINGS: dict[str, Callable[[float], float]] = {
     "out": lambda t: t * (2 - t),
     "in-out": lambda t: t * t * (3 - 2 * t),
 }
-KEYFRAME_EASINGS: dict[str, Callable[[float], float]] = {**EASINGS, "hold": lambda t: float(t >= 1)}
+# "smooth" has no function of its own: how the motion passes a keyframe depends on both of its neighbors
+KEYFRAME_EASINGS: dict[str, Callable[[float], float]] = {
+    "smooth": lambda t: t,
+    **EASINGS,
+    "hold": lambda t: float(t >= 1),
+}
+NEW_EASING = "smooth"  # of animations that begin
+# Velocity at the start and at the end of an interval, by its mean velocity; None where its neighbors decide.
+END_VELOCITIES: dict[str, tuple[float, float] | None] = {
+    "smooth": None,
+    "none": (1.0, 1.0),
+    "in": (0.0, 2.0),
+    "out": (2.0, 0.0),
+    "in-out": (0.0, 0.0),
+    "hold": (0.0, 0.0),
+}
 EASING_LABELS = {
+    "smooth": "Smooth",
     "none": "Linear",
     "in": "Ease In",
     "out": "Ease Out",

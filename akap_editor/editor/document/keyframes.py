@@ -64,6 +64,10 @@ class Animation:
         """The times of all keyframes, seconds."""
         return tuple(keyframe.time for keyframe in self.keyframes)
 
+    def easing_after(self, keyframe: Keyframe) -> str:
+        """The name of the easing from a keyframe to the next."""
+        return keyframe.ease or self.ease
+
     def keyframes_around(self, time: float) -> tuple[Keyframe, Keyframe, float]:
         """The keyframes before and after a time, and the eased share of the motion between them, 0 to 1.
 
@@ -75,7 +79,7 @@ class Animation:
             nearest = self.keyframes[max(later - 1, 0)]
             return nearest, nearest, 0.0
         start, end = self.keyframes[later - 1 : later + 1]
-        ease = keyframe_easing_function(start.ease or self.ease)
+        ease = keyframe_easing_function(self.easing_after(start))
         return start, end, ease((time - start.time) / (end.time - start.time))
 
     def with_keyframe(self, keyframe: Keyframe) -> "Animation":

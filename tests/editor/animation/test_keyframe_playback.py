@@ -10,9 +10,9 @@ from akap_editor.editor import gestures
 from akap_editor.editor.animation.keyframe_playback import (
     KeyframePlayback,
     animation_frame,
-    animation_pose,
     stretch_times,
 )
+from akap_editor.editor.animation.keyframe_poses import KeyframePoses
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing
 from akap_editor.editor.document.remesh import remesh_drawing
@@ -44,6 +44,7 @@ def times(pinned):
 
 def test_the_pose_between_keyframes_is_the_eased_in_between(playback, pinned, drawing):
     start, end = pinned.session.present.animation.keyframes
+    playback.set_default_easing("in-out")
     ways = InterpolationCache()
     for moment, share in ((0.0, 0.0), (0.25, 0.15625), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)):
         expected = ways.pose(drawing.mesh, start.positions, end.positions, share)
@@ -57,8 +58,9 @@ def test_the_pose_between_keyframes_is_the_eased_in_between(playback, pinned, dr
     assert playback.pose(0.999) is start.positions
     assert playback.pose(1.0) is end.positions
     document = pinned.session.present_document
-    assert animation_frame(document, ways, 1.0).pose is end.positions
-    assert animation_pose(ways, drawing.mesh, document.state.animation, 0.5) is start.positions
+    poses = KeyframePoses()
+    assert animation_frame(document, poses, 1.0).pose is end.positions
+    assert poses.moment(drawing.mesh, document.state.animation, 0.5).pose is start.positions
 
 
 def test_every_edit_is_undone_redone_and_recorded(playback, pinned, drawing):

@@ -1,0 +1,86 @@
+"""The poses of an animation between its keyframes, by the easing of each interval."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ...deform.pose_interpolation import InterpolationCache
+from ...geometry.mesh import TriMesh
+from ...geometry.validation import Floats
+from ..document.easing import END_VELOCITIES
+from ..document.keyframes import Animation, Keyframe
+from .frames import POSE_TOLERANCE
+from .pose_spline import Interval, PoseSpline
+
+
+class Moment(NamedTuple):
+    """A time between two keyframes.
+
+    share: of the motion from ``start`` to ``end`` that is over, 0 to 1; pose_at: the pose (n, 2) at a share.
+    """
+
+    start: Keyframe
+    end: Keyframe
+    share: float
+    pose_at: Callable[[float], Floats]
+
+    @property
+    def pose(self) -> Floats:
+        """The pose (n, 2)."""
+        return self.pose_at(self.share)
+
+
+class KeyframePoses:
+    """Gives the poses of animations, and keeps what was prepared for the last mesh."""
+
+    def __init__(self) -> None:
+        self._interpolation = InterpolationCache()
+        self._mesh: TriMesh | None = None
+        self._spline: PoseSpline | None = None
+
+    def moment(self, mesh: TriMesh, animation: Animation, time: float) -> Moment:
+        """The moment of an animation of a mesh at a time in seconds; there must be keyframes."""
+        start, end, share = animation.keyframes_around(time)
+        if start is end or animation.easing_after(start) != "smooth":
+
+            def pose_at(share: float) -> Floats:
+                return self._interpolation.pose(mesh, start.positions, end.positions, share)
+
+        else:
+            before, interval, after = _intervals_around(animation, start)
+            spline = self._spline_of(mesh)
+
+            def pose_at(share: float) -> Floats:
+                return spline.pose(before, interval, after, share)
+
+        return Moment(start, end, share, pose_at)
+
+    def _spline_of(self, mesh: TriMesh) -> PoseSpline:
+        if self._spline is None or mesh is not self._mesh:
+            self._mesh, self._spline = mesh, PoseSpline(mesh)
+        return self._spline
+
+
+def _intervals_around(
+    animation: Animation, start: Keyframe
+) -> tuple[Interval | None, Interval, Interval | None]:
+    """The intervals before, at and after that from the keyframe ``start``; None where the motion rests."""
+    keyframes = animation.keyframes
+    index, last = keyframes.index(start), len(keyframes) - 2
+    flows_on = animation.loop and _ends_as_it_begins(animation)
+    before = index - 1 if index > 0 else last if flows_on else None
+    after = index + 1 if index < last else 0 if flows_on else None
+    sides = [None if each is None else _interval(animation, each) for each in (before, after)]
+    return sides[0], _interval(animation, index), sides[1]
+
+
+def _interval(animation: Animation, index: int) -> Interval:
+    start, end = animation.keyframes[index : index + 2]
+    velocity = END_VELOCITIES[animation.easing_after(start)]
+    return Interval(start.positions, end.positions, end.time - start.time, velocity)
+
+
+def _ends_as_it_begins(animation: Animation) -> bool:
+    first, last = animation.keyframes[0], animation.keyframes[-1]
+    return first.time == 0 and np.allclose(first.positions, last.positions, rtol=0.0, atol=POSE_TOLERANCE)

@@ -1,0 +1,246 @@
+"""Interpolation of a sequence of poses whose speed is continuous where one interval follows another."""
+
+from collections import OrderedDict
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from ...deform.pose_interpolation import PoseInterpolation
+from ...geometry.area_bounds import bound_face_areas, worst_area_factor
+from ...geometry.mesh import TriMesh
+from ...geometry.operators import to_complex, to_points
+from ...geometry.validation import Complexes, Floats
+
+_T = TypeVar("_T", Floats, Complexes)
+_MAX_PAIRS = 64  # of poses, for which what was prepared is kept
+_STATIONARY = 1e-3  # share of √area: vertices that move less count as stationary, all with the same weight
+_NO_CENTER = 1e-6  # |1 − eˢ| below which s is a translation: no center to rotate about
+_STEEPEST = 3.0  # times the mean slope of an interval: a cubic with steeper ends may not be monotone
+_BLEND = 0.25  # share of an interval over which the weights of its ends fade
+
+Velocity = tuple[float, float]  # at the start and the end of an interval, in units of its mean velocity
+
+
+class Interval(NamedTuple):
+    """The motion from one pose (n, 2) to the next.
+
+    seconds: its length; velocity: None if it joins its neighbors smoothly, else what its easing prescribes.
+    """
+
+    start: Floats
+    end: Floats
+    seconds: float
+    velocity: Velocity | None = None
+
+
+class _Path(NamedTuple):
+    """What is prepared for two poses a and b (n,).
+
+    edges: (e,) of a; rates: (e,) s of each edge, see `PoseInterpolation`; vertex_rates: (n,) their means;
+    max_factor: the worst area factor of both.
+    """
+
+    a: Complexes
+    b: Complexes
+    edges: Complexes
+    rates: Complexes
+    vertex_rates: Complexes
+    max_factor: float
+
+    @property
+    def ways(self) -> Floats:
+        """Squared distances (n,) of the vertices in both poses."""
+        return np.asarray(np.abs(self.b - self.a) ** 2)
+
+
+class _Slopes(NamedTuple):
+    """Speeds at a key.
+
+    rates, vertex_rates: of the edges (e,) and the vertices (n,), 1/s; velocities: of the vertices (n,), px/s.
+    """
+
+    rates: Complexes
+    vertex_rates: Complexes
+    velocities: Complexes
+
+
+class PoseSpline(PoseInterpolation):
+    """Interpolates a sequence of poses; every edge rotates and grows by a monotone cubic function of time.
+
+    Between two poses an edge is multiplied by e^L(t), where L rises from 0 to s, see `PoseInterpolation`.
+    Both components of L are monotone cubic functions. Their slope at a key is that of the parabola through
+    the key and both of its neighbors, at most three times the lower of the mean slopes on both sides, and 0
+    where these have opposite signs (Fritsch and Carlson, “Monotone Piecewise Cubic Interpolation”, SIAM J.
+    Numer. Anal. 1980). So the speed is continuous, nothing overshoots a pose, and full turns are kept.
+    """
+
+    def __init__(self, mesh: TriMesh) -> None:
+        super().__init__(mesh)
+        self._paths: OrderedDict[tuple[int, int], tuple[Floats, Floats, _Path]] = OrderedDict()
+        self._last_slopes: tuple[tuple[Interval | None, ...], tuple[_Slopes, _Slopes]] | None = None
+
+    def pose(
+        self, before: Interval | None, interval: Interval, after: Interval | None, share: float
+    ) -> Floats:
+        """The pose (n, 2) at a share of the time of ``interval``: at 0 its start itself, at 1 its end itself.
+
+        before, after: the neighbors in time; None if the motion starts or ends at rest there.
+        """
+        if share <= 0 or interval.start is interval.end:
+            return interval.start
+        if share >= 1:
+            return interval.end
+        path = self._path(interval)
+        first, last = self._end_slopes(before, interval, after)
+        seconds = interval.seconds
+        logs = _hermite(share, path.rates, seconds * first.rates, seconds * last.rates)
+        fitted = self._fit(path.edges * np.exp(logs))
+        offsets = self._targets(path, first, last, seconds, share) - fitted
+        offsets *= self._weights_at(path, before, after, share)
+        component = self._mesh.component
+        shift = np.bincount(component, offsets.real) + 1j * np.bincount(component, offsets.imag)
+        placed = to_points(fitted + shift[component])
+        finite = np.isfinite(path.max_factor)
+        return bound_face_areas(self._mesh, placed, path.max_factor) if finite else placed
+
+    def _path(self, interval: Interval) -> _Path:
+        pair = id(interval.start), id(interval.end)
+        if pair not in self._paths:
+            a, b = to_complex(interval.start), to_complex(interval.end)
+            rates = self._rates(a, b)
+            factors = (worst_area_factor(self._mesh, pose) for pose in interval[:2])
+            path = _Path(a, b, self._edges_of(a), rates, self._mean @ rates, max(factors))
+            self._paths[pair] = interval.start, interval.end, path
+            if len(self._paths) > _MAX_PAIRS:
+                self._paths.popitem(last=False)
+        self._paths.move_to_end(pair)
+        return self._paths[pair][2]
+
+    def _end_slopes(
+        self, before: Interval | None, interval: Interval, after: Interval | None
+    ) -> tuple[_Slopes, _Slopes]:
+        """The speeds at both ends of an interval; those of the last one are kept."""
+        intervals = before, interval, after
+        if self._last_slopes is None or not all(map(_is_same, intervals, self._last_slopes[0])):
+            slopes = self._slopes(before, interval), self._slopes(interval, after)
+            self._last_slopes = intervals, slopes
+        return self._last_slopes[1]
+
+    def _slopes(self, left: Interval | None, right: Interval | None) -> _Slopes:
+        """The speeds at the key between two intervals, at least one of which joins its neighbors smoothly."""
+        if left is None or right is None:
+            path = self._path(left or right)  # type: ignore[arg-type]
+            return _Slopes(0 * path.rates, 0 * path.vertex_rates, 0 * path.a)
+        first, second = self._path(left), self._path(right)
+        h = left.seconds, right.seconds
+        speeds = [
+            (first.rates / h[0], second.rates / h[1]),
+            (first.vertex_rates / h[0], second.vertex_rates / h[1]),
+            (_end_velocity(first, 1) / h[0], _end_velocity(second, 0) / h[1]),
+        ]
+        if left.velocity is None and right.velocity is None:
+            rates, vertex_rates = (_passing_components(*pair, h) for pair in speeds[:2])
+            return _Slopes(rates, vertex_rates, _passing(*speeds[2], h))
+        fixed, factor = (0, left.velocity[1]) if left.velocity is not None else (1, right.velocity[0])  # type: ignore[index]
+        rates, vertex_rates = (
+            _limited_components(factor * pair[fixed], pair[1 - fixed]) for pair in speeds[:2]
+        )
+        return _Slopes(rates, vertex_rates, _limited(factor * speeds[2][fixed], speeds[2][1 - fixed]))
+
+    def _targets(self, path: _Path, first: _Slopes, last: _Slopes, seconds: float, share: float) -> Complexes:
+        """Where each vertex (n,) would be on its own spiral, with its velocities at the ends."""
+        slopes = seconds * first.vertex_rates, seconds * last.vertex_rates
+        total = np.expm1(path.vertex_rates)
+        has_center = np.abs(total) > _NO_CENTER
+        total = np.where(has_center, total, 1.0)
+        logs = _hermite(share, path.vertex_rates, *slopes)
+        progress = np.where(has_center, np.expm1(logs) / total, share)
+        growth = np.exp(path.vertex_rates)
+        at_start = np.where(has_center, slopes[0] / total, 1.0)
+        at_end = np.where(has_center, slopes[1] * growth / total, 1.0)
+        way = path.b - path.a
+        corrections = seconds * first.velocities - at_start * way, seconds * last.velocities - at_end * way
+        return np.asarray(path.a + progress * way + _hermite(share, 0 * way, *corrections))
+
+    def _weights_at(
+        self, path: _Path, before: Interval | None, after: Interval | None, share: float
+    ) -> Floats:
+        """Weights (n,) of the vertices that place the pose, with the sum 1 in each component.
+
+        Those that move least in this interval weigh most. At its ends, those that move least in both adjacent
+        intervals do: there the weights, too, are continuous.
+        """
+        weights = self._stillness(path.ways)
+        for neighbor, distance in ((before, share), (after, 1 - share)):
+            fade = max(1 - distance / _BLEND, 0.0) ** 2
+            if neighbor is not None and fade:
+                both = self._stillness(path.ways + self._path(neighbor).ways)
+                weights = weights + fade * (both - weights)
+        return weights
+
+    def _stillness(self, ways: Floats) -> Floats:
+        weights = 1.0 / (ways + (_STATIONARY * self._mesh.length) ** 2)
+        component = self._mesh.component
+        return np.asarray(weights / np.bincount(component, weights)[component])
+
+
+def _is_same(first: Interval | None, second: Interval | None) -> bool:
+    """Whether two intervals are the same; poses are compared by identity."""
+    if first is None or second is None:
+        return first is second
+    return first.start is second.start and first.end is second.end and first[2:] == second[2:]
+
+
+def _end_velocity(path: _Path, end: int) -> Complexes:
+    """Velocities (n,) at the start (0) or the end (1) of a path that takes a second at constant rates."""
+    rates, total = path.vertex_rates, np.expm1(path.vertex_rates)
+    has_center = np.abs(total) > _NO_CENTER
+    factor = np.where(has_center, rates * np.exp(end * rates) / np.where(has_center, total, 1.0), 1.0)
+    return np.asarray(factor * (path.b - path.a))
+
+
+def _hermite(t: float, rise: Complexes, first: Complexes, last: Complexes) -> Complexes:
+    """The cubic from 0 to ``rise`` with the slopes ``first`` at 0 and ``last`` at 1."""
+    return np.asarray(t * (1 - t) ** 2 * first + t * t * (3 - 2 * t) * rise + t * t * (t - 1) * last)
+
+
+def _passing_components(left: Complexes, right: Complexes, seconds: tuple[float, float]) -> Complexes:
+    """The slope at a key by those on both sides, for real and imaginary parts; see `PoseSpline`."""
+
+    def slope(a: Floats, b: Floats) -> Floats:
+        most = _STEEPEST * np.minimum(np.abs(a), np.abs(b))
+        return np.where(a * b > 0, np.clip(_parabola_slope(a, b, seconds), -most, most), 0.0)
+
+    return np.asarray(slope(left.real, right.real) + 1j * slope(left.imag, right.imag))
+
+
+def _passing(left: Complexes, right: Complexes, seconds: tuple[float, float]) -> Complexes:
+    """As `_passing_components` for vectors: 0 where they do not point to the same side."""
+    a, b = np.abs(left), np.abs(right)
+    cosine = (left * right.conj()).real / np.where(a * b > 0, a * b, 1.0)
+    velocity = _parabola_slope(left, right, seconds)
+    most, size = _STEEPEST * np.minimum(a, b), np.abs(velocity)
+    return np.asarray(
+        np.clip(cosine, 0, 1) * np.minimum(1.0, most / np.where(size > 0, size, 1.0)) * velocity
+    )
+
+
+def _parabola_slope(left: _T, right: _T, seconds: tuple[float, float]) -> _T:
+    """The slope at the middle one of three points on a parabola, from the mean slopes on both sides."""
+    return (left * seconds[1] + right * seconds[0]) / sum(seconds)
+
+
+def _limited_components(slope: Complexes, mean: Complexes) -> Complexes:
+    """A slope that is prescribed, as far as a cubic of this mean slope stays monotone with it."""
+
+    def limited(a: Floats, b: Floats) -> Floats:
+        return np.where(a * b > 0, np.sign(b) * np.minimum(np.abs(a), _STEEPEST * np.abs(b)), 0.0)
+
+    return np.asarray(limited(slope.real, mean.real) + 1j * limited(slope.imag, mean.imag))
+
+
+def _limited(velocity: Complexes, mean: Complexes) -> Complexes:
+    """As `_limited_components` for vectors: 0 where they do not point to the same side."""
+    a, b = np.abs(velocity), np.abs(mean)
+    factor = np.minimum(1.0, _STEEPEST * b / np.where(a > 0, a, 1.0))
+    return np.asarray(np.where((velocity * mean.conj()).real > 0, factor * velocity, 0.0))
