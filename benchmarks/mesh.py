@@ -1,6 +1,7 @@
 """Time and quality of meshing a few hundred generated cartoons of 512 × 512 pixels.
 
-Run from the project's root: python benchmarks/mesh.py [--count 300] [--vertices 2000] [--folder DIR]
+Run from the project's root: python benchmarks/mesh.py [--count 300] [--vertices 2000] [--mesher NAME]
+[--folder DIR]
 Every cartoon is drawn from a seed: a body of overlapping ellipses with limbs, hair, holes, islands and dust.
 Times are those from alpha to mesh, without reading files and measuring quality.
 """
@@ -17,6 +18,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from akap_editor.io.images import read_image
+from akap_editor.meshing.meshers import MESHERS, default_mesher
 from akap_editor.meshing.picture_mesh import mesh_picture
 from akap_editor.meshing.quality import mesh_quality, smallest_angles
 
@@ -75,17 +77,18 @@ def main() -> None:
     parser.add_argument("--vertices", type=int, default=2000)
     parser.add_argument("--expand", type=float, default=2.0)
     parser.add_argument("--folder", type=Path, help="the pictures in a folder instead of generated ones")
+    parser.add_argument("--mesher", choices=MESHERS, default=default_mesher())
     options = parser.parse_args()
     if options.folder:
         names = sorted(path for path in options.folder.iterdir() if path.suffix == ".png")
         pictures = ((path.name, np.ascontiguousarray(read_image(path)[..., 3])) for path in names)
     else:
         pictures = ((f"cartoon {seed}", cartoon(seed)) for seed in range(options.count))
-    mesh_picture(cartoon(0))  # starts the child process of Triangle
+    mesh_picture(cartoon(0), mesher=options.mesher)  # starts the child process
     seconds, cpu, qualities, missed, slivers, rows = [], [], [], 0, 0, []
     for name, alpha in pictures:
         started, used = time.perf_counter(), time.process_time()
-        result = mesh_picture(alpha, options.vertices, options.expand)
+        result = mesh_picture(alpha, options.vertices, options.expand, mesher=options.mesher)
         seconds.append(time.perf_counter() - started)
         cpu.append(time.process_time() - used)
         quality = mesh_quality(result.mesh, alpha)

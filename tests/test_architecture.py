@@ -96,6 +96,7 @@ def test_package_keeps_its_import_contracts(package_copy: PackageCopy) -> None:
         ("render-without-window", "render/renderer.py", "from imgui_bundle import imgui"),
         ("compare-through-render", "compare/report.py", "import moderngl"),
         ("triangle", "meshing/triangulate.py", "import triangle"),
+        ("triangle", "meshing/triangulate.py", "import pythoncdt"),
         ("triangle", "app/window.py", "import triangle"),
         ("cvxopt", "deform/islands.py", "from cvxopt import cholmod"),
         ("numba", "deform/islands.py", "from numba import njit"),

@@ -47,22 +47,22 @@ install_packages() {
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install "$@" >/dev/null
 }
 
-# Prints the Python to use: $PYTHON, or the first one that is new enough. Versions after 3.13 are the last choice,
-# because Triangle has no binary wheel for them and needs a C compiler.
+# Prints the Python to use: $PYTHON, or the first one that is new enough.
 find_python() {
-    if [ -n "${PYTHON:-}" ]; then set -- "$PYTHON"; else set -- python3 python3.13 python3.12 python3.11; fi
+    if [ -n "${PYTHON:-}" ]; then
+        set -- "$PYTHON"
+    else
+        set -- python3 python3.15 python3.14 python3.13 python3.12 python3.11
+    fi
     found=''
-    later=''
     for python; do
         version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null) || continue
         case $version in
-            3.11 | 3.12 | 3.13) echo "$python" && return ;;
-            3.1[4-9] | 3.[2-9]?) later=${later:-$python} ;;
+            3.1[1-9] | 3.[2-9]?) echo "$python" && return ;;
             *) found="${found:+$found, }$python $version" ;;
         esac
     done
-    [ -n "$later" ] || fail "akap-editor needs Python 3.11 or later, but found ${found:-no Python as $*}."
-    echo "$later"
+    fail "akap-editor needs Python 3.11 or later, but found ${found:-no Python as $*}."
 }
 
 make_venv() {

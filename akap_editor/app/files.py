@@ -90,7 +90,9 @@ def _begin_document(state: AppState, path: Path, notice: str) -> None:
         remember_file(state, path)
         state.notice = notice or state.notice
 
-    state.begin_task(_opening_task(state, path, partial(open_document, path), show))
+    state.begin_task(
+        _opening_task(state, path, partial(open_document, path, mesher=state.preferences.mesher), show)
+    )
 
 
 def _begin_recording(state: AppState, path: Path) -> None:

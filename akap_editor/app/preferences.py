@@ -9,6 +9,7 @@ import platformdirs
 
 from ..errors import FileError, InputError
 from ..io.atomic import os_error_reason, read_file, resolved, write_atomic
+from ..meshing.meshers import nearest_mesher
 
 CONFIG_FOLDER_VARIABLE = "AKAP_EDITOR_CONFIG"  # environment variable: another folder, e.g. for tests
 FILE_NAME = "preferences.json"
@@ -99,6 +100,17 @@ class Preferences:
         if not isinstance(values, dict):
             raise FileError("open", self._path, f"expected a JSON object, got {type(values).__name__}")
         return values
+
+    # -- the mesher of new drawings --------------------------------------------------------------------------
+
+    @property
+    def mesher(self) -> str:
+        """The mesher that was chosen last, if it is still installed, else the default one."""
+        return nearest_mesher(self.get("mesher", ""))
+
+    @mesher.setter
+    def mesher(self, name: str) -> None:
+        self.put("mesher", name)
 
     # -- recent files ----------------------------------------------------------------------------------------
 

@@ -13,7 +13,7 @@ from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.open_document import open_document
 from ..resources import bundled_drawings, resource
 from . import replay
-from .options import FILE, bundled, check_threshold, threshold_option
+from .options import FILE, bundled, check_threshold, mesher_option, threshold_option
 
 FIRST_DRAWING = "elephant"
 OUTPUT_FOLDER = Path("out")
@@ -35,8 +35,13 @@ def _complete(context: click.Context, parameter: click.Parameter, incomplete: st
     help=f"Open a drawing that comes with the program instead of FILE, e.g. {FIRST_DRAWING}.",
 )
 @threshold_option
+@mesher_option
 def edit(
-    file: Path | None, mask: Path | None, name: str | None = None, threshold: float | None = None
+    file: Path | None,
+    mask: Path | None,
+    name: str | None = None,
+    threshold: float | None = None,
+    mesher: str | None = None,
 ) -> None:
     """Open FILE in a window: a picture, a flat OBJ or OFF mesh, a drawing saved as .akap, or a recording,
     which is then on the timeline.
@@ -57,7 +62,7 @@ def edit(
         ):
             recording = source
         elif source is not None:
-            document = open_document(source, mask, check_threshold(threshold))
+            document = open_document(source, mask, check_threshold(threshold), mesher or _preferred_mesher())
     except InputError as error:
         problem = error
     try:
@@ -72,6 +77,13 @@ def edit(
         recording = resource("assets", "recordings", f"{FIRST_DRAWING}.akaprec")
         animation = OUTPUT_FOLDER / f"{FIRST_DRAWING}.webp"
         replay.replay_recording(recording, None, animation, animation.with_suffix(".png"), fps=24.0, size=480)
+
+
+def _preferred_mesher() -> str:
+    """The mesher that was chosen in the window last."""
+    from ..app.preferences import Preferences, preferences_path
+
+    return Preferences(preferences_path()).mesher
 
 
 def _check_arguments(file: Path | None, mask: Path | None, name: str | None) -> None:

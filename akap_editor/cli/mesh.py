@@ -19,11 +19,12 @@ from ..io.images import has_transparency, read_image, read_mask
 from ..io.mesh_files.obj_off import write_obj
 from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note
 from ..meshing.faint import DEFAULT_THRESHOLD, faint_share, fitting_threshold
+from ..meshing.mesher_process import MESHER_PROCESS
+from ..meshing.meshers import check_mesher
 from ..meshing.picture_mesh import mesh_picture
 from ..meshing.quality import mesh_quality
-from ..meshing.triangle_process import TRIANGLE
 from ..meshing.triangulate import MAX_VERTICES, MIN_VERTICES
-from .options import FILE, make_folder_of
+from .options import FILE, make_folder_of, mesher_option
 
 MAX_EXPANSION = 1000.0  # pixels
 
@@ -73,6 +74,7 @@ class MeshRow:
     help="Alpha threshold: share of full opacity at which the drawing ends.",
 )
 @click.option("--mask", type=FILE, help="Picture that is bright, or opaque, where PICTURE is to be visible.")
+@mesher_option
 @click.option(
     "--json", "as_json", is_flag=True, help="Print the measures as JSON, a list with one object per picture."
 )
@@ -83,15 +85,16 @@ def mesh(
     expand: float,
     threshold: float,
     mask: Path | None,
+    mesher: str | None,
     as_json: bool,
 ) -> None:
     """Make a mesh of each PICTURE, or of all pictures in a folder, and report its quality.
 
     Of several pictures, those that fail are reported and skipped; the exit code is then 1.
     """
-    meshing = _meshing(vertices, expand, threshold)
+    meshing = _meshing(vertices, expand, threshold, mesher)
     if len(pictures) == 1 and not pictures[0].is_dir():
-        TRIANGLE.start()
+        MESHER_PROCESS.start()
         row = measure(pictures[0], output, meshing, mask)
         click.echo(json.dumps([asdict(row)], indent=2) if as_json else _describe(row))
         return
@@ -123,7 +126,7 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
         threshold = meshing.threshold
         if threshold == DEFAULT_THRESHOLD:
             threshold = fitting_threshold(alpha)
-        meshed = mesh_picture(alpha, meshing.vertices, meshing.expand, threshold)
+        meshed = mesh_picture(alpha, meshing.vertices, meshing.expand, threshold, meshing.mesher)
     seconds = time.perf_counter() - started
     if output is not None:
         make_folder_of(output)
@@ -143,12 +146,12 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
     )
 
 
-def _meshing(vertices: int, expand: float, threshold: float) -> Meshing:
+def _meshing(vertices: int, expand: float, threshold: float, mesher: str | None) -> Meshing:
     as_number(vertices, "--vertices", MIN_VERTICES, MAX_VERTICES)
     as_number(expand, "--expand", 0, MAX_EXPANSION)
     if not 0 < threshold < 1:
         raise InputError(f"--threshold: expected a share between 0 and 1, got {threshold:g}")
-    return Meshing(vertices, expand, threshold)
+    return Meshing(vertices, expand, threshold, mesher=check_mesher(mesher))
 
 
 def _expand_folders(pictures: tuple[Path, ...]) -> list[Path]:
@@ -183,7 +186,7 @@ def _outputs(paths: list[Path], folder: Path | None) -> list[Path | None]:
 def _measure_all(
     paths: list[Path], outputs: list[Path | None], meshing: Meshing
 ) -> tuple[list[MeshRow], list[dict[str, Any]]]:
-    TRIANGLE.start()
+    MESHER_PROCESS.start()
     rows, errors = [], []
     with click.progressbar(zip(paths, outputs, strict=True), len(paths), "Meshing", file=sys.stderr) as bar:
         for path, output in bar:

@@ -12,6 +12,7 @@ from ..errors import FileError, InputError
 from ..io.atomic import os_error_reason
 from ..io.export import ExportOptions
 from ..io.images import write_png
+from ..meshing.meshers import MESHERS
 from ..resources import bundled_drawings
 
 FILE = click.Path(path_type=Path)
@@ -34,6 +35,13 @@ threshold_option = click.option(
     type=float,
     metavar="SHARE",
     help="Share of full opacity at which a picture ends; by default 0.5, less for faint pictures.",
+)
+
+
+mesher_option = click.option(
+    "--mesher",
+    type=click.Choice(list(MESHERS)),
+    help="Program that makes the mesh; by default triangle, if it is installed.",
 )
 
 

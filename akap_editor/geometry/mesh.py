@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import Delaunay
 
 from ..errors import InputError
 from .validation import Floats, Ints, as_indices, as_instance, as_points, freeze
@@ -167,6 +166,8 @@ class TriMesh:
         Only edges of the Delaunay triangulation are candidates: it joins each set of points to the point
         nearest to the set.
         """
+        from scipy.spatial import Delaunay
+
         if not self.component.any():
             return np.zeros((0, 2), dtype=np.int32)
         boundary = self.boundary_vertices

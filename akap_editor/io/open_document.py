@@ -22,14 +22,18 @@ MIN_REPORTED_SHARE = 0.01  # of the visible pixels
 
 
 def open_document(
-    path: str | Path, mask: str | Path | None = None, threshold: float | None = None
+    path: str | Path,
+    mask: str | Path | None = None,
+    threshold: float | None = None,
+    mesher: str | None = None,
 ) -> Document:
     """Open a file as a document; the ending of its name decides how.
 
     .akap: the saved document; .akaprec: the document at the end of the recording; .obj, .off: a flat mesh,
     see `read_mesh`; any other: a picture, which is cut out along its alpha and meshed.
     mask: a picture that is bright, or opaque, where the picture is to be visible; threshold: share of full
-    opacity at which the picture ends, None for one that suits it, see `fitting_threshold`.
+    opacity at which the picture ends, None for one that suits it, see `fitting_threshold`; mesher: of a
+    picture, see `make_drawing`.
     Raises InputError, which names the file, or SolverError if a recording cannot be replayed.
     """
     path = as_path(path)
@@ -53,7 +57,7 @@ def open_document(
         if threshold is None:
             threshold = fitting_threshold(image[..., 3])
         with part(0.25, 1.0):
-            drawing = make_drawing(image, threshold=threshold, name=path.stem)
+            drawing = make_drawing(image, threshold=threshold, name=path.stem, mesher=mesher)
         return new_document(drawing)
 
 

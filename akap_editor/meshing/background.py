@@ -2,8 +2,6 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import label
-from scipy.spatial import cKDTree
 
 from ..errors import InputError
 from ..geometry.validation import Floats, as_number, as_picture
@@ -56,6 +54,8 @@ def remove_background(image: NDArray[np.uint8], tolerance: float = DEFAULT_TOLER
 
 def _connected_to_border(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """The pixels of a mask (h, w) that are 4-connected to the border within the mask."""
+    from scipy.ndimage import label
+
     labels, count = label(mask)
     on_border = np.zeros(count + 1, dtype=bool)
     for line in (labels[0], labels[-1], labels[:, 0], labels[:, -1]):
@@ -125,6 +125,8 @@ def _take_nearest(
 
     A color stays if no such pixel is within `_MAX_DISTANCE`.
     """
+    from scipy.spatial import cKDTree
+
     candidates = np.argwhere(mask & (image[..., 3] > 0))
     if len(candidates):
         distance, nearest = cKDTree(candidates).query(pixels, distance_upper_bound=_MAX_DISTANCE)

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from ..geometry.mesh import TriMesh
 from ..geometry.validation import as_number
 from ..progress import announce
+from .mesher_process import MESHER_PROCESS
+from .meshers import check_mesher
 from .outline import cut_out
-from .triangle_process import TRIANGLE
 from .triangulate import MAX_VERTICES, MIN_VERTICES, triangulate
 
 OUTLINE_SHARE = 0.35  # of the requested vertices that may be corners of the outline
@@ -33,17 +34,23 @@ class PictureMesh:
 
 
 def mesh_picture(
-    alpha: NDArray[np.uint8], vertices: int = 2000, expand: float = 2.0, threshold: float = 0.5
+    alpha: NDArray[np.uint8],
+    vertices: int = 2000,
+    expand: float = 2.0,
+    threshold: float = 0.5,
+    mesher: str | None = None,
 ) -> PictureMesh:
     """Triangulate the visible part of a picture with the alpha channel ``alpha`` (h, w) uint8.
 
     vertices: the requested number; expand: pixels by which the outline moves outwards; threshold: share of
-    full opacity at which the picture ends. If an outline that is exact to half a pixel would need more
-    vertices, it is simplified, outwards, as long as no parts join and no hole larger than a face closes.
-    Raises InputError if nothing is visible, for arguments out of range, or if Triangle fails.
+    full opacity at which the picture ends; mesher: see `triangulate`. If an outline that is exact to half a
+    pixel would need more vertices, it is simplified, outwards, as long as no parts join and no hole larger
+    than a face closes.
+    Raises InputError if nothing is visible, for arguments out of range, or if the mesher fails.
     """
     as_number(vertices, "vertices", MIN_VERTICES, MAX_VERTICES)
-    TRIANGLE.start()  # it starts while the outline is computed
+    mesher = check_mesher(mesher)
+    MESHER_PROCESS.start()  # it starts while the outline is computed
     max_points, fewest = OUTLINE_SHARE * vertices, np.inf
     for number in range(MAX_OUTLINES):
         share = 1 - 0.5**number  # an unknown number of rounds, each less likely than the one before
@@ -53,7 +60,7 @@ def mesh_picture(
             break
         fewest = cut.points
         announce(share + 0.25 * 0.5**number, f"Triangulating {cut.points:,} points of the outline")
-        mesh = triangulate(cut.parts, vertices)
+        mesh = triangulate(cut.parts, vertices, mesher)
         if len(mesh.vertices) <= (1 + EXCESS_TOLERANCE) * vertices:
             break
         max_points = 0.8 * fewest

@@ -1,4 +1,4 @@
-"""Quality triangulation of polygons by Triangle (Shewchuk 1996)."""
+"""Quality triangulation of polygons by one of the `meshers`."""
 
 import reprlib
 from collections.abc import Sequence
@@ -12,34 +12,55 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from ..errors import InputError
 from ..geometry.mesh import TriMesh, signed_areas
 from ..geometry.validation import Floats, Ints, as_number
+from .mesher_process import MESHER_PROCESS, Refinement
+from .meshers import PYTHONCDT, check_mesher
 from .outline import Outline
-from .triangle_process import TRIANGLE
 
-MIN_ANGLE = 28.0  # degrees; Triangle provably terminates up to 20.7, and in practice up to 33
+MIN_ANGLE = 28.0  # degrees; meshers provably terminate up to 20.7, and in practice up to 33
+COARSE_MIN_ANGLE = 26.0  # degrees, of PythonCDT where the outline leaves few vertices for good angles
 MIN_VERTICES, MAX_VERTICES = 20, 200_000
 COUNT_TOLERANCE = 0.05  # share by which the number of vertices may differ from the requested one
-MAX_TRIES = 6  # runs of Triangle for one mesh
+MAX_TRIES = 6  # runs of the mesher for one mesh
+COARSE_TRIES = 3  # more runs of PythonCDT
 EDGE_TRIES = 3  # the first runs, which vary the edge length
 INTERIOR_EDGE_FACTOR = 2.0  # edges inside are this much longer than on the outline, see docs/meshing.md
 
 
-def triangulate(parts: Sequence[Outline], vertices: int = 2000) -> TriMesh:
+@dataclass(frozen=True, eq=False)
+class _Try:
+    """One run of the mesher.
+
+    edge: edge length on the outline; max_area: of a face; on_outline: number of vertices passed in; count:
+    number of vertices that came out; result: vertices (count, 2) and faces (m, 3).
+    """
+
+    edge: float
+    max_area: float
+    on_outline: int
+    count: int
+    result: tuple[Floats, Ints]
+
+
+def triangulate(parts: Sequence[Outline], vertices: int = 2000, mesher: str | None = None) -> TriMesh:
     """Make a graded Delaunay mesh of polygons with holes; only the outline can force angles below 28°.
 
     parts: polygons that do not touch one another; vertices: the requested number, met within a few percent
-    unless the outline alone needs more. Faces are in an order for drawing, see `_limbs_last`.
-    Raises InputError for unusable outlines, a number out of range, or if Triangle fails.
+    unless the outline alone needs more; mesher: "triangle", "pythoncdt", or None for the default one. Faces
+    are in an order for drawing, see `_limbs_last`.
+    Raises InputError for unusable outlines, a number out of range, a mesher that is not installed, or if it
+    fails.
     """
     as_number(vertices, "vertices", MIN_VERTICES, MAX_VERTICES)
+    mesher = check_mesher(mesher)
     shape = _union(parts)
-    corners = sum(len(part.outer) + sum(map(len, part.holes)) for part in parts)
+    corners = sum(_count_corners(ring) for part in parts for ring in (part.outer, *part.holes))
     model = _EdgeLengthModel(shape.area, shape.length, corners, vertices)
     tries: list[_Try] = []
     edge = model.edge()
     max_area = _equilateral_area(INTERIOR_EDGE_FACTOR * edge)
     for number in range(1, MAX_TRIES + 1):
         job = _planar_graph(parts, shape, edge)
-        result = TRIANGLE.run(job, f"pq{MIN_ANGLE:g}a{max_area:.9f}")
+        result = MESHER_PROCESS.run(job, Refinement(mesher, MIN_ANGLE, max_area))
         tries.append(_Try(edge, max_area, len(job["vertices"]), len(result[0]), result))
         if abs(tries[-1].count - vertices) <= COUNT_TOLERANCE * vertices or max_area > shape.area:
             break
@@ -56,22 +77,30 @@ def triangulate(parts: Sequence[Outline], vertices: int = 2000) -> TriMesh:
             above = [run.max_area for run in tries if run.edge == edge and run.count > vertices]
             scaled = nearest.max_area * (nearest.count - nearest.on_outline) / (vertices - nearest.on_outline)
             max_area = np.sqrt(nearest.max_area * max(above)) if above else max(scaled, nearest.max_area / 3)
-    return _oriented_mesh(*min(tries, key=lambda run: abs(run.count - vertices)).result)
+    best = min(tries, key=lambda run: abs(run.count - vertices))
+    if mesher == PYTHONCDT and best.count > (1 + COUNT_TOLERANCE) * vertices:
+        best = _coarser(parts, shape, best, vertices)
+    return _oriented_mesh(*best.result)
 
 
-@dataclass(frozen=True, eq=False)
-class _Try:
-    """One run of Triangle.
+def _coarser(parts: Sequence[Outline], shape: shapely.Geometry, best: _Try, vertices: int) -> _Try:
+    """Mesh a detailed outline with few vertices by PythonCDT, which by itself would need many more."""
+    tries = [best]
+    scale = 1.0
+    for _ in range(COARSE_TRIES):
+        edge, max_area = scale * best.edge, scale**2 * best.max_area
+        job = _planar_graph(parts, shape, edge)
+        result = MESHER_PROCESS.run(job, Refinement(PYTHONCDT, COARSE_MIN_ANGLE, max_area, vertices))
+        tries.append(_Try(edge, max_area, len(job["vertices"]), len(result[0]), result))
+        if abs(tries[-1].count - vertices) <= COUNT_TOLERANCE * vertices:
+            break
+        scale *= 2.0 if tries[-1].count > vertices else 0.5
+    return min(tries, key=lambda run: abs(run.count - vertices))
 
-    edge: edge length on the outline; max_area: of a face; on_outline: number of vertices passed in; count:
-    number of vertices that came out; result: vertices (count, 2) and faces (m, 3).
-    """
 
-    edge: float
-    max_area: float
-    on_outline: int
-    count: int
-    result: tuple[Floats, Ints]
+def _count_corners(ring: Floats) -> int:
+    """The number of corners of a ring (p, 2); a repeated point counts once."""
+    return int((ring != np.roll(ring, 1, axis=0)).any(axis=1).sum())
 
 
 def _equilateral_area(edge: float) -> float:
@@ -83,7 +112,7 @@ class _EdgeLengthModel:
     """Predicts the edge length on the outline that gives the requested number of vertices.
 
     Measured, the number of vertices is close to a / e² + b / e + c at edge length e, where a follows from the
-    area, b from the length of the outline and c from its corners; each run of Triangle corrects c.
+    area, b from the length of the outline and c from its corners; each run of the mesher corrects c.
     The factors belong to `MIN_ANGLE` and `INTERIOR_EDGE_FACTOR`.
     """
 
@@ -151,7 +180,7 @@ def _limbs_last(points: Floats, faces: Ints) -> Ints:
 
 
 def _planar_graph(parts: Sequence[Outline], shape: shapely.Geometry, edge: float) -> dict[str, np.ndarray]:
-    """The input of Triangle: points, segments no longer than ``edge``, and one point in each hole."""
+    """The input of a mesher: points, segments no longer than ``edge``, and one point in each hole."""
     rings = [ring for part in parts for ring in (part.outer, *part.holes)]
     points, segments, count = [], [], 0
     for ring in rings:

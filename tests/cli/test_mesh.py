@@ -9,6 +9,7 @@ import pytest
 
 from akap_editor.io.images import write_png
 from akap_editor.io.mesh_files.mesh_drawing import read_mesh
+from akap_editor.meshing.meshers import MESHERS
 
 
 @pytest.fixture
@@ -181,3 +182,14 @@ def test_as_a_program(picture):
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0
     assert "2 parts, 1 hole" in done.stdout
+
+
+def test_the_mesher_is_chosen(run, picture):
+    outputs = [run("mesh", picture, "-o", f"{name}.obj", "--mesher", name) for name in MESHERS]
+    assert [code for code, _, _ in outputs] == [0, 0]
+    assert (
+        read_mesh("triangle.obj").mesh.vertices.tolist() != read_mesh("pythoncdt.obj").mesh.vertices.tolist()
+    )
+    code, _, err = run("mesh", picture, "--mesher", "gmsh")
+    assert code == 2
+    assert "'gmsh' is not one of 'triangle', 'pythoncdt'" in err

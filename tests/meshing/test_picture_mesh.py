@@ -10,6 +10,8 @@ from akap_editor.meshing.picture_mesh import mesh_picture
 from akap_editor.meshing.quality import mesh_quality
 from akap_editor.resources import bundled_drawings
 
+pytestmark = pytest.mark.usefixtures("mesher")
+
 DRAWINGS = {path.stem: path for path in bundled_drawings()}
 
 

@@ -11,6 +11,8 @@ from akap_editor.meshing.quality import mesh_polygons, mesh_quality, smallest_an
 from akap_editor.meshing.triangulate import MIN_ANGLE, triangulate
 from tests.support.generated_cartoons import FAMILIES
 
+pytestmark = pytest.mark.usefixtures("mesher")
+
 CLEAN = ("stars", "rings", "polygons", "blobs")  # everything is wider than a pixel
 
 

@@ -11,6 +11,8 @@ from akap_editor.meshing.outline import Outline, outlines
 from akap_editor.meshing.triangulate import MAX_VERTICES, MIN_VERTICES, triangulate
 from akap_editor.resources import bundled_drawings
 
+pytestmark = pytest.mark.usefixtures("mesher")
+
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
 CENTER = np.array([50.0, 50.0])
 DIAMOND = np.array([[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])

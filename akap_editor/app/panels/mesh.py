@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...editor.document.drawing import Meshing
 from ...geometry.mesh import TriMesh
+from ...meshing import meshers
 from ...meshing.background import DEFAULT_TOLERANCE
 from ...meshing.quality import smallest_angles
 from .. import widgets
@@ -53,6 +54,7 @@ def draw(state: AppState, scale: float) -> None:
     )
     if threshold is not None:
         state.remesher.request(replace(meshing, threshold=round(threshold) / 100), dragging=True)
+    _draw_mesher(state, meshing)
     for label, value, tooltip in _figures(state.document.drawing.mesh):
         widgets.row(label, value, tooltip)
 
@@ -78,6 +80,27 @@ def _draw_background(state: AppState, meshing: Meshing) -> None:
             state.notice = ""
             state.remesher.request(replace(meshing, background=DEFAULT_TOLERANCE))
         widgets.show_tooltip("Makes the area transparent that touches the border and has its color.")
+
+
+def _draw_mesher(state: AppState, meshing: Meshing) -> None:
+    """Draw the choice of the mesher, for new drawings, too; nothing if only one is installed."""
+    names = meshers.installed_meshers()
+    if len(names) < 2:
+        return
+    imgui.align_text_to_frame_padding()
+    imgui.text_colored(ImVec4(*SECONDARY), "Mesher")
+    widgets.show_tooltip(
+        "Program that makes the mesh. Triangle's license allows non-commercial use only; "
+        "PythonCDT may be used for everything."
+    )
+    imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
+    imgui.set_next_item_width(widgets.FULL)
+    current = names.index(meshers.nearest_mesher(meshing.mesher))
+    is_changed, index = imgui.combo("##Mesher", current, [meshers.MESHERS[name] for name in names])
+    if is_changed:
+        state.notice = ""
+        state.preferences.mesher = names[index]
+        state.remesher.request(replace(meshing, mesher=names[index]))
 
 
 def _slider(

@@ -1,6 +1,6 @@
 """Drawings: a picture and the mesh that carries it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +11,7 @@ from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import as_channel, as_instance, as_picture, as_points, freeze
 from ...meshing.background import remove_background
+from ...meshing.meshers import check_mesher, default_mesher, nearest_mesher
 from ...meshing.picture_mesh import mesh_picture
 from ...progress import announce, part
 
@@ -24,13 +25,15 @@ class Meshing:
     vertices ("Detail"): wanted number of mesh vertices; expand ("Margin"): pixels by which the outline is
     moved outwards, so that soft edges lie inside the mesh and parts that are close together join; threshold
     ("Alpha threshold"): share of full opacity at which the picture ends; background: tolerance with which a
-    plain background was removed (see `remove_background`), None if none was.
+    plain background was removed (see `remove_background`), None if none was; mesher: the program that makes
+    the mesh, see `meshers`.
     """
 
     vertices: int = 2000
     expand: float = 2.0
     threshold: float = 0.5
     background: float | None = None
+    mesher: str = field(default_factory=default_mesher)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,17 +84,20 @@ def make_drawing(
     threshold: float = Meshing.threshold,
     background: float | None = Meshing.background,
     name: str = "untitled",
+    mesher: str | None = None,
 ) -> Drawing:
     """Cut a picture out along its alpha and triangulate it.
 
     image: (h, w, 4) uint8 RGBA, straight alpha; mask: (h, w) uint8, 255 where the picture is fully visible;
-    for the other arguments see `Meshing`. The parts of the mesh are tied: a part without pins moves with the
-    nearest part that has one. Raises InputError on bad arguments, or if nothing of the picture is visible.
+    mesher: "triangle", "pythoncdt", or None for the default one; for the other arguments see `Meshing`. The
+    parts of the mesh are tied: a part without pins moves with the nearest part that has one. Raises
+    InputError on bad arguments, or if nothing of the picture is visible.
     """
     image = as_picture(image, "image")
     if mask is not None:
         image = apply_mask(image, mask)
-    return remove_background_and_mesh(image, Meshing(vertices, expand, threshold, background), name)
+    meshing = Meshing(vertices, expand, threshold, background, check_mesher(mesher))
+    return remove_background_and_mesh(image, meshing, name)
 
 
 def remove_background_and_mesh(image: NDArray[np.uint8], meshing: Meshing, name: str) -> Drawing:
@@ -113,9 +119,13 @@ def mesh_drawing(
 ) -> Drawing:
     """Make a drawing of the visible part of a picture (h, w, 4) uint8.
 
-    original: see `Drawing`. Raises InputError if nothing of the picture is visible.
+    original: see `Drawing`. If the mesher is not installed, another makes the mesh. Raises InputError if
+    nothing of the picture is visible.
     """
-    picture_mesh = mesh_picture(image[..., 3], meshing.vertices, meshing.expand, meshing.threshold)
+    meshing = replace(meshing, mesher=nearest_mesher(meshing.mesher))
+    picture_mesh = mesh_picture(
+        image[..., 3], meshing.vertices, meshing.expand, meshing.threshold, meshing.mesher
+    )
     mesh = replace(picture_mesh.mesh, tied=True)
     height, width = image.shape[:2]
     uv = (mesh.vertices / [width, height]).astype(np.float32)

@@ -86,7 +86,8 @@ def drawing_header(drawing: Drawing) -> dict[str, Any]:
         "vertices": len(drawing.mesh.vertices),
         "mesh": mesh_digest(drawing.mesh),
     }
-    return header if drawing.meshing is None else {**header, "wanted": drawing.meshing.vertices}
+    made = drawing.meshing
+    return header if made is None else {**header, "wanted": made.vertices, "mesher": made.mesher}
 
 
 def opening_edits(document: Document) -> list[Edit]:

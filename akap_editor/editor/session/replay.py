@@ -2,14 +2,16 @@
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 from ...deform.deformer import StepResult
 from ...errors import InputError, SolverError
+from ...meshing.meshers import TRIANGLE
 from ..document.document import EditState, new_document
 from ..document.drawing import Drawing
 from ..document.settings import Settings
-from .edits import EDITS, ReplayTarget, SetPins, SetSettings
+from .edits import EDITS, Remesh, ReplayTarget, SetPins, SetSettings
 from .recording import Event, Recording, mesh_digest
 from .session import Session
 
@@ -57,6 +59,7 @@ class Replay:
     ) -> None:
         self.session: Session | None = None
         self._recording, self._drawing, self._change = recording, drawing, change
+        self._target: ReplayTarget
         self._now = 0.0  # seconds of the recording
         self._end: float | None = None  # when the replay ended, by the system's clock
         # States to which later events return, by line, with their lines in the session's own recording.
@@ -67,13 +70,13 @@ class Replay:
 
         Raises InputError with the number of the event's line, and SolverError.
         """
-        target = replay_target(self._recording, self._drawing)
+        self._target = replay_target(self._recording, self._drawing)
         returned_to = {event["line"] for event in self._recording.events if event["do"] == "return"}
         for line, event in enumerate(self._recording.events, start=2):
             self._now = float(event["t"])
             before = None if self.session is None else self.session.state.positions
             try:
-                step = self._replay_event(event, target)
+                step = self._replay_event(event)
             except (*_BAD_EVENT, InputError) as error:
                 raise InputError(
                     f"recording line {line}: cannot be replayed, {_shorten(str(error))}"
@@ -86,7 +89,7 @@ class Replay:
             is_jump = step is None and before is not None and self.session.state.positions is not before
             yield ReplayedEvent(self._now, self.session.state, step, is_jump)
 
-    def _replay_event(self, event: Event, target: ReplayTarget) -> StepResult | None:
+    def _replay_event(self, event: Event) -> StepResult | None:
         """Replay one event; returns the result of a step, None for other events."""
         do = event["do"]
         if do == SetSettings.name and self._change is not None:
@@ -105,10 +108,12 @@ class Replay:
         elif do in _GESTURES:
             _GESTURES[do](session, event)
         else:
-            edit = EDITS[do].from_json(event, target, session.drawing)
+            edit = EDITS[do].from_json(event, self._target, session.drawing)
             if isinstance(edit, SetPins):
                 session.stop_motion()  # the recorded targets are those that the pins were fixed at
             session.apply(edit)
+            if isinstance(edit, Remesh) and edit.meshing.mesher != event.get("mesher", TRIANGLE):
+                self._target = replace(self._target, same_mesh=False)  # the recorded one is not installed
         return None
 
     def clock(self) -> float:

@@ -16,6 +16,7 @@ from ...editor.document.drawing import Drawing, Meshing
 from ...errors import FileError, InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
+from ...meshing.meshers import TRIANGLE, check_known
 from ..atomic import as_path, read_file, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
 from .archive import Archive, ArchiveEntry, check_expanded, pack
@@ -227,6 +228,7 @@ def _describe_meshing(drawing: Drawing) -> Json:
         "vertices": int(meshing.vertices),
         "expand": float(meshing.expand),
         "threshold": float(meshing.threshold),
+        "mesher": meshing.mesher,
         **({"background": float(meshing.background or 0.0)} if is_background_removed else {}),
     }
 
@@ -283,7 +285,11 @@ def _read_meshing(record: Json) -> Meshing:
     background = numbers([record["background"]], "background")[0] if "background" in record else None
     vertices = require(record, "vertices", int)
     meshing = Meshing(
-        vertices, float(expand), float(threshold), None if background is None else float(background)
+        vertices,
+        float(expand),
+        float(threshold),
+        None if background is None else float(background),
+        check_known(record.get("mesher", TRIANGLE)),
     )
     _check_meshing(meshing)
     return meshing

@@ -7,6 +7,7 @@ from ...editor.document.document import new_document
 from ...editor.document.drawing import Drawing, make_drawing
 from ...editor.session.recording import Recording, mesh_digest, parse_recording
 from ...errors import InputError, file_errors
+from ...meshing.meshers import TRIANGLE, nearest_mesher
 from ...resources import bundled_drawings
 from ..atomic import read_file, write_atomic
 from ..images import read_image
@@ -71,8 +72,9 @@ def recorded_drawing(recording: Recording) -> Drawing:
             f"({', '.join(bundled)}), got {name!r}; name its file with --drawing"
         )
     image = read_image(bundled[name])
-    drawing = make_drawing(image, name=name)
+    mesher = nearest_mesher(header.get("mesher", TRIANGLE))
+    drawing = make_drawing(image, name=name, mesher=mesher)
     count = header.get("wanted", header.get("vertices"))
     if header.get("mesh") != mesh_digest(drawing.mesh) and type(count) is int:
-        drawing = make_drawing(image, vertices=count, name=name)
+        drawing = make_drawing(image, vertices=count, name=name, mesher=mesher)
     return drawing

@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
 
 from ...errors import FileError, InputError
 from ..atomic import Write
@@ -100,6 +99,8 @@ def _encode(av: Any, codec: _Codec, frames: Iterable[Picture], fps: float) -> by
 
 def _prepared(image: Picture, has_transparency: bool) -> Picture:
     """A frame of even size, without invisible colors that would bleed into visible pixels."""
+    from scipy.ndimage import distance_transform_edt
+
     image = np.pad(image, ((0, image.shape[0] % 2), (0, image.shape[1] % 2), (0, 0)), mode="edge")
     if not has_transparency:
         alpha = image[..., 3:].astype(np.uint16)

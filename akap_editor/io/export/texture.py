@@ -3,8 +3,6 @@
 import re
 
 import numpy as np
-from scipy.ndimage import maximum_filter
-from scipy.spatial import cKDTree
 
 from ...display_text import display_text
 from ...editor.document.drawing import Drawing
@@ -25,6 +23,9 @@ def bleed(image: Picture) -> Picture:
     Alpha and visible pixels stay as they are. Renderers filter textures with straight alpha, so that the
     color of invisible neighbors shows at edges.
     """
+    from scipy.ndimage import maximum_filter
+    from scipy.spatial import cKDTree
+
     visible = image[..., 3] > 0
     result = image.copy()
     if not visible.any():

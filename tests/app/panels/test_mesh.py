@@ -1,5 +1,7 @@
 """The Mesh section of the side panel."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -8,6 +10,9 @@ from akap_editor.app import files
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing, make_drawing
 from akap_editor.io.mesh_files.mesh_drawing import read_mesh
+from akap_editor.meshing.meshers import PYTHONCDT
+from akap_editor.resources import resource
+from tests.support.meshers import pretend_installed
 from tests.support.window_driver import WindowDriver
 
 
@@ -111,3 +116,34 @@ def test_a_mesh_from_a_file_that_is_not_on_its_picture_says_so(opened, tmp_path)
     opened.settle()
     slide(opened, "##Margin", 0.1, 0.5)
     assert "cannot be made anew" in opened.state.notice
+
+
+def test_another_mesher_is_kept_for_new_drawings(opened):
+    depth, before = opened.session.history.depth, opened.document.drawing
+
+    def choose(hand):
+        hand.set_ref("Panel")
+        hand.combo_click("##Mesher/PythonCDT")
+
+    opened.do(choose)
+    drawing = opened.document.drawing
+    assert drawing.meshing == replace(before.meshing, mesher=PYTHONCDT)
+    assert drawing.mesh.vertices.tolist() != before.mesh.vertices.tolist()
+    assert opened.session.history.depth == depth + 1
+    assert opened.state.preferences.mesher == PYTHONCDT
+    files.open_path(opened.state, resource("assets", "drawings", "bar.png"))
+    opened.settle()
+    opened.dialog("Unsaved changes", "Don't Save")
+    opened.settle()
+    assert opened.document.drawing.meshing.mesher == PYTHONCDT
+
+
+def test_without_a_choice_no_mesher_is_shown(opened, monkeypatch):
+    def shows_choice():
+        shown = []
+        opened.do(lambda hand: shown.append(hand.item_exists("//Panel/##Mesher")))
+        return shown[0]
+
+    assert shows_choice()
+    pretend_installed(monkeypatch, PYTHONCDT)
+    assert not shows_choice()

@@ -20,14 +20,18 @@ from akap_editor.editor.session.edits import (
     ReplayTarget,
     SetKeyframe,
     SetPins,
+    SetPose,
     SetSettings,
     SetTargets,
 )
 from akap_editor.editor.session.pin_edits import add_pin
+from akap_editor.editor.session.recording import parse_recording
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
+from akap_editor.meshing.meshers import MESHERS, PYTHONCDT, TRIANGLE
 from tests.support.edit_examples import EDIT_EXAMPLES
 from tests.support.editor_driver import Ticks, bits, replayed_state
+from tests.support.meshers import pretend_installed
 
 CASES = {**EDIT_EXAMPLES, "another method": lambda _: SetSettings(Settings.parse("arap:iterations=3"))}
 ONE_MESH = {"stiffness", "pose", "crossings"}  # edits with arrays that belong to vertices or faces
@@ -174,6 +178,48 @@ def test_a_prepared_mesh_is_taken_over(session):
     drawing = remesh_drawing(session.drawing, replace(session.drawing.meshing or Meshing(), vertices=200))
     apply_in_gesture(session, Remesh.from_drawing(drawing))
     assert session.drawing is drawing
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+def test_a_recorded_mesh_is_made_by_the_same_mesher_again(session, drawing, mesher, monkeypatch):
+    """Whichever is the default one there."""
+    apply_in_gesture(session, Remesh(replace(drawing.meshing, vertices=200, mesher=mesher)))
+    for order in (tuple(MESHERS), tuple(MESHERS)[::-1]):
+        pretend_installed(monkeypatch, *order)
+        assert bits(replayed_state(session.recording, drawing)) == bits(session.state)
+
+
+def test_a_mesh_recorded_before_there_was_a_choice_is_one_of_triangle(session, drawing):
+    apply_in_gesture(session, Remesh(replace(drawing.meshing, vertices=200, mesher=TRIANGLE)))
+    recording = parse_recording(session.recording.to_text())
+    for event in recording.events:
+        event.pop("mesher", None)
+    assert bits(replayed_state(recording, drawing)) == bits(session.state)
+
+
+def test_without_the_recorded_mesher_pins_are_where_they_were(session, drawing, monkeypatch):
+    apply_in_gesture(session, Remesh(replace(drawing.meshing, vertices=200, mesher=TRIANGLE)))
+    session.begin("Add pin")
+    add_pin(session, (62.0, 40.0))
+    session.commit()
+    expected, rest = (
+        session.state,
+        session.drawing.mesh.evaluate(session.state.points, session.drawing.mesh.vertices),
+    )
+    pretend_installed(monkeypatch, PYTHONCDT)
+    state = replayed_state(session.recording, drawing)
+    mesh = state.drawing.mesh
+    assert state.drawing.meshing.mesher == PYTHONCDT
+    assert [pin.id for pin in state.pins] == [pin.id for pin in expected.pins]
+    np.testing.assert_allclose(mesh.evaluate(state.points, mesh.vertices), rest, atol=1e-6)
+
+
+def test_without_the_recorded_mesher_arrays_of_its_mesh_are_refused(session, drawing, monkeypatch):
+    apply_in_gesture(session, Remesh(replace(drawing.meshing, vertices=200, mesher=TRIANGLE)))
+    apply_in_gesture(session, SetPose(session.state.positions + 1.0))
+    pretend_installed(monkeypatch, PYTHONCDT)
+    with pytest.raises(InputError, match=r"recording line \d+: .*a pose fits only the mesh that"):
+        replayed_state(session.recording, drawing)
 
 
 def test_pins_set_while_the_drawing_moves_are_fixed_at_the_pose(session):

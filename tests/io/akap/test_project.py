@@ -23,6 +23,7 @@ from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io import atomic
 from akap_editor.io.akap.project import has_changed_on_disk, load, save
 from akap_editor.io.images import encode_png, read_image
+from akap_editor.meshing.meshers import PYTHONCDT, TRIANGLE
 
 # What happens to a file after it was saved, and whether that is a change.
 EVENTS = {
@@ -565,7 +566,7 @@ def test_other_compression_is_refused(saved, reopen, method):
 
 def test_ties_and_how_the_mesh_was_made_come_back(make_document, picture, tmp_path):
     document = make_document(picture)
-    for tied, meshing in ((True, Meshing(500, 3.5, 0.25)), (False, None)):
+    for tied, meshing in ((True, Meshing(500, 3.5, 0.25, None, PYTHONCDT)), (False, None)):
         mesh = replace(document.drawing.mesh, tied=tied)
         drawing = replace(document.drawing, mesh=mesh, meshing=meshing)
         save(replace(document, drawing=drawing), tmp_path / "a.akap")
@@ -583,6 +584,17 @@ def test_a_mesh_of_which_nothing_is_said_is_tied(saved, reopen):
     record["mesh"]["made"] = {"vertices": 10, "expand": 2, "threshold": "half"}
     with pytest.raises(InputError, match=r"expected expand and threshold to be numbers, got .*'half'"):
         reopen(pack(saved | {"document.json": json.dumps(record).encode()}))
+
+
+def test_a_mesh_of_which_no_mesher_is_said_was_made_by_triangle(saved, reopen):
+    record = json.loads(saved["document.json"])
+    record["mesh"]["made"] = {"vertices": 10, "expand": 2, "threshold": 0.5}
+    opened = reopen(pack(saved | {"document.json": json.dumps(record).encode()}))
+    assert opened.drawing.meshing == Meshing(10, 2.0, 0.5, None, TRIANGLE)
+    for mesher in ("gmsh", 3, None):
+        record["mesh"]["made"]["mesher"] = mesher
+        with pytest.raises(InputError, match="mesher: expected one of triangle, pythoncdt, got"):
+            reopen(pack(saved | {"document.json": json.dumps(record).encode()}))
 
 
 def test_a_removed_background_comes_back_with_its_tolerance(tmp_path):

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....geometry.validation import Floats
+from ....meshing.meshers import TRIANGLE, check_known, nearest_mesher
 from ...document.crossings import as_crossings, crossings_in_pose
 from ...document.document import EditState
 from ...document.drawing import Drawing, Meshing
@@ -87,7 +88,9 @@ class Remesh(Edit):
     """Give the picture another mesh; pins and pose stay.
 
     prepared: the drawing from `remesh_drawing` and the state from `transfer_state`, if they were computed
-    before; the state must have been transferred from the one that the edit is applied to.
+    before; the state must have been transferred from the one that the edit is applied to. A recorded edit
+    whose mesher is not installed gives a mesh of another one. Recordings without a mesher are of times when
+    there was only Triangle.
     """
 
     name = "mesh"
@@ -119,5 +122,6 @@ class Remesh(Edit):
                 target.scale * float(event["expand"]),
                 float(event["threshold"]),
                 None if tolerance is None else float(tolerance),
+                nearest_mesher(check_known(event.get("mesher", TRIANGLE))),
             )
         )

@@ -1,4 +1,4 @@
-"""The child process that runs Triangle, see `triangle_worker`."""
+"""The child process that runs the meshers, see `mesher_worker`."""
 
 import atexit
 import contextlib
@@ -7,18 +7,34 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import InputError
 from ..geometry.validation import Floats, Ints
-from .triangle_worker import read_message, write_message
+from .mesher_worker import read_message, write_message
+from .meshers import MESHERS
 
-TIME_LIMIT = 30.0  # seconds for one run of Triangle
+TIME_LIMIT = 30.0  # seconds for one run of a mesher
+WORKER_COMMAND = "mesher-worker"  # hidden command of a bundle, which has no Python to run scripts with
 
 
-class TriangleProcess:
-    """A child process for Triangle; a job that crashes or hangs ends only the child.
+class Refinement(NamedTuple):
+    """How a mesher refines a mesh.
+
+    mesher: its name in `MESHERS`; min_angle: of the faces, in degrees; max_area: of a face, in square pixels;
+    most: number of vertices above which PythonCDT removes vertices that it inserted, as angles allow.
+    """
+
+    mesher: str
+    min_angle: float
+    max_area: float
+    most: int = 2**31
+
+
+class MesherProcess:
+    """A child process for meshers; a job that crashes or hangs ends only the child.
 
     It stays alive between jobs, because its start takes longer than most of them. May be used by several
     threads: jobs run one after the other.
@@ -32,32 +48,35 @@ class TriangleProcess:
         """Start the child unless it is running, and return it without waiting until it is ready."""
         with self._lock:
             if self._process is None or self._process.poll() is not None:
-                script = Path(__file__).with_name("triangle_worker.py")
+                is_bundle = getattr(sys, "frozen", False)
+                worker = WORKER_COMMAND if is_bundle else str(Path(__file__).with_name("mesher_worker.py"))
                 self._process = subprocess.Popen(
-                    [sys.executable, str(script)],
+                    [sys.executable, worker],
                     stdin=subprocess.PIPE,
                     stdout=subprocess.PIPE,
                     stderr=subprocess.DEVNULL,
+                    creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),  # no console on Windows
                 )
             return self._process
 
     def run(
-        self, graph: dict[str, np.ndarray], switches: str, limit: float = TIME_LIMIT
+        self, graph: dict[str, np.ndarray], refinement: Refinement, limit: float = TIME_LIMIT
     ) -> tuple[Floats, Ints]:
         """Triangulate a planar graph: vertices (n, 2) and faces (m, 3).
 
-        graph: "vertices" (p, 2), "segments" (s, 2) indices, "holes" (h, 2), a point in each; switches: of
-        Triangle's command line. Raises InputError if Triangle crashes, needs more than ``limit`` seconds, or
-        finds no faces.
+        graph: "vertices" (p, 2), "segments" (s, 2) indices, "holes" (h, 2), a point in each.
+        Raises InputError if the mesher crashes, needs more than ``limit`` seconds, or finds no faces.
         """
         if not np.isfinite(graph["vertices"]).all():
             raise InputError("outlines: expected finite coordinates")
-        answer = self._exchange({**graph, "switches": np.array(switches)}, limit)
+        job = {name: np.array(value) for name, value in refinement._asdict().items()}
+        title = MESHERS[refinement.mesher]
+        answer = self._exchange({**graph, **job}, title, limit)
         if not len(answer["triangles"]) or not np.isfinite(answer["vertices"]).all():
-            raise InputError("the outline cannot be triangulated: Triangle returned no faces")
+            raise InputError(f"the outline cannot be triangulated: {title} returned no faces")
         return answer["vertices"], answer["triangles"]
 
-    def _exchange(self, job: dict[str, np.ndarray], limit: float) -> dict[str, np.ndarray]:
+    def _exchange(self, job: dict[str, np.ndarray], title: str, limit: float) -> dict[str, np.ndarray]:
         """Send a job and wait for the answer."""
         with self._lock:
             process = self.start()
@@ -83,7 +102,7 @@ class TriangleProcess:
                 reason = (
                     f"took longer than {limit:g} s" if timed_out.is_set() else "stopped without an answer"
                 )
-                raise InputError(f"the outline cannot be triangulated: Triangle {reason}")
+                raise InputError(f"the outline cannot be triangulated: {title} {reason}")
             return answer
 
     def close(self) -> None:
@@ -98,5 +117,5 @@ class TriangleProcess:
                         pipe.close()
 
 
-TRIANGLE = TriangleProcess()  # of the program
-atexit.register(TRIANGLE.close)
+MESHER_PROCESS = MesherProcess()  # of the program
+atexit.register(MESHER_PROCESS.close)
