@@ -107,9 +107,9 @@ def _draw_caption(
     first_line = [f"E_area {distortion.area:.3f}", f"E_angle {distortion.angle:.3f}"]
     if distortion.flipped:
         first_line.append(f"{distortion.flipped} flipped")
-    second_line = [f"Pins off {session.pin_error():.2f} px"]
+    second_line = [f"Pin error {session.pin_error():.2f} px"]
     if session.last_step is not None:
-        second_line.append(f"{1e3 * session.last_step.report.seconds:.1f} ms a step")
+        second_line.append(f"{1e3 * session.last_step.report.seconds:.1f} ms per step")
     width = right - left - 24 * scale
     numbers = "\n".join(_fit_into(width, line) for line in (first_line, second_line))
     height = imgui.calc_text_size(numbers).y
