@@ -14,9 +14,11 @@ from .compare import compare_command
 from .edit import edit
 from .export import export_command
 from .info import info
+from .integrate import integrate_command
 from .mesh import mesh
 from .render import render
 from .replay import replay_command
+from .thumbnail import thumbnail
 
 
 class _Main(click.Group):
@@ -40,7 +42,18 @@ def cli() -> None:
     """Deform cartoons. `akap-editor FILE` opens a picture with a transparent background, or a drawing."""
 
 
-for command in (edit, render, replay_command, compare_command, export_command, info, bench, mesh):
+for command in (
+    edit,
+    render,
+    replay_command,
+    compare_command,
+    export_command,
+    info,
+    bench,
+    mesh,
+    integrate_command,
+    thumbnail,
+):
     cli.add_command(command)
 
 

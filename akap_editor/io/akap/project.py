@@ -45,6 +45,7 @@ MIMETYPE = b"application/x-akap"
 DOCUMENT_FORMAT = "akap"
 DOCUMENT_VERSION = 1
 STIFFNESS_ENTRY = "stiffness"  # a factor for each face
+THUMBNAIL_ENTRY = "thumbnail.png"  # a small copy of the picture
 ORIGINAL_ENTRY = "original.png"  # the picture before its background was removed
 
 MAX_DOCUMENT_VERTICES = 1_000_000
@@ -183,7 +184,7 @@ _encoded_pictures: WeakKeyDictionary[Drawing, list[ArchiveEntry]] = WeakKeyDicti
 
 def _picture_entries(drawing: Drawing) -> list[ArchiveEntry]:
     if drawing not in _encoded_pictures:
-        pictures = {"picture.png": drawing.image, "thumbnail.png": _thumbnail(drawing.image)}
+        pictures = {"picture.png": drawing.image, THUMBNAIL_ENTRY: _thumbnail(drawing.image)}
         if drawing.original is not None:
             pictures[ORIGINAL_ENTRY] = drawing.original
         entries = [(name, encode_png(picture), False) for name, picture in pictures.items()]

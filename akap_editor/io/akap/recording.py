@@ -2,6 +2,7 @@
 
 import base64
 from pathlib import Path
+from typing import Any
 
 from ...editor.document.document import new_document
 from ...editor.document.drawing import Drawing, make_drawing
@@ -61,9 +62,29 @@ def recorded_drawing(recording: Recording) -> Drawing:
     header = recording.header
     if "akap" in header:
         try:
-            return decode_document(base64.b64decode(header["akap"], validate=True)).drawing
-        except (InputError, TypeError, ValueError) as error:
+            return decode_document(drawing_inside(header)).drawing
+        except InputError as error:
             raise InputError(f"recording line 1: the drawing inside is damaged, {error}") from error
+    path = bundled_drawing(header)
+    image, name = read_image(path), path.stem
+    mesher = nearest_mesher(header.get("mesher", TRIANGLE))
+    drawing = make_drawing(image, name=name, mesher=mesher)
+    count = header.get("wanted", header.get("vertices"))
+    if header.get("mesh") != mesh_digest(drawing.mesh) and type(count) is int:
+        drawing = make_drawing(image, vertices=count, name=name, mesher=mesher)
+    return drawing
+
+
+def drawing_inside(header: dict[str, Any]) -> bytes:
+    """The bytes of the .akap file in the header of a recording. Raises InputError if they are damaged."""
+    try:
+        return base64.b64decode(header["akap"], validate=True)
+    except (TypeError, ValueError) as error:
+        raise InputError(str(error)) from error
+
+
+def bundled_drawing(header: dict[str, Any]) -> Path:
+    """The path of the bundled drawing that the header of a recording names. Raises InputError."""
     bundled = {path.stem: path for path in bundled_drawings()}
     name = header.get("name")
     if name not in list(bundled):
@@ -71,10 +92,4 @@ def recorded_drawing(recording: Recording) -> Drawing:
             f"recording line 1: expected a drawing inside, or the name of a bundled one "
             f"({', '.join(bundled)}), got {name!r}; name its file with --drawing"
         )
-    image = read_image(bundled[name])
-    mesher = nearest_mesher(header.get("mesher", TRIANGLE))
-    drawing = make_drawing(image, name=name, mesher=mesher)
-    count = header.get("wanted", header.get("vertices"))
-    if header.get("mesh") != mesh_digest(drawing.mesh) and type(count) is int:
-        drawing = make_drawing(image, vertices=count, name=name, mesher=mesher)
-    return drawing
+    return bundled[str(name)]
