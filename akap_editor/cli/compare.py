@@ -15,7 +15,8 @@ from ..errors import InputError, file_errors
 from ..geometry.distortion import distortion
 from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.atomic import write_atomic
-from .options import FILE, make_folder_of, parse_numbers
+from ..io.outputs import refuse_replacing
+from .options import FILE, make_folder_of, overwrite_option, parse_numbers
 
 
 @click.command(
@@ -37,18 +38,21 @@ from .options import FILE, make_folder_of, parse_numbers
     metavar="NUMBERS",
     help="Sizes of other meshes, separated by commas, for plots of convergence: 500,1000,4000.",
 )
+@overwrite_option
 def compare_command(
-    recordings: tuple[Path, ...], output: Path, methods: tuple[str, ...], vertices: str
+    recordings: tuple[Path, ...], output: Path, methods: tuple[str, ...], vertices: str, overwrite: bool
 ) -> None:
     """Replay recordings with several methods and write a report: index.html and comparison.json."""
     specs = list(dict.fromkeys(" ".join(methods).split())) or compared_methods()
     for spec in specs:
         parse_method(spec)
     sizes = sorted(set(parse_numbers("--vertices", vertices, 50, 20_000))) if vertices.strip() else []
+    page_path, numbers_path = output / "index.html", output / "comparison.json"
+    refuse_replacing(output, [page_path, numbers_path], overwrite)
     report = _import_report()
     inputs = [(path, read_recording(path)) for path in recordings]
     drawings = [recorded_drawing(recording) for _, recording in inputs]
-    make_folder_of(output / "index.html")
+    make_folder_of(page_path)
     count = len(inputs) * len(specs) * (1 + len(sizes))
     with click.progressbar(length=count, label="Replaying") as bar:
         models = [
@@ -60,9 +64,9 @@ def compare_command(
 
     with OffscreenRenderer() as renderer:
         page = report.to_html(models, renderer)
-    write_atomic(output / "index.html", page.encode("utf-8"))
-    write_atomic(output / "comparison.json", report.to_json(models).encode("utf-8"))
-    click.echo(f"Wrote {display_text(output / 'index.html')} and {display_text(output / 'comparison.json')}")
+    write_atomic(page_path, page.encode("utf-8"))
+    write_atomic(numbers_path, report.to_json(models).encode("utf-8"))
+    click.echo(f"Wrote {display_text(page_path)} and {display_text(numbers_path)}")
 
 
 def _import_report() -> Any:

@@ -11,6 +11,7 @@ from ..errors import DisplayError, InputError
 from ..io.akap.autosave import Autosave
 from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.open_document import open_document
+from ..io.outputs import unused_path
 from ..resources import bundled_drawings, resource
 from . import replay
 from .options import FILE, bundled, check_threshold, mesher_option, threshold_option
@@ -75,7 +76,7 @@ def edit(
             raise
         click.echo(f"No window: {error}. Replaying the bundled recording without one.")
         recording = resource("assets", "recordings", f"{FIRST_DRAWING}.akaprec")
-        animation = OUTPUT_FOLDER / f"{FIRST_DRAWING}.webp"
+        animation = unused_path(OUTPUT_FOLDER / f"{FIRST_DRAWING}.webp", ".png")
         replay.replay_recording(recording, None, animation, animation.with_suffix(".png"), fps=24.0, size=480)
 
 

@@ -11,6 +11,7 @@ from ..editor.framing import crop_box, output_size
 from ..errors import InputError
 from ..io.export import EXPORT_FORMATS, ExportOptions, export, format_of
 from ..io.open_document import open_document, opening_notes
+from ..io.outputs import refuse_source
 from .options import (
     FILE,
     append_formats,
@@ -18,6 +19,7 @@ from .options import (
     export_options,
     framing_options,
     make_folder_of,
+    overwrite_option,
     threshold_option,
 )
 
@@ -48,18 +50,23 @@ class ExportResult:
 
 
 def export_file(
-    file: Path, output: Path, options: ExportOptions, threshold: float | None = None
+    file: Path,
+    output: Path,
+    options: ExportOptions,
+    threshold: float | None = None,
+    overwrite: bool = False,
 ) -> ExportResult:
     """Export a drawing or picture. Raises InputError."""
     from ..render.offscreen import OffscreenRenderer
 
     chosen = format_of(output)
+    refuse_source(output, [file], overwrite)
     document = open_document(file, threshold=check_threshold(threshold))
     for note in opening_notes(document):
         click.echo(f"akap-editor: {note}", err=True)
     make_folder_of(output)
     with OffscreenRenderer() as renderer:
-        files = export(document, output, options, renderer)
+        files = export(document, output, options, renderer, overwrite)
     if not chosen.uses_framing:
         return ExportResult(chosen.label, files, None)
     pose = document.drawing.mesh.vertices if options.rest else document.state.positions
@@ -76,6 +83,7 @@ def export_file(
 @click.option("-o", "--output", type=FILE, required=True, help="File to write; its ending sets the format.")
 @framing_options
 @threshold_option
+@overwrite_option
 @click.option("--rest", is_flag=True, help="Export the rest pose.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def export_command(
@@ -85,6 +93,7 @@ def export_command(
     background: str | None,
     crop: str | None,
     threshold: float | None,
+    overwrite: bool,
     rest: bool,
     as_json: bool,
 ) -> None:
@@ -94,7 +103,8 @@ def export_command(
     for name, value in given.items():
         if value is not None and not chosen.uses_framing:
             raise InputError(f"{name}: expected a picture or an outline as output, got {chosen.suffix}")
-    result = export_file(file, output, export_options(scale, background, crop, rest), threshold)
+    options = export_options(scale, background, crop, rest)
+    result = export_file(file, output, options, threshold, overwrite)
     click.echo(json.dumps(result.facts, indent=2) if as_json else result.text)
 
 

@@ -18,13 +18,14 @@ from ..geometry.validation import as_number
 from ..io.images import has_transparency, read_image, read_mask
 from ..io.mesh_files.obj_off import write_obj
 from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note
+from ..io.outputs import refuse_replacing
 from ..meshing.faint import DEFAULT_THRESHOLD, faint_share, fitting_threshold
 from ..meshing.mesher_process import MESHER_PROCESS
 from ..meshing.meshers import check_mesher
 from ..meshing.picture_mesh import mesh_picture
 from ..meshing.quality import mesh_quality
 from ..meshing.triangulate import MAX_VERTICES, MIN_VERTICES
-from .options import FILE, make_folder_of, mesher_option
+from .options import FILE, make_folder_of, mesher_option, overwrite_option
 
 MAX_EXPANSION = 1000.0  # pixels
 
@@ -75,6 +76,7 @@ class MeshRow:
 )
 @click.option("--mask", type=FILE, help="Picture that is bright, or opaque, where PICTURE is to be visible.")
 @mesher_option
+@overwrite_option
 @click.option(
     "--json", "as_json", is_flag=True, help="Print the measures as JSON, a list with one object per picture."
 )
@@ -86,6 +88,7 @@ def mesh(
     threshold: float,
     mask: Path | None,
     mesher: str | None,
+    overwrite: bool,
     as_json: bool,
 ) -> None:
     """Make a mesh of each PICTURE, or of all pictures in a folder, and report its quality.
@@ -101,7 +104,10 @@ def mesh(
     if mask is not None:
         raise InputError("--mask: expected one picture, got several")
     paths = _expand_folders(pictures)
-    rows, errors = _measure_all(paths, _outputs(paths, output), meshing)
+    outputs = _outputs(paths, output)
+    if output is not None:
+        refuse_replacing(output, filter(None, outputs), overwrite)
+    rows, errors = _measure_all(paths, outputs, meshing)
     if as_json:
         click.echo(json.dumps([asdict(row) for row in rows] + errors, indent=2))
     else:

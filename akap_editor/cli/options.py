@@ -30,6 +30,12 @@ _FRAMING = (
 )
 
 
+overwrite_option = click.option(
+    "--overwrite",
+    is_flag=True,
+    help="Replace the file that is read, and files that are written besides the output.",
+)
+
 threshold_option = click.option(
     "--threshold",
     type=float,

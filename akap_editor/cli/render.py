@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from .export import export_file
-from .options import FILE, check_png, export_options, framing_options, threshold_option
+from .options import FILE, check_png, export_options, framing_options, overwrite_option, threshold_option
 
 
 @click.command(epilog="Example: akap-editor render posed.akap -o pose.png --scale 2 --crop pose")
@@ -13,6 +13,7 @@ from .options import FILE, check_png, export_options, framing_options, threshold
 @click.option("-o", "--output", type=FILE, required=True, help="PNG file to write.")
 @framing_options
 @threshold_option
+@overwrite_option
 def render(
     file: Path,
     output: Path,
@@ -20,7 +21,9 @@ def render(
     background: str | None,
     crop: str | None,
     threshold: float | None,
+    overwrite: bool,
 ) -> None:
     """Write the pose of FILE, a saved drawing or a picture, as a PNG picture."""
     check_png(output)
-    click.echo(export_file(file, output, export_options(scale, background, crop), threshold).text)
+    options = export_options(scale, background, crop)
+    click.echo(export_file(file, output, options, threshold, overwrite).text)

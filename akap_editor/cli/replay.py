@@ -17,10 +17,25 @@ from ..editor.session.replay import replay
 from ..errors import FileError, InputError, file_errors
 from ..io.akap.project import PROJECT_SUFFIX
 from ..io.akap.recording import read_recording, recorded_drawing
-from ..io.animation.formats import ANIMATION_FORMATS, MAX_PLAYS, animation_format, write_animation
+from ..io.animation.formats import (
+    ANIMATION_FORMATS,
+    MAX_PLAYS,
+    animation_format,
+    replaced_files,
+    write_animation,
+)
 from ..io.open_document import open_document
+from ..io.outputs import refuse_replacing, refuse_source
 from ..io.painter import paint_frames
-from .options import FILE, append_formats, check_png, make_folder_of, parse_color, write_picture
+from .options import (
+    FILE,
+    append_formats,
+    check_png,
+    make_folder_of,
+    overwrite_option,
+    parse_color,
+    write_picture,
+)
 
 # The parameter that each word of --variant sets.
 VARIANT_WORDS: dict[str, tuple[str, object]] = {
@@ -83,6 +98,7 @@ _FORMATS = [
     help="How often the animation plays; 0 for forever, the default, unless the drawing says that it plays "
     "once.",
 )
+@overwrite_option
 def replay_command(
     recording: Path, output: Path, drawing: Path | None, pose: Path | None, **options: object
 ) -> None:
@@ -116,6 +132,7 @@ def replay_recording(
     ease: str = "none",
     ping_pong: bool = False,
     plays: int | None = None,
+    overwrite: bool = False,
 ) -> None:
     """Do what the command does. Raises InputError before anything is written."""
     from ..render.offscreen import OffscreenRenderer
@@ -129,6 +146,9 @@ def replay_recording(
     fps = min(fps, chosen.max_fps)
     if pose is not None:
         check_png(pose)
+    for written_path in filter(None, [output, pose]):
+        refuse_source(written_path, [path, drawing_path], overwrite)
+    refuse_replacing(output, replaced_files(output, sheet), overwrite)
     source = _open_source(path, drawing_path, method, variant, pause)
     plays = source.plays if plays is None else plays
     first, last = _range(source.duration, start, end)
@@ -141,7 +161,7 @@ def replay_recording(
     with OffscreenRenderer() as renderer:
         pictures = paint_frames(frames, renderer, size, background_color, chosen.is_video)
         with click.progressbar(pictures, len(frames), "Drawing") as bar:
-            written = write_animation(output, bar, fps, plays, sheet)
+            written = write_animation(output, bar, fps, plays, sheet, overwrite=overwrite)
         if pose is not None:
             picture = renderer.render(
                 end_frame.drawing, end_frame.pose, background=background_color, order=end_frame.order

@@ -18,7 +18,7 @@ Screen = NDArray[np.uint8]  # (h, w, 3)
 Point = Sequence[float]
 
 SIZE = (1280, 800)  # of the screen, and of the window by default
-DEADLINE = 600.0  # seconds; a slow machine takes minutes to compile the engine at the first start
+DEADLINE = 300.0  # seconds; a slow machine takes minutes to compile the engine at the first start
 PAUSE = 0.05  # seconds between two looks at the screen
 LEFT, TOP, RIGHT, BOTTOM = 48, 40, 1280 - 268, 760  # well within the canvas, without menu and status bar
 CORNER = (LEFT + 12, TOP + 12)  # on the canvas, beside the drawing

@@ -5,6 +5,7 @@ import shutil
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from ...display_text import display_name, display_text
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT, SECONDARY
+from .replace_files import ReplaceFilesDialog
 
 _WIDTH, _HEIGHT = 520, 260  # of the list of files, in design points
 _OTHER_HEIGHT = 220  # of everything around the list in a low window, in design points
@@ -113,14 +115,14 @@ class FileDialog:
         if request is None:
             return
         if self.uses_native and not self._replaces_native:
-            self._poll_native(request)
+            self._poll_native(state, request)
             if self.request is request:
                 self._draw_native_note(request)
         elif widgets.begin_dialog(request.title):
             self._draw_fields(request, scale)
             imgui.end_popup()
 
-    def _poll_native(self, request: FileRequest) -> None:
+    def _poll_native(self, state: AppState, request: FileRequest) -> None:
         """Open the system's dialog, or take its answer; a name that is no text is left to this dialog."""
         try:
             if self._native is None:
@@ -136,7 +138,10 @@ class FileDialog:
         path = result if isinstance(result, str) else next(iter(result), "")
         if path:
             request.name = path
-            request.use(request.path)
+            has_new_ending = request.saving and request.path != Path(path)
+            unconfirmed = [request.path] if has_new_ending and os.path.lexists(request.path) else []
+            use, ask_again = partial(request.use, request.path), partial(self.ask, request)
+            state.part(ReplaceFilesDialog).ask_unless_new(unconfirmed, use, ask_again)
 
     def _draw_native_note(self, request: FileRequest) -> None:
         """Say that the window waits; the system's dialog may take a second to appear, or be hidden."""

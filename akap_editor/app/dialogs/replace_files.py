@@ -2,9 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 from imgui_bundle import imgui
 
+from ...io.outputs import quoted_names
 from .. import widgets
 from ..app_state import AppState
 
@@ -39,6 +41,17 @@ class ReplaceFilesDialog:
     def ask(self, question: ReplaceQuestion) -> None:
         """Show the dialog."""
         self._question = question
+
+    def ask_unless_new(
+        self, paths: list[Path], replace: Callable[[], None], rename: Callable[[], None]
+    ) -> None:
+        """Call ``replace`` at once if ``paths``, the files that exist, are none; else ask first."""
+        if not paths:
+            replace()
+            return
+        verb = "exists" if len(paths) == 1 else "exist"
+        text = f"{quoted_names(paths)} {verb} already and will be replaced."
+        self.ask(ReplaceQuestion(text, replace, "Other Name...", rename))
 
     def draw(self, _: AppState, scale: float) -> None:
         """Draw one frame. scale: points per design point."""

@@ -9,9 +9,10 @@ from ...display_text import display_name
 from ...errors import FileError, InputError, join_with_or
 from ..atomic import Write, write_atomic
 from ..images import Picture, write_png
+from ..outputs import existing, refuse_replacing
 from .animated_images import write_apng, write_webp
 from .gif import MAX_GIF_FPS, write_gif
-from .sprite_sheet import write_frames, write_sheet
+from .sprite_sheet import frame_files, index_path, write_frames, write_sheet
 from .video import require_av, write_mp4, write_webm
 
 MAX_PLAYS = 65535
@@ -48,7 +49,7 @@ def _write_pictures(path: Path, frames: Iterable[Picture], *_: object) -> str:
 
 def _write_sheet(path: Path, frames: Iterable[Picture], fps: float, _: int, write: Write) -> str:
     columns, rows = write_sheet(path, frames, fps, write)
-    return f"a sheet of {columns} x {rows} sprites, and its index {display_name(path.with_suffix('.json'))}"
+    return f"a sheet of {columns} x {rows} sprites, and its index {display_name(index_path(path))}"
 
 
 def _write_last(path: Path, frames: Iterable[Picture], *_: object) -> str:
@@ -120,13 +121,14 @@ def write_animation(
     plays: int = 0,
     sheet: bool = False,
     write: Write = write_atomic,
+    overwrite: bool = False,
 ) -> str:
     """Write frames, (h, w, 4) uint8 each, straight alpha, all of one size; return a few words on the result.
 
     The ending of ``path`` decides on the format, see `animation_format`. frames: read once, in order; plays:
     how often the animation is shown, 0 for forever; formats that do not repeat ignore it; write: writes a
-    file when all of it is encoded. Raises InputError for bad frames or arguments, and if the file cannot be
-    written.
+    file when all of it is encoded; overwrite: replace files that ``path`` does not name, too, see
+    `replaced_files`. Raises InputError for bad frames or arguments, and if the file cannot be written.
     """
     path = Path(path)
     chosen = animation_format(path, sheet)
@@ -134,4 +136,15 @@ def write_animation(
         raise InputError(f"fps: expected a number from 0.1 to 1000, got {fps}")
     if not 0 <= plays <= MAX_PLAYS:
         raise InputError(f"plays: expected a number from 0 to {MAX_PLAYS}, got {plays}")
+    refuse_replacing(path, replaced_files(path, sheet), overwrite)
     return chosen.writer(path, frames, fps, plays, write)
+
+
+def replaced_files(path: Path, sheet: bool = False) -> list[Path]:
+    """The files that exist and that an animation replaces or deletes although ``path`` does not name them.
+
+    They are the index of a sheet, and the frames of an older animation in a folder.
+    """
+    if sheet:
+        return existing([index_path(path)])
+    return frame_files(path) if path.is_dir() else []

@@ -30,13 +30,25 @@ def write_frames(folder: str | Path, frames: Iterable[Picture]) -> int:
         folder.mkdir(parents=True, exist_ok=True)
         for count, image in enumerate(frames, start=1):
             write_png(folder / f"frame-{count - 1:04d}.png", image)
-        for path in folder.iterdir():
-            match = _FRAME_NAME.fullmatch(path.name)
-            if match and int(match[1]) >= count:
-                path.unlink()
+        for path in frame_files(folder, count):
+            path.unlink()
     except OSError as error:
         raise FileError("save", folder, os_error_reason(error)) from error
     return count
+
+
+def frame_files(folder: Path, first: int = 0) -> list[Path]:
+    """The frames of an animation in a folder, from number ``first``. Raises FileError."""
+    try:
+        matches = {path: _FRAME_NAME.fullmatch(path.name) for path in folder.iterdir()}
+    except OSError as error:
+        raise FileError("save", folder, os_error_reason(error)) from error
+    return sorted(path for path, match in matches.items() if match and int(match[1]) >= first)
+
+
+def index_path(path: Path) -> Path:
+    """The JSON index of a sprite sheet."""
+    return path.with_suffix(".json")
 
 
 def write_sheet(
@@ -86,7 +98,7 @@ def write_sheet(
         "fps": fps,
     }
     write(path, encode_png(sheet))
-    write(path.with_suffix(".json"), json.dumps({"frames": index, "meta": meta}, indent=1).encode())
+    write(index_path(path), json.dumps({"frames": index, "meta": meta}, indent=1).encode())
     return columns, rows
 
 

@@ -12,12 +12,14 @@ from ...geometry.validation import as_instance
 from ...overlap.overlaps import NO_CROSSINGS
 from ..atomic import as_path, write_atomic
 from ..images import encode_png
+from ..outputs import existing, refuse_replacing
 from ..painter import Painter
 from .gltf import encode_glb
 from .mesh_json import encode_json
-from .obj import encode_obj
+from .obj import companion_names, encode_obj
 from .spine import encode_spine
 from .svg import encode_svg
+from .texture import texture_name
 
 Files = dict[str, bytes]  # contents by file name
 
@@ -42,7 +44,7 @@ class ExportFormat:
 
     label: name on the screen; suffix: ending of file names; about: description for the user; uses_framing:
     whether scale, background and crop matter; encode: returns the contents of all files by name, the named
-    file last.
+    file last; companions: names of the other files for a stem.
     """
 
     label: str
@@ -50,6 +52,7 @@ class ExportFormat:
     about: str
     uses_framing: bool
     encode: Callable[[Document, str, ExportOptions, Painter | None], Files] = field(repr=False)
+    companions: Callable[[str], list[str]] = field(default=lambda _: [], repr=False)
 
 
 def _encode_png(document: Document, stem: str, options: ExportOptions, painter: Painter | None) -> Files:
@@ -95,6 +98,7 @@ EXPORT_FORMATS = (
         "The posed mesh with its material and texture, as three files, for almost any 3D program.",
         False,
         lambda document, stem, *_: encode_obj(_back_to_front(document), document.state.positions, stem),
+        companion_names,
     ),
     ExportFormat(
         "Spine skeleton",
@@ -102,6 +106,7 @@ EXPORT_FORMATS = (
         "Mesh attachments with the pose as a deform key, and their texture, for Spine and its runtimes.",
         False,
         lambda document, stem, *_: encode_spine(_back_to_front(document), document.state.positions, stem),
+        lambda stem: [texture_name(stem)],
     ),
     ExportFormat(
         "Mesh and pins",
@@ -129,12 +134,14 @@ def export(
     path: str | Path,
     options: ExportOptions | None = None,
     painter: Painter | None = None,
+    overwrite: bool = False,
 ) -> list[Path]:
     """Export a drawing; return the written files, with ``path`` last.
 
     The ending of ``path`` decides on the format. Additional files, e.g. textures, are named after it. Each
-    file is written whole or not at all. painter: draws pictures, needed for .png only. Raises InputError for
-    an unknown ending, or if the drawing cannot be exported or written.
+    file is written whole or not at all. painter: draws pictures, needed for .png only; overwrite: replace
+    additional files, too, if they exist with another content. Raises InputError for an unknown ending, or if
+    the drawing cannot be exported or written.
     """
     as_instance(document, "document", Document)
     options = ExportOptions() if options is None else as_instance(options, "options", ExportOptions)
@@ -147,6 +154,22 @@ def export(
         files = chosen.encode(document, path.name[: -len(chosen.suffix)], options, painter)
     written = [path.with_name(name) for name in files]
     written[-1] = path  # as spelled by the caller, e.g. in capitals
-    for target, data in zip(written, files.values(), strict=True):
+    contents = dict(zip(written, files.values(), strict=True))
+    refuse_replacing(path, (each for each in written[:-1] if not _holds(each, contents[each])), overwrite)
+    for target, data in contents.items():
         write_atomic(target, data)
     return written
+
+
+def replaced_companions(path: Path) -> list[Path]:
+    """The files that exist and that an export to ``path`` replaces besides it. Raises InputError."""
+    chosen = format_of(path)
+    return existing(path.with_name(name) for name in chosen.companions(path.name[: -len(chosen.suffix)]))
+
+
+def _holds(path: Path, data: bytes) -> bool:
+    """Whether a file exists and holds these bytes."""
+    try:
+        return path.stat().st_size == len(data) and path.read_bytes() == data
+    except OSError:
+        return False

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats
-from .texture import companion_stem, encode_texture, y_up
+from .texture import companion_stem, encode_texture, texture_name, y_up
 
 
 def encode_obj(drawing: Drawing, positions: Floats, stem: str) -> dict[str, bytes]:
@@ -13,8 +13,7 @@ def encode_obj(drawing: Drawing, positions: Floats, stem: str) -> dict[str, byte
     Vertices keep their order, so that other programs can blend two poses of a drawing. Faces are
     counterclockwise seen from +z, from back to front.
     """
-    name = companion_stem(stem)
-    texture, material = f"{name}-texture.png", f"{name}.mtl"
+    texture, material = companion_names(stem)
     points, uv = y_up(drawing, positions), drawing.uv * np.array([1, -1]) + np.array([0, 1])
     corners = drawing.mesh.faces[:, ::-1] + 1
     lines = [
@@ -31,6 +30,11 @@ def encode_obj(drawing: Drawing, positions: Floats, stem: str) -> dict[str, byte
         material: _material(texture).encode(),
         f"{stem}.obj": ("\n".join(lines) + "\n").encode(),
     }
+
+
+def companion_names(stem: str) -> list[str]:
+    """The names of texture and material beside an OBJ file."""
+    return [texture_name(stem), f"{companion_stem(stem)}.mtl"]
 
 
 def _material(texture: str) -> str:

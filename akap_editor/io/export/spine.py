@@ -9,7 +9,7 @@ from ...editor.document.drawing import Drawing
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
-from .texture import companion_stem, encode_texture, y_up
+from .texture import encode_texture, texture_name, y_up
 
 SPINE_VERSION = "4.2.00"
 MAX_ATTACHMENT_VERTICES = 32767  # runtimes count vertices with signed 16-bit integers
@@ -22,13 +22,13 @@ def encode_spine(drawing: Drawing, positions: Floats, stem: str) -> dict[str, by
     The skeleton has one bone; each component of the mesh is a slot with one unweighted mesh attachment. The
     setup pose is the rest pose, the animation "pose" holds ``positions`` (n, 2) as a deform key.
     """
-    texture, title = f"{companion_stem(stem)}-texture", drawing.name or "drawing"
+    texture, title = texture_name(stem), drawing.name or "drawing"
     rest, pose = y_up(drawing, drawing.mesh.vertices), y_up(drawing, positions)
     slots, attachments, deform = [], {}, {}
     for number, part in enumerate(_parts(drawing.mesh), start=1):
         name = title if number == 1 else f"{title} {number}"
         slots.append({"name": name, "bone": "root", "attachment": name})
-        attachments[name] = {name: _attachment(drawing, part, rest, texture)}
+        attachments[name] = {name: _attachment(drawing, part, rest, texture.removesuffix(".png"))}
         offsets = _flat(pose[part.order]) - _flat(rest[part.order])
         deform[name] = {name: {"deform": [{"vertices": np.round(offsets, _DECIMALS).tolist()}]}}
     low, high = rest.min(axis=0), rest.max(axis=0)
@@ -42,7 +42,7 @@ def encode_spine(drawing: Drawing, positions: Floats, stem: str) -> dict[str, by
         "animations": {"pose": {"attachments": {"default": deform}}},
     }
     text = json.dumps(record, separators=(",", ":"), allow_nan=False)
-    return {f"{texture}.png": encode_texture(drawing), f"{stem}.spine.json": text.encode()}
+    return {texture: encode_texture(drawing), f"{stem}.spine.json": text.encode()}
 
 
 class _Part:

@@ -45,9 +45,14 @@ def y_up(drawing: Drawing, points: Floats) -> Floats:
     return np.array([-width / 2, height]) + points * [1.0, -1.0]
 
 
+def texture_name(stem: str) -> str:
+    """The name of the texture beside an exported file."""
+    return f"{companion_stem(stem)}-texture.png"
+
+
 def companion_stem(stem: str) -> str:
     """The stem for a file that the exported file names.
 
     It is text, and without spaces or signs at which some readers stop.
     """
-    return re.sub(r"[\s#\\]+", "_", display_text(stem))
+    return re.sub(r"[#\\]+", "_", display_text(re.sub(r"\s+", "_", stem)))

@@ -13,7 +13,13 @@ from ....editor.animation.frames import Frame, frame_times, loops_seamlessly, pl
 from ....editor.document.easing import EASING_LABELS, EASINGS
 from ....editor.framing import Color
 from ....errors import InputError
-from ....io.animation.formats import ANIMATION_FORMATS, AnimationFormat, animation_format, write_animation
+from ....io.animation.formats import (
+    ANIMATION_FORMATS,
+    AnimationFormat,
+    animation_format,
+    replaced_files,
+    write_animation,
+)
 from ....io.painter import paint_frames
 from ... import widgets
 from ...app_state import AppState
@@ -21,6 +27,7 @@ from ...jobs.frame_encoder import FrameEncoder
 from ...jobs.task import Progress, Steps, Task
 from ...preferences import Preferences
 from ..file_dialog import FileDialog, FileRequest
+from ..replace_files import ReplaceFilesDialog
 from .animation_size import AnimationSize
 from .fields import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
 
@@ -185,14 +192,21 @@ def request_file(state: AppState, options: AnimationExportOptions) -> None:
 
 
 def export_animation(state: AppState, options: AnimationExportOptions, path: Path) -> None:
-    """Write the played range of the timeline; the file name's ending decides on the format."""
+    """Write the played range of the timeline; the file name's ending decides on the format.
+
+    Ask before files are replaced that the user did not name.
+    """
+    sheet = options.chosen_format.is_sheet and path.suffix.lower() == ".png"
+
+    def check() -> None:
+        animation_format(path, sheet)  # raises InputError
+        rename = partial(request_file, state, options)
+        state.part(ReplaceFilesDialog).ask_unless_new(replaced_files(path, sheet), begin, rename)
 
     def begin() -> None:
-        sheet = options.chosen_format.is_sheet and path.suffix.lower() == ".png"
-        animation_format(path, sheet)  # raises InputError
         state.task = Task(f"Exporting {display_name(path)}", _export_steps(state, options, path, sheet))
 
-    state.run_after_frame(begin)
+    state.run_after_frame(check)
 
 
 def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: bool) -> Steps:
@@ -210,7 +224,9 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
         options.visible_background,
         options.chosen_format.is_video,
     )
-    export = partial(write_animation, path, fps=options.written_fps, plays=options.plays, sheet=sheet)
+    export = partial(
+        write_animation, path, fps=options.written_fps, plays=options.plays, sheet=sheet, overwrite=True
+    )
     encoder = FrameEncoder(export, state.wake)
     try:
         for number, picture in enumerate(pictures):

@@ -10,12 +10,13 @@ from ....display_text import display_name, file_stem
 from ....editor.document.document import Document
 from ....editor.framing import CROPS, MAX_SIZE, Color, crop_box, output_size
 from ....errors import InputError
-from ....io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of
+from ....io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of, replaced_companions
 from ....io.painter import Painter
 from ... import widgets
 from ...app_state import AppState
 from ...theme import ACCENT
 from ..file_dialog import FileDialog, FileRequest
+from ..replace_files import ReplaceFilesDialog
 from .fields import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
 
 SCALES = (0.5, 1.0, 2.0, 4.0)
@@ -105,12 +106,21 @@ def request_file(state: AppState, options: PoseExportOptions) -> None:
 
 
 def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None:
-    """Write the current pose in the background; the file name's ending decides on the format."""
+    """Write the current pose in the background; the file name's ending decides on the format.
+
+    Ask before files are replaced that the user did not name.
+    """
+    rename, write = partial(request_file, state, options), partial(_begin_export, state, options, path)
+    state.part(ReplaceFilesDialog).ask_unless_new(replaced_companions(path), write, rename)
+
+
+def _begin_export(state: AppState, options: PoseExportOptions, path: Path) -> None:
     document, options = state.document, replace(options)
-    assert document is not None
+    if document is None:
+        return
 
     def work(painter: Painter) -> str:
-        *companions, _ = export(document, path, options.export_options, painter)
+        *companions, _ = export(document, path, options.export_options, painter, overwrite=True)
         said = f"Exported {', '.join(map(display_name, [path, *companions]))}"
         if format_of(path).uses_framing:
             width, height = options.output_size(document)

@@ -194,6 +194,26 @@ def test_background_and_size(keyed, tmp_path):
     assert first[0, 0].tolist() == [255, 0, 0, 255]
 
 
+@pytest.mark.parametrize(
+    ("label", "output", "other"),
+    [("Pictures", "frames", "frames/frame-0099.png"), ("Sprite sheet", "walk.png", "walk.json")],
+)
+@pytest.mark.parametrize("button", ["Replace", "Cancel"])
+def test_files_that_were_not_named_are_replaced_only_on_demand(keyed, tmp_path, label, output, other, button):
+    (tmp_path / "frames").mkdir()
+    (tmp_path / other).write_bytes(b"of somebody")
+    export_animation(keyed.state, AnimationExportOptions(label, fps=5, size=40), tmp_path / output)
+    keyed.settle()
+    assert (tmp_path / other).read_bytes() == b"of somebody"
+    keyed.dialog("Replace files", button)
+    keyed.settle()
+    assert not keyed.state.error
+    is_kept = (tmp_path / other).exists() and (tmp_path / other).read_bytes() == b"of somebody"
+    assert is_kept == (button == "Cancel")
+    assert (tmp_path / "frames" / "frame-0000.png").exists() == (label == "Pictures" and not is_kept)
+    assert (tmp_path / "walk.png").exists() == (label == "Sprite sheet" and not is_kept)
+
+
 def test_an_export_is_cancelled_and_leaves_no_file(keyed, tmp_path, monkeypatch):
     monkeypatch.setattr("akap_editor.app.jobs.task.Task.advance", one_step)
     export_animation(keyed.state, AnimationExportOptions(), tmp_path / "out.webp")

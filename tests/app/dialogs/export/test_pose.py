@@ -11,7 +11,7 @@ from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import read_image
 from akap_editor.render.offscreen import OffscreenRenderer
 
-EXPORT, FILE, MESSAGE = "Export", "Export to", "Error"
+EXPORT, FILE, MESSAGE, REPLACE = "Export", "Export to", "Error", "Replace files"
 BY_SUFFIX = {each.suffix: each for each in EXPORT_FORMATS}
 
 
@@ -146,3 +146,20 @@ def test_only_files_of_the_format_are_listed(bent, tmp_path):
     bent.dialog(EXPORT, option("Spine skeleton"), "Export...")
     assert bent.file_request.entries() == [("b.spine.json", False)]
     bent.key(Key.escape)
+
+
+@pytest.mark.parametrize("button", ["Replace", "Cancel", "Other Name..."])
+def test_files_beside_the_named_one_are_replaced_only_on_demand(bent, tmp_path, button):
+    (tmp_path / "cat.mtl").write_bytes(b"of somebody")
+    bent.menu("File", "Export...")
+    bent.dialog(EXPORT, option(BY_SUFFIX[".obj"].label))
+    export_as(bent, "cat")
+    assert not (tmp_path / "cat.obj").exists()
+    bent.dialog(REPLACE, button)
+    if button == "Other Name...":
+        bent.type_name(FILE, "dog")
+    bent.settle()
+    assert not bent.state.error
+    assert ((tmp_path / "cat.mtl").read_bytes() == b"of somebody") == (button != "Replace")
+    written = {"Replace": ["cat.obj"], "Other Name...": ["dog.obj"]}.get(button, [])
+    assert [path.name for path in tmp_path.glob("*.obj")] == written

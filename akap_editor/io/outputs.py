@@ -1,0 +1,62 @@
+"""Keeps exports from replacing files that nobody named: companions, frames in a folder, their own source."""
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from ..display_text import display_name
+from ..errors import FileError
+
+_MOST_NAMES = 3  # in a message
+
+
+def existing(paths: Iterable[Path]) -> list[Path]:
+    """The paths at which there is something, be it a link that leads nowhere."""
+    return [path for path in paths if os.path.lexists(path)]
+
+
+def unused_path(path: Path, *suffixes: str) -> Path:
+    """``path``, or the first of name-2, name-3, ... that exists neither as it is nor with the suffixes."""
+    number = 1
+    unused = path
+    while existing([unused, *map(unused.with_suffix, suffixes)]):
+        number += 1
+        unused = path.with_stem(f"{path.stem}-{number}")
+    return unused
+
+
+def quoted_names(paths: list[Path]) -> str:
+    """The names of files in a sentence: "“a”, “b” and 3 more"."""
+    names = [f"“{display_name(path)}”" for path in paths[:_MOST_NAMES]]
+    if len(paths) > _MOST_NAMES:
+        names[_MOST_NAMES - 1 :] = [f"{len(paths) - _MOST_NAMES + 1} more"]
+    return " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+
+
+def refuse_replacing(path: Path, unnamed: Iterable[Path], overwrite: bool) -> None:
+    """Raise FileError for an export to ``path`` that would replace other files, unless ``overwrite``.
+
+    unnamed: the files that would be written besides ``path``.
+    """
+    replaced = [] if overwrite else existing(unnamed)
+    if replaced:
+        verb = "exists" if len(replaced) == 1 else "exist"
+        reason = (
+            f"{quoted_names(replaced)} {verb} already; choose another name, or replace them (--overwrite)"
+        )
+        raise FileError("export", path, reason)
+
+
+def refuse_source(path: Path, sources: Iterable[Path | None], overwrite: bool) -> None:
+    """Raise FileError if ``path`` is one of the files that the export reads, unless ``overwrite``."""
+    for source in sources:
+        if not overwrite and source is not None and _is_same(path, source):
+            reason = "it is the file that is read; choose another name, or replace it (--overwrite)"
+            raise FileError("export", path, reason)
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    try:
+        return os.path.samefile(path, other)
+    except (OSError, ValueError):
+        return False
