@@ -1,9 +1,10 @@
 """Fuzzes the file readers: each damaged or malicious file must open, or be refused with an InputError.
 
 Run from the project's root: python benchmarks/fuzz_files.py [--cases N] [--seed S]
-Makes .akap, .pose.json and .akaprec files with damage on the outside (bytes, length, zip directory) or, with
-correct checksums, on the inside (numbers, JSON, PNG, sizes, names, bombs), and opens them in memory, with all
-Python warnings as errors. A file that opens is saved and opened again, and must be the same.
+Makes .akap, .pose.json, .akaprec, mesh and picture files with damage on the outside (bytes, length, zip
+directory) or, with correct checksums, on the inside (numbers, JSON, PNG, sizes, names, bombs), and opens them
+in memory, with all Python warnings as errors. A file that opens is saved and opened again, and must be the
+same.
 Prints the numbers of opened and refused files, the slowest case and the peak memory. The exit code is 1 after
 any other exception, a case of over 20 seconds, or more than a gigabyte of memory. A failing case prints its
 seed; --seed S --cases 1 runs it alone.
@@ -45,6 +46,7 @@ from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io.akap.pose import decode_pose, encode_pose
 from akap_editor.io.akap.project import decode_document, encode_document
 from akap_editor.io.akap.recording import decode_recording
+from akap_editor.io.export.gltf import encode_glb
 from akap_editor.io.images import decode_image, encode_png
 from akap_editor.io.mesh_files.obj_off import PARSERS, decode_text
 from akap_editor.io.mesh_files.polygons import triangulate_polygons
@@ -374,6 +376,21 @@ def damaged_text(rng: Rng, data: bytes) -> bytes:
     return b" ".join(words)
 
 
+def damaged_glb(rng: Rng, data: bytes) -> bytes:
+    """A glTF binary with another JSON, in a chunk of the right length, or with other bytes."""
+    if rng.random() < 0.2:
+        return pick(rng, [change_bytes, cut])(rng, data)
+    (size,) = struct.unpack_from("<I", data, 12)
+    text, binary = data[20 : 20 + size], data[20 + size :]
+    for _ in range(int(rng.integers(1, 3))):
+        text = change_json(rng, text)
+    if rng.random() < 0.2:
+        binary = change_bytes(rng, binary)
+    text += b" " * (-len(text) % 4)
+    header = struct.pack("<4sIII4s", b"glTF", 2, 20 + len(text) + len(binary), len(text), b"JSON")
+    return header + text + binary
+
+
 # -- what must hold ------------------------------------------------------------------------------------------
 
 
@@ -396,11 +413,12 @@ class Fuzzer:
                 self.files.append([(name, archive.read(name)) for name in archive.namelist()])
         self.poses = [encode_pose(document) for document in self.documents]
         self.recordings = [seed_recording(document) for document in self.documents]
+        self.glbs = [encode_glb(document.drawing, document.state.positions) for document in self.documents]
 
     def run(self, seed: int) -> None:
         """Check one case. Raises any exception but an `InputError` whose message is one line."""
         rng = np.random.default_rng(seed)
-        kind = pick(rng, ["akap", "akap", "akap", "pose", "akaprec", "mesh", "picture"])
+        kind = pick(rng, ["akap", "akap", "akap", "pose", "akaprec", "mesh", "picture", "glb"])
         started = time.process_time()
         try:
             getattr(self, f"_open_{kind}")(rng)
@@ -427,6 +445,9 @@ class Fuzzer:
             mesh = PARSERS[name](decode_text(data))
             with np.errstate(all="ignore"):
                 triangulate_polygons(np.array(mesh.vertices).reshape(-1, 3), mesh.faces)
+
+    def _open_glb(self, rng: Rng) -> None:
+        mesh_defects(decode_mesh(damaged_glb(rng, pick(rng, self.glbs))))
 
     def _open_picture(self, rng: Rng) -> None:
         document = pick(rng, self.documents)

@@ -182,7 +182,7 @@ class Soak:
 
     def _export(self) -> None:
         name = f"out{self.rng.choice(EXPORTS)}"
-        export(self.session.document, self.folder / name, ExportOptions(), self.painter)
+        export(self.session.document, self.folder / name, ExportOptions(), self.painter, overwrite=True)
 
     def finish(self) -> None:
         """Check that the saved file equals the document and that no recovery copy is left."""

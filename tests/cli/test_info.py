@@ -13,6 +13,7 @@ from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import write_png
 from akap_editor.resources import bundled_drawings, resource
 from tests.support.command_line import assert_one_line
+from tests.support.names import assert_readable
 
 RECORDING = resource("assets", "recordings", "elephant.akaprec")
 MESHES = [each.suffix for each in EXPORT_FORMATS if not each.uses_framing]
@@ -170,3 +171,30 @@ def test_something_else(run, tmp_path):
 @pytest.mark.parametrize("name", ["nothing.png", "."])
 def test_what_cannot_be_read_is_an_error(run, name):
     assert_one_line(run("info", name), name)
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        ZeroDivisionError("division by zero"),
+        RecursionError("a" * 5000),
+        MemoryError(),
+        KeyError("x\n\x1b[31m"),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+@pytest.mark.parametrize("reader", ["decode_mesh", "mesh_defects", "count_parts"])
+def test_a_defect_that_no_reader_names_is_no_traceback(run, monkeypatch, tmp_path, reader, error):
+    def fails(*_):
+        raise error
+
+    (tmp_path / "mesh.json").write_text('{"vertices": [[0, 0], [1, 0], [0, 1]], "faces": [[0, 1, 2]]}')
+    assert run("info", tmp_path / "mesh.json")[0] == 0
+    monkeypatch.setattr(f"akap_editor.io.inspection.{reader}", fails)
+    code, said, errors = run("info", tmp_path / "mesh.json")
+    assert (code, errors) == (1, "")
+    first, second = said.splitlines()
+    assert first.endswith("mesh.json: mesh, not sound")
+    assert second.startswith(f"  the file is damaged ({type(error).__name__}: ")
+    assert len(second) < 200
+    assert_readable(said)

@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...errors import InputError
 from ...geometry.validation import MAX_COORDINATE, Floats, Ints, as_indices, as_points
-from ..akap.json_records import parse_record
+from ..akap.json_records import numbers, parse_record
 from .obj_off import OFF_HEADER, PARSERS, decode_text
 from .polygons import triangulate_polygons
 
@@ -116,8 +116,9 @@ def _read_json(data: bytes) -> tuple[Any, Any]:
     for skin in record["skins"]:
         for slot in skin["attachments"].values():
             for mesh in slot.values():
-                points = np.array(mesh["vertices"], dtype=np.float64).reshape(-1, 2)
-                faces.append(np.array(mesh["triangles"]).reshape(-1, 3) + sum(map(len, vertices)))
+                points = numbers(mesh["vertices"], "vertices").reshape(-1, 2)
+                corners = as_indices(np.reshape(mesh["triangles"], (-1, 3)), "triangles", 3, len(points))
+                faces.append(corners + sum(map(len, vertices)))
                 vertices.append(points)
     return np.concatenate(vertices), np.concatenate(faces)
 
@@ -131,22 +132,29 @@ def _read_glb(data: bytes) -> tuple[Any, Any]:
     for mesh in record["meshes"]:
         for primitive in mesh["primitives"]:
             points = _accessor(record, binary, primitive["attributes"]["POSITION"])
-            corners = _accessor(record, binary, primitive["indices"]).reshape(-1, 3).astype(np.int64)
-            if corners.size and corners.max() >= len(points):
-                raise InputError(f"faces: expected indices up to {len(points) - 1}, got {corners.max()}")
-            faces.append(corners + sum(map(len, vertices)))
+            corners = _accessor(record, binary, primitive["indices"]).reshape(-1, 3)
+            faces.append(as_indices(corners, "faces", 3, len(points)) + sum(map(len, vertices)))
             vertices.append(points)
     return np.concatenate(vertices), np.concatenate(faces)
 
 
 def _accessor(record: dict[str, Any], binary: bytes, number: int) -> NDArray[Any]:
     """The array (count, columns) of a glTF accessor. Raises InputError, or one of `_MALFORMED_ERRORS`."""
-    accessor = record["accessors"][number]
-    view = record["bufferViews"][accessor["bufferView"]]
+    accessor = record["accessors"][_natural({"accessor": number}, "accessor")]
+    view = record["bufferViews"][_natural(accessor, "bufferView")]
     columns = _COLUMNS[accessor["type"]]
-    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+    begin, size = _natural(view, "byteOffset", 0), _natural(view, "byteLength")
+    start = _natural(accessor, "byteOffset", 0)
     kind = np.dtype(_COMPONENTS[accessor["componentType"]])
-    count = accessor["count"] * columns
-    if count * kind.itemsize > view["byteLength"]:
+    count = _natural(accessor, "count") * columns
+    if start + count * kind.itemsize > size or begin + size > len(binary):
         raise InputError(f"accessor {number}: expected it to fit into its buffer view, got a longer one")
-    return np.frombuffer(binary, kind, count, start).reshape(-1, columns)
+    return np.frombuffer(binary, kind, count, begin + start).reshape(-1, columns)
+
+
+def _natural(record: dict[str, Any], name: str, default: int | None = None) -> int:
+    """The integer from 0 of a key. Raises InputError."""
+    value = record.get(name, default)
+    if type(value) is not int or value < 0:
+        raise InputError(f"expected {name} to be an integer from 0, got {reprlib.repr(value)}")
+    return value
