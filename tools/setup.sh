@@ -5,6 +5,10 @@
 set -eu
 cd "$(dirname "$0")/.."
 purpose=$1
+case $(uname -s) in
+    MINGW* | MSYS* | CYGWIN*) bin=.venv/Scripts ;;
+    *) bin=.venv/bin ;;
+esac
 
 fail() {
     echo "$1" >&2
@@ -74,15 +78,22 @@ make_venv() {
     "$python" -m venv --clear .venv
 }
 
+# With LOCKED=1, the packages are those of .ci/requirements.txt, with the same checksums.
 pip_install() {
-    .venv/bin/python -m pip --quiet --disable-pip-version-check --timeout 60 install --editable "$1"
+    pip="$bin/python -m pip --quiet --disable-pip-version-check --timeout 60 install"
+    if [ -z "${LOCKED:-}" ]; then
+        $pip --editable "$1"
+    else
+        $pip --require-hashes --requirement .ci/requirements.txt
+        $pip --no-deps --no-build-isolation --editable .
+    fi
 }
 
 # The marker holds the folder and the checksum of pyproject.toml; if either changed, the project is installed again.
 install_project() {
     marker=.venv/installed-$1
     wanted="$PWD $(cksum <pyproject.toml)"
-    if ! .venv/bin/python -c 'import pip' 2>/dev/null; then
+    if ! $bin/python -c 'import pip' 2>/dev/null; then
         make_venv
     elif [ "$(cat "$marker" 2>/dev/null)" = "$wanted" ]; then
         return

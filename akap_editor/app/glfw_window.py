@@ -3,13 +3,16 @@
 # imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
 from imgui_bundle import imgui  # isort: skip
 import os
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import glfw
+from PIL import Image
 
 from ..errors import DisplayError, GraphicsError
+from ..resources import resource
 from .preferences import Preferences
 
 _MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
@@ -19,6 +22,7 @@ Area = tuple[int, int, int, int]  # left, top, width, height in screen coordinat
 
 DEFAULT_SIZE, MIN_SIZE = (1280, 800), (640, 400)  # design points
 MAX_SIDE = 16384  # of a remembered size, design points
+ICON_SIDES = (16, 32, 48, 128)  # pixels
 GRIP = 64  # screen coordinates of the window's upper left corner that must be on a screen, to drag it by
 
 
@@ -29,6 +33,9 @@ def create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
     """
     if null:
         glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
+    elif sys.platform.startswith("linux") and os.environ.get("DISPLAY"):
+        # Under Wayland through XWayland: otherwise a window has no icon and cannot be put where it was.
+        glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_X11)
     if not glfw.init():
         raise DisplayError("there is no display: expected an X11 or Wayland session to open a window in")
     if null:
@@ -48,6 +55,11 @@ def create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
     if not handle:
         glfw.terminate()
         raise GraphicsError("this computer offers no OpenGL 3.3 core profile, which the window needs")
+    if not null and sys.platform != "darwin":  # macOS takes the icon from the bundle
+        icons: list[Any] = [
+            Image.open(resource("assets", "icons", f"akap-editor-{side}.png")) for side in ICON_SIDES
+        ]
+        glfw.set_window_icon(handle, len(icons), icons)
     if not null:  # the null platform takes the smallest height for the largest
         glfw.set_window_size_limits(handle, *MIN_SIZE, glfw.DONT_CARE, glfw.DONT_CARE)
     glfw.make_context_current(handle)
