@@ -1,6 +1,7 @@
 """The architecture beyond the import contracts of pyproject.toml, and a check that these contracts work."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -236,6 +237,14 @@ def test_wheel_carries_package_shaders_and_assets_only(unpacked_wheel: Path) -> 
         assert inside, f"{folder} is empty"
         expected |= {f"akap_editor/{folder}/{name}" for name in inside}
     assert {name for name in carried if ".dist-info/" not in name} == expected
+
+
+def test_links_of_the_page_on_pypi_have_whole_addresses(unpacked_wheel: Path) -> None:
+    (metadata,) = unpacked_wheel.glob("*.dist-info/METADATA")
+    _, _, page = metadata.read_text("utf-8").partition("\n\n")
+    links = re.findall(r"\]\(([^)#]+)", page)
+    assert len(links) > 5
+    assert not [link for link in links if not link.startswith("https://")]
 
 
 def test_resources_are_found_in_an_installed_wheel(unpacked_wheel: Path) -> None:

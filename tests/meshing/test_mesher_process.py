@@ -1,12 +1,15 @@
 """Meshers in a child process: one child for many jobs, crashes and time-outs are errors of one job only."""
 
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import TriMesh
+from akap_editor.meshing import mesher_worker
 from akap_editor.meshing.mesher_process import MesherProcess, Refinement
 from akap_editor.meshing.meshers import MESHERS, PYTHONCDT, TRIANGLE
 
@@ -119,6 +122,18 @@ def test_no_faces_are_an_input_error(process, change, mesher):
 def test_coordinates_that_are_not_finite_are_refused(process, refinement):
     with pytest.raises(InputError, match="outlines: expected finite coordinates"):
         process.run({**GRAPH, "vertices": SQUARE * np.nan}, refinement)
+
+
+def test_the_child_of_a_bundle_is_the_program_with_a_hidden_command(process, tmp_path, monkeypatch):
+    """A bundle has no Python that could run a script; `tools/bundle/start.py` is what it starts."""
+    program = tmp_path / "akap-editor"
+    folder = Path(mesher_worker.__file__).parent
+    start = Path(__file__).parents[2] / "tools" / "bundle" / "start.py"
+    program.write_text(f'#!/bin/sh\nPYTHONPATH="{folder}" exec "{sys.executable}" "{start}" "$@"\n')
+    program.chmod(0o755)
+    monkeypatch.setattr(sys, "frozen", True, raising=False)
+    monkeypatch.setattr(sys, "executable", str(program))
+    assert len(process.run(GRAPH, FINE[PYTHONCDT])[1])
 
 
 def angles(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
