@@ -19,7 +19,7 @@ PINS = ((932, 205), (838, 468), (500, 390))  # on the trunk and the ear
 
 
 def main() -> None:
-    """Write assets/icons/akap-editor-<size>.png."""
+    """Write assets/icons/akap-editor-<size>.png and docs/images/icon.png."""
     side = SIDE * SAMPLES
     scale = side / (HEAD[2] - HEAD[0])
     source = resource("assets", "drawings", "elephant.svg")
@@ -37,6 +37,7 @@ def main() -> None:
     corners = Image.new("L", (side, side))
     ImageDraw.Draw(corners).rounded_rectangle((0, 0, side - 1, side - 1), 0.2 * side, fill=255)
     icon.putalpha(corners)
+    icon.resize((128, 128), Image.Resampling.LANCZOS).save("docs/images/icon.png", optimize=True)
     for size in SIZES:
         path = resource("assets", "icons") / f"akap-editor-{size}.png"
         icon.resize((size, size), Image.Resampling.LANCZOS).save(path, optimize=True)
