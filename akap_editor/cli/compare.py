@@ -16,6 +16,7 @@ from ..geometry.distortion import distortion
 from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.atomic import write_atomic
 from ..io.outputs import refuse_replacing
+from ..meshing.meshers import nearest_mesher
 from .options import FILE, make_folder_of, overwrite_option, parse_numbers
 
 
@@ -96,7 +97,8 @@ def _run_methods(
     from ..compare.run import replay_method, run
 
     runs, finer = [], []
-    others = [make_drawing(drawing.image, vertices=size, name=drawing.name) for size in sizes]
+    mesher = None if drawing.meshing is None else nearest_mesher(drawing.meshing.mesher)
+    others = [make_drawing(drawing.image, vertices=size, name=drawing.name, mesher=mesher) for size in sizes]
     for spec in specs:
         with file_errors(f"replay with {spec}", path):
             runs.append(run(recording, drawing, spec))
