@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from akap_editor.deform.methods import METHODS
 
@@ -82,6 +83,15 @@ def test_every_page_is_in_the_index():
 def test_every_screenshot_is_on_a_page():
     pages = "".join(page.read_text("utf-8") for page in PAGES)
     assert not [name for name in tool("make_screenshots").SHOTS if f"images/{name}.png" not in pages]
+
+
+def test_the_moving_picture_of_the_readme_moves_and_loads_fast():
+    """`python tools/make_moving_picture.py` makes it again."""
+    path = ROOT / "docs" / "images" / "elephant.webp"
+    with Image.open(path) as picture:
+        assert picture.n_frames > 100
+    assert path.stat().st_size < 3_000_000
+    assert "(docs/images/elephant.webp)" in (ROOT / "README.md").read_text("utf-8")
 
 
 def test_the_shortcuts_page_is_current():
