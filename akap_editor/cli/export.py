@@ -19,6 +19,7 @@ from .options import (
     export_options,
     framing_options,
     make_folder_of,
+    mesher_option,
     overwrite_option,
     threshold_option,
 )
@@ -55,13 +56,14 @@ def export_file(
     options: ExportOptions,
     threshold: float | None = None,
     overwrite: bool = False,
+    mesher: str | None = None,
 ) -> ExportResult:
     """Export a drawing or picture. Raises InputError."""
     from ..render.offscreen import OffscreenRenderer
 
     chosen = format_of(output)
     refuse_source(output, [file], overwrite)
-    document = open_document(file, threshold=check_threshold(threshold))
+    document = open_document(file, threshold=check_threshold(threshold), mesher=mesher)
     for note in opening_notes(document):
         click.echo(f"akap-editor: {note}", err=True)
     make_folder_of(output)
@@ -83,6 +85,7 @@ def export_file(
 @click.option("-o", "--output", type=FILE, required=True, help="File to write; its ending sets the format.")
 @framing_options
 @threshold_option
+@mesher_option
 @overwrite_option
 @click.option("--rest", is_flag=True, help="Export the rest pose.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
@@ -93,6 +96,7 @@ def export_command(
     background: str | None,
     crop: str | None,
     threshold: float | None,
+    mesher: str | None,
     overwrite: bool,
     rest: bool,
     as_json: bool,
@@ -104,7 +108,7 @@ def export_command(
         if value is not None and not chosen.uses_framing:
             raise InputError(f"{name}: expected a picture or an outline as output, got {chosen.suffix}")
     options = export_options(scale, background, crop, rest)
-    result = export_file(file, output, options, threshold, overwrite)
+    result = export_file(file, output, options, threshold, overwrite, mesher)
     click.echo(json.dumps(result.facts, indent=2) if as_json else result.text)
 
 

@@ -10,7 +10,9 @@ import trimesh
 from akap_editor.editor.framing import CROPS, crop_box
 from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import read_image, write_png
+from akap_editor.io.mesh_files.mesh_drawing import read_mesh
 from akap_editor.io.open_document import open_document
+from akap_editor.meshing.meshers import MESHERS
 from akap_editor.render.offscreen import OffscreenRenderer
 from tests.support.command_line import assert_one_line
 
@@ -97,3 +99,11 @@ def test_the_largest_picture(run, tmp_path):
     image = read_image(tmp_path / "a.png")
     assert (image[90:300, 300:7900] == [250, 130, 20, 255]).all()
     assert not image[:, :190].any()
+
+
+def test_the_mesh_of_a_picture_is_made_by_the_mesher_asked_for(run, picture, tmp_path):
+    written = []
+    for mesher in MESHERS:
+        assert run("export", picture, "-o", f"{mesher}.obj", "--mesher", mesher)[0] == 0
+        written.append(read_mesh(tmp_path / f"{mesher}.obj").mesh.vertices.tolist())
+    assert written[0] != written[1]
