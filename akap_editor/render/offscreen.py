@@ -17,6 +17,7 @@ from .renderer import Background, Renderer
 from .shaders import load_program
 
 TILE_SIZE = 2048  # pixels, of the squares that are drawn one by one: bounds the memory of the graphics card
+_MAX_KEPT_TARGETS = 4  # the whole tiles of a picture, and those at its right, its bottom and its corner
 SAMPLES = 4  # per pixel along edges of the mesh; inside, the texture is sampled once and stays exact
 
 
@@ -32,6 +33,31 @@ def standalone_context() -> moderngl.Context:
         ) from error
 
 
+class _Targets:
+    """Framebuffers of one size: with samples, then one value a pixel, then straight 8-bit colors."""
+
+    def __init__(self, ctx: moderngl.Context, size: tuple[int, int]) -> None:
+        samples = ctx.renderbuffer(size, 4, samples=min(SAMPLES, ctx.max_samples), dtype="f2")
+        self.texture = ctx.texture(size, 4, dtype="f2")
+        pixels = ctx.renderbuffer(size, 4)
+        self.sampled, self.resolved, self.straight = map(
+            ctx.framebuffer, ([samples], [self.texture], [pixels])
+        )
+        self._items: tuple[Any, ...] = (
+            self.sampled,
+            self.resolved,
+            self.straight,
+            samples,
+            self.texture,
+            pixels,
+        )
+
+    def release(self) -> None:
+        """Free every OpenGL object."""
+        for item in self._items:
+            item.release()
+
+
 class OffscreenRenderer:
     """Renders drawings to arrays. Use it as a context manager, or call `release` in the end.
 
@@ -43,6 +69,7 @@ class OffscreenRenderer:
         self._context = context
         self._owns_context = context is None
         self._renderer: Renderer | None = None
+        self._targets: dict[tuple[int, int], _Targets] = {}  # by size in pixels
 
     def __enter__(self) -> Self:
         return self
@@ -54,9 +81,12 @@ class OffscreenRenderer:
         """Free every OpenGL object, and the context if it is its own."""
         if self._renderer is not None:
             with self._current():
+                for targets in self._targets.values():
+                    targets.release()
                 for item in (self._unpremultiply_pass, self._unpremultiply, self._renderer):
                     item.release()
             self._renderer = None
+            self._targets.clear()
         if self._owns_context and self._context is not None:
             self._context.release()
             self._context = None
@@ -113,30 +143,29 @@ class OffscreenRenderer:
         # y is not flipped: the bottom row of the target is read first and is the top row of the result
         sx, sy = 2 * scale / size[0], 2 * scale / size[1]
         view = sx, sy, -1 - sx * corner[0], -1 - sy * corner[1]
-        sampled = ctx.renderbuffer(size, 4, samples=min(SAMPLES, ctx.max_samples), dtype="f2")
-        resolved = ctx.texture(size, 4, dtype="f2")
-        straight = ctx.renderbuffer(size, 4)
-        targets = [ctx.framebuffer([buffer]) for buffer in (sampled, resolved, straight)]
-        try:
-            with ctx.scope(targets[0]):
-                renderer.draw(targets[0], size, view, background=background)
-            ctx.copy_framebuffer(targets[1], targets[0])
-            resolved.use(0)
-            with ctx.scope(targets[2], moderngl.NOTHING):
-                self._unpremultiply_pass.render(moderngl.TRIANGLES, vertices=3)
-            pixels = np.empty((size[1], size[0], 4), dtype=np.uint8)
-            targets[2].read_into(pixels, components=4, alignment=1)
-            return pixels
-        finally:
-            for target in targets:
-                target.release()
-            for buffer in (sampled, straight):
-                buffer.release()
-            resolved.release()
+        targets = self._targets_of(size)
+        with ctx.scope(targets.sampled):
+            renderer.draw(targets.sampled, size, view, background=background)
+        ctx.copy_framebuffer(targets.resolved, targets.sampled)
+        targets.texture.use(0)
+        with ctx.scope(targets.straight, moderngl.NOTHING):
+            self._unpremultiply_pass.render(moderngl.TRIANGLES, vertices=3)
+        pixels = np.empty((size[1], size[0], 4), dtype=np.uint8)
+        targets.straight.read_into(pixels, components=4, alignment=1)
+        return pixels
+
+    def _targets_of(self, size: tuple[int, int]) -> "_Targets":
+        """What tiles of this size are drawn into; kept, because drivers free memory late."""
+        assert self._context is not None
+        if size not in self._targets:
+            while len(self._targets) >= _MAX_KEPT_TARGETS:
+                self._targets.pop(next(iter(self._targets))).release()
+            self._targets[size] = _Targets(self._context, size)
+        return self._targets[size]
 
     def _prepared_renderer(self, ctx: moderngl.Context) -> Renderer:
         if self._renderer is None:
-            self._renderer = Renderer(ctx, precise=True)
+            self._renderer = Renderer(ctx, precise=True, sharp=True)
             self._unpremultiply = load_program(ctx, "fullscreen.vert", "unpremultiply.frag")
             self._unpremultiply_pass = ctx.vertex_array(self._unpremultiply, [])
         return self._renderer

@@ -31,6 +31,7 @@ class Background:
 
 TRANSPARENT = Background()
 CANVAS = Background(color=(0.094, 0.098, 0.110), checker=((0.165, 0.169, 0.184), (0.192, 0.196, 0.212)))
+_SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swiftshader", "gdi generic", "software")
 NO_TINT = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -39,10 +40,13 @@ class Renderer:
 
     The context must be current in all calls, and `release` must be called in the end. precise: use a texture
     of 16-bit floats instead of 8 bits, so that colors stay exact when an export divides them by a low alpha.
+    sharp: enlarge the picture by Catmull-Rom splines and reduce it by means over pixels, instead of linear
+    interpolation; by default where a graphics card computes, not the processor.
     """
 
-    def __init__(self, ctx: moderngl.Context, *, precise: bool = False) -> None:
+    def __init__(self, ctx: moderngl.Context, *, precise: bool = False, sharp: bool | None = None) -> None:
         self._ctx = ctx
+        self._is_sharp = not _is_software(ctx) if sharp is None else sharp
         self._texture_dtype = "f2" if precise else "f1"
         self.max_texture_size: int = ctx.info["GL_MAX_TEXTURE_SIZE"]
         self._premultiply = load_program(ctx, "fullscreen.vert", "premultiply.frag")
@@ -198,6 +202,7 @@ class Renderer:
         self._mesh_program["view"] = view
         self._mesh_program["opacity"] = opacity
         self._mesh_program["tint"] = tint
+        self._mesh_program["sharp"] = self._is_sharp
         mesh.render()
 
     def _draw_reference(self, reference: Reference, frame: tuple[int, int], view: View) -> None:
@@ -284,3 +289,8 @@ class Renderer:
         texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
         texture.repeat_x = texture.repeat_y = False
         return texture
+
+
+def _is_software(ctx: moderngl.Context) -> bool:
+    """Whether the processor computes what a graphics card would."""
+    return any(name in ctx.info["GL_RENDERER"].lower() for name in _SOFTWARE_RENDERERS)

@@ -15,6 +15,7 @@ from ..images import Picture, encode_png, write_png
 from .frames import checked_frames
 
 MAX_SHEET_SIDE = 16384
+GUTTER = 2  # empty pixels between frames, so that a game that scales them mixes no neighbors
 _FRAME_NAME = re.compile(r"frame-(\d{4,})\.png")
 
 
@@ -56,9 +57,10 @@ def write_sheet(
 ) -> tuple[int, int]:
     """Write a sprite sheet, one PNG, and its index with the ending .json; return columns and rows.
 
-    frames: (h, w, 4) uint8 each, all of one size; placed row by row. Margins that are empty in all frames are
-    cropped. The index has the common form of texture packers: for each frame its rectangle in the sheet, its
-    position in the uncropped picture, and its duration in milliseconds.
+    frames: (h, w, 4) uint8 each, all of one size; placed row by row, with gutters of `GUTTER` empty pixels
+    between and around them. Margins that are empty in all frames are cropped. The index has the common form
+    of texture packers: for each frame its rectangle in the sheet, its position in the uncropped picture, and
+    its duration in milliseconds.
     Raises InputError, also for a sheet of more than `MAX_SHEET_SIDE` pixels a side.
     """
     path = Path(path)
@@ -68,15 +70,18 @@ def write_sheet(
     w, h = right - left, bottom - top
     columns = min(len(images), max(1, round(math.sqrt(len(images) * h / w))))
     rows = math.ceil(len(images) / columns)
-    if max(columns * w, rows * h) > MAX_SHEET_SIDE:
+    sheet_width, sheet_height = columns * (w + GUTTER) + GUTTER, rows * (h + GUTTER) + GUTTER
+    if max(sheet_width, sheet_height) > MAX_SHEET_SIDE:
         raise InputError(
-            f"sheet: expected at most {MAX_SHEET_SIDE} pixels a side, got {columns * w} x {rows * h} for "
+            f"sheet: expected at most {MAX_SHEET_SIDE} pixels a side, got {sheet_width} x {sheet_height} for "
             f"{len(images)} frames; choose a smaller size or rate"
         )
-    sheet = np.zeros((rows * h, columns * w, 4), dtype=np.uint8)
+    sheet = np.zeros((sheet_height, sheet_width, 4), dtype=np.uint8)
     index = []
     for number, image in enumerate(images):
-        y, x = number // columns * h, number % columns * w
+        y, x = (
+            GUTTER + at * (side + GUTTER) for at, side in zip(divmod(number, columns), (h, w), strict=True)
+        )
         sheet[y : y + h, x : x + w] = image[top:bottom, left:right]
         index.append(
             {

@@ -2,9 +2,10 @@ import json
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from akap_editor.errors import InputError
-from akap_editor.io.animation.sprite_sheet import MAX_SHEET_SIDE, write_frames, write_sheet
+from akap_editor.io.animation.sprite_sheet import GUTTER, MAX_SHEET_SIDE, write_frames, write_sheet
 from akap_editor.io.images import read_image
 
 
@@ -36,7 +37,23 @@ def test_the_index_finds_every_frame_in_the_sheet(tmp_path):
 
 def test_a_sheet_of_nothing_is_a_sheet(tmp_path):
     write_sheet(tmp_path / "a.png", [np.zeros((4, 6, 4), dtype=np.uint8)] * 2, fps=10)
-    assert read_image(tmp_path / "a.png").size == 2 * 4 * 6 * 4
+    sheet = read_image(tmp_path / "a.png")
+    assert not sheet.any()
+    index = json.loads((tmp_path / "a.json").read_text())
+    assert [entry["frame"] for entry in index["frames"]] == [
+        {"x": 2, "y": 2, "w": 6, "h": 4},
+        {"x": 2, "y": 8, "w": 6, "h": 4},
+    ]
+
+
+@pytest.mark.parametrize("count", [1, 2, 5, 7])
+def test_frames_are_apart_from_each_other_and_from_the_rim(tmp_path, count):
+    write_sheet(tmp_path / "a.png", [np.full((5, 6, 4), 9, dtype=np.uint8)] * count, fps=10)
+    covered = read_image(tmp_path / "a.png")[..., 3] > 0
+    assert covered.sum() == count * 30
+    assert ndimage.label(ndimage.binary_dilation(covered, np.ones((GUTTER, GUTTER))))[1] == count
+    inner = covered[GUTTER:-GUTTER, GUTTER:-GUTTER]
+    assert inner.sum() == covered.sum()
 
 
 @pytest.mark.parametrize(
