@@ -12,22 +12,105 @@ The engine as a library, without a window::
     akap.distortion(drawing.mesh, pose)
 """
 
-from .deform.deformer import Deformer, StepReport, StepResult
-from .deform.methods import make_deformer, method_names
-from .editor.document.document import Document, EditState, new_document
-from .editor.document.drawing import Drawing, make_drawing
-from .editor.document.pin import Pin
-from .editor.document.rest_pose import bake
-from .editor.document.settings import Settings
-from .errors import AkapError, DisplayError, GraphicsError, InputError, SolverError
-from .geometry.distortion import Distortion, distortion
-from .geometry.mesh import MeshPoints, TriMesh
-from .io.akap.project import load, save
-from .io.export import ExportOptions, export
-from .io.images import read_image, write_png
-from .io.open_document import open_document
-from .meshing.outline import Outline, outlines
-from .meshing.triangulate import triangulate
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .library import (
+        AkapError as AkapError,
+    )
+    from .library import (
+        Deformer as Deformer,
+    )
+    from .library import (
+        DisplayError as DisplayError,
+    )
+    from .library import (
+        Distortion as Distortion,
+    )
+    from .library import (
+        Document as Document,
+    )
+    from .library import (
+        Drawing as Drawing,
+    )
+    from .library import (
+        EditState as EditState,
+    )
+    from .library import (
+        ExportOptions as ExportOptions,
+    )
+    from .library import (
+        GraphicsError as GraphicsError,
+    )
+    from .library import (
+        InputError as InputError,
+    )
+    from .library import (
+        MeshPoints as MeshPoints,
+    )
+    from .library import (
+        Outline as Outline,
+    )
+    from .library import (
+        Pin as Pin,
+    )
+    from .library import (
+        Settings as Settings,
+    )
+    from .library import (
+        SolverError as SolverError,
+    )
+    from .library import (
+        StepReport as StepReport,
+    )
+    from .library import (
+        StepResult as StepResult,
+    )
+    from .library import (
+        TriMesh as TriMesh,
+    )
+    from .library import (
+        bake as bake,
+    )
+    from .library import (
+        distortion as distortion,
+    )
+    from .library import (
+        export as export,
+    )
+    from .library import (
+        load as load,
+    )
+    from .library import (
+        make_deformer as make_deformer,
+    )
+    from .library import (
+        make_drawing as make_drawing,
+    )
+    from .library import (
+        method_names as method_names,
+    )
+    from .library import (
+        new_document as new_document,
+    )
+    from .library import (
+        open_document as open_document,
+    )
+    from .library import (
+        outlines as outlines,
+    )
+    from .library import (
+        read_image as read_image,
+    )
+    from .library import (
+        save as save,
+    )
+    from .library import (
+        triangulate as triangulate,
+    )
+    from .library import (
+        write_png as write_png,
+    )
 
 __version__ = "0.1.0"
 
@@ -66,3 +149,16 @@ __all__ = [
     "triangulate",
     "write_png",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """A name of the library: it takes a second to load, which programs with other aims need not wait for."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from . import library
+
+    return getattr(library, name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

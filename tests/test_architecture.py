@@ -147,7 +147,6 @@ def test_folders_have_at_most_a_dozen_modules() -> None:
 OVERALL = {
     "test_architecture",
     "test_docs",
-    "test_library",
     "io/test_fuzz_files",  # runs benchmarks/fuzz_files.py
 }
 

@@ -9,24 +9,94 @@ from click.shell_completion import CompletionItem
 from .. import __version__
 from ..display_text import display_text
 from ..errors import AkapError
-from .bench import bench
-from .compare import compare_command
-from .edit import edit
-from .export import export_command
-from .info import info
-from .integrate import integrate_command
-from .mesh import mesh
-from .render import render
-from .replay import replay_command
-from .thumbnail import thumbnail
+
+# The first lines of the commands' help: a list of them needs nothing of what the commands do.
+ABOUT = {
+    "edit": "Open FILE in a window: a picture, a flat OBJ or OFF mesh, a drawing saved as .akap, or a "
+    "recording, which is then on the timeline.",
+    "render": "Write the pose of FILE, a saved drawing or a picture, as a PNG picture.",
+    "replay": "Replay a recording, or the keyframes of a drawing saved as .akap, as an animation or a "
+    "picture.",
+    "compare": "Replay recordings with several methods and write a report: index.html and comparison.json.",
+    "export": "Export FILE, a saved drawing or a picture, for other programs.",
+    "info": "Tell what FILE contains, a picture, drawing, pose, recording or mesh, and whether it is sound.",
+    "bench": "Measure deformation methods on this computer: the bundled elephant lifts its trunk, one step "
+    "per frame.",
+    "mesh": "Make a mesh of each PICTURE, or of all pictures in a folder, and report its quality.",
+    "integrate": "Put the program into the menus and file managers of the current user, on Linux.",
+    "thumbnail": "Write a thumbnail of FILE, a drawing or recording, as the PNG file OUTPUT.",
+}
+_HIDDEN = {"thumbnail"}
+
+
+def _load_command(name: str) -> click.Command:
+    """Import a command, and with it all that it needs."""
+    if name == "edit":
+        from .edit import edit
+
+        return edit
+    if name == "render":
+        from .render import render
+
+        return render
+    if name == "replay":
+        from .replay import replay_command
+
+        return replay_command
+    if name == "compare":
+        from .compare import compare_command
+
+        return compare_command
+    if name == "export":
+        from .export import export_command
+
+        return export_command
+    if name == "info":
+        from .info import info
+
+        return info
+    if name == "bench":
+        from .bench import bench
+
+        return bench
+    if name == "mesh":
+        from .mesh import mesh
+
+        return mesh
+    if name == "integrate":
+        from .integrate import integrate_command
+
+        return integrate_command
+    from .thumbnail import thumbnail
+
+    return thumbnail
 
 
 class _Main(click.Group):
-    """A group of commands in which `edit` is the default: a file instead of a command is opened."""
+    """A group of commands in which `edit` is the default: a file instead of a command is opened.
+
+    A command is imported when it is used, because what most of them need takes a second to load.
+    """
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(ABOUT)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name in ABOUT and cmd_name not in self.commands:
+            self.add_command(_load_command(cmd_name))
+        return self.commands.get(cmd_name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands without importing them."""
+        shown = [name for name in sorted(ABOUT) if name not in _HIDDEN]
+        limit = formatter.width - 6 - max(map(len, shown))
+        rows = [(name, click.Command(name, help=ABOUT[name]).get_short_help_str(limit)) for name in shown]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         options = {"-h", "--help", "--version"}
-        has_command = args and (args[0] in self.commands or args[0] in options)
+        has_command = args and (args[0] in ABOUT or args[0] in options)
         if not has_command and not ctx.resilient_parsing:  # resilient: the shell asks for completions
             args = ["edit", *args]
         return super().parse_args(ctx, args)
@@ -40,21 +110,6 @@ class _Main(click.Group):
 @click.version_option(__version__, prog_name="akap-editor")
 def cli() -> None:
     """Deform cartoons. `akap-editor FILE` opens a picture with a transparent background, or a drawing."""
-
-
-for command in (
-    edit,
-    render,
-    replay_command,
-    compare_command,
-    export_command,
-    info,
-    bench,
-    mesh,
-    integrate_command,
-    thumbnail,
-):
-    cli.add_command(command)
 
 
 def main() -> None:

@@ -17,7 +17,7 @@ from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.atomic import write_atomic
 from ..io.outputs import refuse_replacing
 from ..meshing.meshers import nearest_mesher
-from .options import FILE, make_folder_of, overwrite_option, parse_numbers
+from .options import FILE, make_folder_of, overwrite_option, parse_numbers, progress_bar
 
 
 @click.command(
@@ -55,7 +55,7 @@ def compare_command(
     drawings = [recorded_drawing(recording) for _, recording in inputs]
     make_folder_of(page_path)
     count = len(inputs) * len(specs) * (1 + len(sizes))
-    with click.progressbar(length=count, label="Replaying") as bar:
+    with progress_bar(range(count), count, "Replaying") as bar:
         models = [
             _run_methods(path, recording, drawing, specs, sizes, bar.update)
             for (path, recording), drawing in zip(inputs, drawings, strict=True)

@@ -5,7 +5,7 @@ import click
 from ..desktop.integration import data_folder, integrate, program_command, remove_integration
 
 
-@click.command("integrate")
+@click.command("integrate", epilog="Example: akap-editor integrate")
 @click.option("--remove", is_flag=True, help="Remove everything again.")
 def integrate_command(remove: bool) -> None:
     """Put the program into the menus and file managers of the current user, on Linux.

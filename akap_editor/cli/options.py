@@ -1,9 +1,11 @@
 """Options that several commands share, and checks of their values."""
 
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Callable, Iterable, Sequence
 from inspect import cleandoc
+from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -15,7 +17,11 @@ from ..io.images import write_png
 from ..meshing.meshers import MESHERS
 from ..resources import bundled_drawings
 
+if TYPE_CHECKING:
+    from click._termui_impl import ProgressBar
+
 FILE = click.Path(path_type=Path)
+T = TypeVar("T")
 
 _FRAMING = (
     click.option(
@@ -49,6 +55,15 @@ mesher_option = click.option(
     type=click.Choice(list(MESHERS)),
     help="Program that makes the mesh; by default triangle, if it is installed.",
 )
+
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+
+
+def progress_bar(items: Iterable[T] | None, length: int, label: str) -> "ProgressBar[T]":
+    """A progress bar on stderr, if that is a terminal; stdout is for results."""
+    file = sys.stderr if sys.stderr.isatty() else StringIO()
+    return click.progressbar(items, length, label, file=file)
 
 
 def check_threshold(threshold: float | None) -> float | None:

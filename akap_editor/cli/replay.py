@@ -1,5 +1,6 @@
 """Writes recordings and keyframes as animations."""
 
+import json
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -31,9 +32,11 @@ from .options import (
     FILE,
     append_formats,
     check_png,
+    json_option,
     make_folder_of,
     overwrite_option,
     parse_color,
+    progress_bar,
     write_picture,
 )
 
@@ -98,6 +101,10 @@ _FORMATS = [
     help="How often the animation plays; 0 for forever, the default, unless the drawing says that it plays "
     "once.",
 )
+@click.option(
+    "--quality", type=int, metavar="NUMBER", help="Of a lossy WebP, 1 to 100; it is lossless by default."
+)
+@json_option
 @overwrite_option
 def replay_command(
     recording: Path, output: Path, drawing: Path | None, pose: Path | None, **options: object
@@ -132,7 +139,9 @@ def replay_recording(
     ease: str = "none",
     ping_pong: bool = False,
     plays: int | None = None,
+    quality: int | None = None,
     overwrite: bool = False,
+    as_json: bool = False,
 ) -> None:
     """Do what the command does. Raises InputError before anything is written."""
     from ..render.offscreen import OffscreenRenderer
@@ -144,6 +153,10 @@ def replay_recording(
     background_color = parse_color(background)
     chosen = animation_format(output, sheet)
     fps = min(fps, chosen.max_fps)
+    if quality is not None:
+        if not chosen.has_quality:
+            raise InputError(f"--quality: expected an output that ends in .webp, got {chosen.label}")
+        _check_number("--quality", quality, 1, 100)
     if pose is not None:
         check_png(pose)
     for written_path in filter(None, [output, pose]):
@@ -153,21 +166,28 @@ def replay_recording(
     plays = source.plays if plays is None else plays
     first, last = _range(source.duration, start, end)
     times = [last] if chosen.is_still else frame_times(first, last, fps, speed, ease)
-    with file_errors("replay", path), click.progressbar(source.play(times), len(times), "Bending") as bar:
+    with file_errors("replay", path), progress_bar(source.play(times), len(times), "Bending") as bar:
         frames = list(bar)
     is_loop = plays != 1 and loops_seamlessly(frames[0], frames[-1])
     end_frame, frames = frames[-1], playing_order(frames, ping_pong, is_loop)
     make_folder_of(output)
+    written_files = [output]
     with OffscreenRenderer() as renderer:
         pictures = paint_frames(frames, renderer, size, background_color, chosen.is_video)
-        with click.progressbar(pictures, len(frames), "Drawing") as bar:
-            written = write_animation(output, bar, fps, plays, sheet, overwrite=overwrite)
+        with progress_bar(pictures, len(frames), "Drawing") as bar:
+            written = write_animation(output, bar, fps, plays, sheet, overwrite=overwrite, quality=quality)
         if pose is not None:
             picture = renderer.render(
                 end_frame.drawing, end_frame.pose, background=background_color, order=end_frame.order
             )
             write_picture(pose, picture)
-            click.echo(f"Wrote {display_text(pose)}, the last pose")
+            written_files.append(pose)
+    if as_json:
+        facts = {"format": chosen.label, "frames": len(frames), "fps": fps, "plays": plays}
+        click.echo(json.dumps({**facts, "files": list(map(str, written_files))}, indent=2))
+        return
+    if pose is not None:
+        click.echo(f"Wrote {display_text(pose)}, the last pose")
     click.echo(f"Wrote {display_text(output)}, {len(frames)} frames, {written}")
 
 

@@ -1,10 +1,16 @@
 """Help and shell completion of all commands."""
 
+import subprocess
+import sys
+
 import click
 import pytest
 from click.shell_completion import BashComplete, FishComplete, ZshComplete
 
-from akap_editor.cli import cli
+from akap_editor.cli import ABOUT, cli
+
+COMMANDS = {name: cli.get_command(click.Context(cli), name) for name in ABOUT}
+VISIBLE = [name for name, command in COMMANDS.items() if not command.hidden]
 
 
 @pytest.fixture
@@ -20,7 +26,7 @@ def complete():
 
 def test_commands_and_files_come_first(complete):
     offered = complete()
-    assert {value for kind, value in offered if kind == "plain"} == set(cli.commands)
+    assert {value for kind, value in offered if kind == "plain"} == set(VISIBLE)
     assert ("file", "") in offered
 
 
@@ -57,13 +63,33 @@ def test_the_shell_gets_its_list_from_the_program(run, monkeypatch):
     monkeypatch.setenv("COMP_CWORD", "1")
     code, said, errors = run()
     assert (code, errors) == (0, "")
-    assert {f"plain,{name}" for name in cli.commands} <= set(said.splitlines())
+    assert {f"plain,{name}" for name in VISIBLE} <= set(said.splitlines())
 
 
-@pytest.mark.parametrize("name", sorted(cli.commands))
+@pytest.mark.parametrize("name", sorted(VISIBLE))
 def test_each_command_has_help_with_an_example(run, name):
     code, said, errors = run(name, "--help")
     assert (code, errors) == (0, "")
     assert f"Example: akap-editor {name}" in " ".join(said.split())
-    for parameter in cli.commands[name].params:
+    for parameter in COMMANDS[name].params:
         assert not isinstance(parameter, click.Option) or parameter.help, parameter.name
+
+
+@pytest.mark.parametrize("name", ABOUT)
+def test_the_list_of_commands_says_what_their_help_says(name):
+    assert COMMANDS[name].name == name
+    assert COMMANDS[name].get_short_help_str(1000) == ABOUT[name]
+
+
+def test_the_list_of_commands_loads_nothing_that_they_need():
+    code = """
+import sys
+from akap_editor.cli import main
+sys.argv = ["akap-editor", "--help"]
+main()
+print(sorted({"numpy", "scipy", "shapely", "numba", "PIL", "moderngl", "imgui_bundle"} & sys.modules.keys()))
+"""
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert said.splitlines()[-1] == "[]"
+    for name in VISIBLE:
+        assert f"\n  {name} " in said

@@ -1,5 +1,7 @@
 """`akap-editor render`: the PNG it writes, and bad input."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -34,6 +36,18 @@ def test_render_scale_and_background(run, posed, tmp_path):
     assert written[0, 0].tolist() == [0x33, 0x66, 0x99, 255]
     plain = picture_of(posed)
     assert abs(np.array(written.shape[:2]) - 2 * np.array(plain.shape[:2])).max() == 0
+
+
+def test_the_result_as_json(run, picture, tmp_path):
+    code, said, errors = run("render", picture, "-o", "pose.png", "--json")
+    assert (code, errors) == (0, "")
+    height, width = read_image(tmp_path / "pose.png").shape[:2]
+    assert json.loads(said) == {
+        "format": "PNG picture",
+        "files": ["pose.png"],
+        "width": width,
+        "height": height,
+    }
 
 
 @pytest.mark.parametrize(

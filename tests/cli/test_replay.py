@@ -172,6 +172,31 @@ def test_ping_pong_ends_where_it_began(replay_bar, tmp_path):
     np.testing.assert_array_equal(frames[1], frames[-1])
 
 
+def test_the_result_as_json_is_all_that_is_on_stdout(replay_bar, tmp_path):
+    options = ("--fps", 8, "--size", 45, "--pose", "last.png", "--plays", 3, "--json")
+    code, said, errors = replay_bar("-o", "bar.gif", *options)
+    assert (code, errors) == (0, "")
+    assert json.loads(said) == {
+        "format": "GIF",
+        "frames": 9,
+        "fps": 8,
+        "plays": 3,
+        "files": ["bar.gif", "last.png"],
+    }
+
+
+def test_progress_is_not_on_stdout(replay_bar, tmp_path):
+    code, said, _ = replay_bar("-o", "bar.gif", "--fps", 8, "--size", 45)
+    assert code == 0
+    assert said.startswith("Wrote bar.gif, 9 frames")
+
+
+def test_a_lossy_webp_is_smaller(replay_bar, tmp_path):
+    for name, options in (("lossless", ()), ("lossy", ("--quality", 20))):
+        assert replay_bar("-o", f"{name}.webp", "--fps", 8, *options)[0] == 0
+    assert (tmp_path / "lossy.webp").stat().st_size != (tmp_path / "lossless.webp").stat().st_size
+
+
 def test_a_sheet_and_its_index(replay_bar, tmp_path):
     assert replay_bar("-o", "bar.png", "--sheet", "--fps", 8, "--size", 64)[0] == 0
     index = json.loads((tmp_path / "bar.json").read_text())
@@ -238,6 +263,7 @@ def test_methods_and_variants(replay_bar, session, tmp_path, monkeypatch, option
         (["--method", "magic"], ["akap", "mls", "'magic'"]),
         (["--background", "red"], ["--background", "'red'"]),
         (["--sheet"], [".png", ".gif"]),
+        (["--quality", 50], ["--quality", ".webp", "GIF"]),
     ],
 )
 def test_bad_options_are_one_line_and_nothing_is_written(replay_bar, tmp_path, options, parts):

@@ -17,7 +17,7 @@ from .video import require_av, write_mp4, write_webm
 
 MAX_PLAYS = 65535
 
-Writer = Callable[[Path, Iterable[Picture], float, int, Write], str]
+Writer = Callable[..., str]  # of path, frames, fps, plays and write; and quality, where there is one
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class AnimationFormat:
     label: name on the screen; suffix: ending of file names, "" for a folder; about: description for the user;
     has_transparency: whether the background can be transparent; repeats: whether the file says how often it
     plays; is_video: whether the package av is needed, and width and height must be even; is_sheet: whether
-    all frames are in one picture; is_still: whether only the last frame is written; max_fps: frames per
-    second, at most. writer: see `write_animation`.
+    all frames are in one picture; is_still: whether only the last frame is written; has_quality: whether it
+    can be lossy; max_fps: frames per second, at most. writer: see `write_animation`.
     """
 
     label: str
@@ -40,6 +40,7 @@ class AnimationFormat:
     is_video: bool = False
     is_sheet: bool = False
     is_still: bool = False
+    has_quality: bool = False
     max_fps: float = 120.0
 
 
@@ -60,7 +61,12 @@ def _write_last(path: Path, frames: Iterable[Picture], *_: object) -> str:
 
 ANIMATION_FORMATS = (
     AnimationFormat(
-        "WebP", ".webp", "An animation for the web: all colors, soft edges, small.", write_webp, repeats=True
+        "WebP",
+        ".webp",
+        "An animation for the web: all colors, soft edges, small.",
+        write_webp,
+        repeats=True,
+        has_quality=True,
     ),
     AnimationFormat(
         "GIF",
@@ -122,13 +128,15 @@ def write_animation(
     sheet: bool = False,
     write: Write = write_atomic,
     overwrite: bool = False,
+    quality: int | None = None,
 ) -> str:
     """Write frames, (h, w, 4) uint8 each, straight alpha, all of one size; return a few words on the result.
 
     The ending of ``path`` decides on the format, see `animation_format`. frames: read once, in order; plays:
     how often the animation is shown, 0 for forever; formats that do not repeat ignore it; write: writes a
     file when all of it is encoded; overwrite: replace files that ``path`` does not name, too, see
-    `replaced_files`. Raises InputError for bad frames or arguments, and if the file cannot be written.
+    `replaced_files`; quality: 1 to 100 for a lossy WebP, None for a lossless one. Raises InputError for bad
+    frames or arguments, and if the file cannot be written.
     """
     path = Path(path)
     chosen = animation_format(path, sheet)
@@ -137,7 +145,13 @@ def write_animation(
     if not 0 <= plays <= MAX_PLAYS:
         raise InputError(f"plays: expected a number from 0 to {MAX_PLAYS}, got {plays}")
     refuse_replacing(path, replaced_files(path, sheet), overwrite)
-    return chosen.writer(path, frames, fps, plays, write)
+    if quality is None:
+        return chosen.writer(path, frames, fps, plays, write)
+    if not chosen.has_quality:
+        raise InputError(f"quality: expected a WebP, got {chosen.label}, which has no such choice")
+    if not 1 <= quality <= 100:
+        raise InputError(f"quality: expected a number from 1 to 100, got {quality}")
+    return chosen.writer(path, frames, fps, plays, write, quality)
 
 
 def replaced_files(path: Path, sheet: bool = False) -> list[Path]:

@@ -99,7 +99,6 @@ def _encode(av: Any, codec: _Codec, frames: Iterable[Picture], fps: float) -> by
 
 def _prepared(image: Picture, has_transparency: bool) -> Picture:
     """A frame of even size, without invisible colors that would bleed into visible pixels."""
-    from scipy.ndimage import distance_transform_edt
 
     image = np.pad(image, ((0, image.shape[0] % 2), (0, image.shape[1] % 2), (0, 0)), mode="edge")
     if not has_transparency:
@@ -107,7 +106,26 @@ def _prepared(image: Picture, has_transparency: bool) -> Picture:
         image[..., :3] = (image[..., :3] * alpha + _WHITE * (255 - alpha) + 127) // 255
         image[..., 3] = 255
     elif image[..., 3].any():
-        # compression mixes the colors of neighbors, so invisible pixels take the color of the nearest visible
-        nearest = distance_transform_edt(image[..., 3] == 0, return_distances=False, return_indices=True)
-        image[..., :3] = image[..., :3][tuple(nearest)]
+        image[..., :3] = _extended_colors(image)
     return image
+
+
+def _extended_colors(image: Picture) -> Picture:
+    """Colors (h, w, 3) in which invisible pixels have that of the nearest visible one in their row.
+
+    Rows without one repeat the nearest row that has some. Compression mixes the colors of neighbors.
+    """
+    visible = image[..., 3] > 0
+    columns = np.arange(image.shape[1])
+    left = np.maximum.accumulate(np.where(visible, columns, -1), axis=1)
+    far = 2 * image.shape[1]
+    right = np.minimum.accumulate(np.where(visible, columns, far)[:, ::-1], axis=1)[:, ::-1]
+    takes_right = (left < 0) | (right - columns < columns - left)
+    nearest = np.where(takes_right & (right < far), right, np.maximum(left, 0))
+    colors = np.take_along_axis(image[..., :3], nearest[..., None], axis=1)
+    rows = np.flatnonzero(visible.any(axis=1))
+    after = np.searchsorted(rows, np.arange(len(image))).clip(0, len(rows) - 1)
+    before = (after - 1).clip(0)
+    number = np.arange(len(image))
+    is_before = np.abs(rows[before] - number) < np.abs(rows[after] - number)
+    return np.asarray(colors[rows[np.where(is_before, before, after)]])

@@ -29,6 +29,7 @@ def encode_json(document: Document) -> bytes:
             {
                 "id": pin.id,
                 "depth": pin.depth,
+                "angle": pin.angle,
                 "face": pin.face,
                 "weights": pin.weights.tolist(),
                 "rest": rest_points[index].tolist(),
@@ -37,6 +38,7 @@ def encode_json(document: Document) -> bytes:
             }
             for index, pin in enumerate(state.pins)
         ],
+        "stiffness": None if state.stiffness is None else state.stiffness.tolist(),
         "settings": state.settings.to_json(),
     }
     lines = (f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}" for key, value in record.items())

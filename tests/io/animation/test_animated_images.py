@@ -137,3 +137,39 @@ def test_how_often_it_is_shown(tmp_path, plays, gif):
         write_animation(tmp_path / f"a{suffix}", [disc(0), disc(5)], 10, plays)
         with Image.open(tmp_path / f"a{suffix}") as opened:
             assert opened.info.get("loop") == count
+
+
+@pytest.mark.parametrize("quality", [1, 60, 100])
+def test_a_lossy_webp_is_near_the_frames_and_keeps_alpha(tmp_path, quality):
+    frames = [disc(step, side=64) for step in range(4)]
+    write_animation(tmp_path / "a.webp", frames, 10, quality=quality)
+    for (came, _), frame in zip(played(tmp_path / "a.webp"), frames, strict=True):
+        np.testing.assert_array_equal(came[..., 3], frame[..., 3])
+        visible = frame[..., 3] == 255
+        assert np.abs(came[visible][:, :3].astype(int) - frame[visible][:, :3]).mean() < 20
+
+
+def test_a_lossy_webp_of_many_colors_is_smaller(tmp_path):
+    y, x = np.mgrid[:96, :96]
+    noise = np.random.default_rng(0).integers(0, 20, (96, 96, 4))
+    frame = (np.stack([x + y, 2 * y, 255 - x, 255 + 0 * x], axis=-1) + noise).clip(0, 255).astype(np.uint8)
+    sizes = []
+    for quality in (10, 80, None):
+        write_animation(tmp_path / "a.webp", [frame, frame[::-1]], 10, quality=quality)
+        sizes.append((tmp_path / "a.webp").stat().st_size)
+    assert sizes == sorted(sizes)
+    assert sizes[1] < 0.6 * sizes[2]
+
+
+@pytest.mark.parametrize(
+    ("name", "quality", "message"),
+    [
+        ("a.gif", 50, "quality: expected a WebP, got GIF"),
+        ("a.webp", 0, "quality: expected a number from 1 to 100, got 0"),
+        ("a.webp", 101, "quality: expected a number from 1 to 100, got 101"),
+    ],
+)
+def test_a_quality_that_makes_no_sense_is_refused(tmp_path, name, quality, message):
+    with pytest.raises(InputError, match=message):
+        write_animation(tmp_path / name, [disc(0)], 10, quality=quality)
+    assert list(tmp_path.iterdir()) == []

@@ -1,6 +1,7 @@
 """The JSON of mesh and pins: every number comes back."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +21,18 @@ def test_every_bit_comes_back(exported, bent):
     np.testing.assert_array_equal(np.array(record["positions"]), state.positions)
     np.testing.assert_array_equal(np.array(record["uv"], dtype=np.float32), drawing.uv)
     assert record["settings"] == {"method": "akap", "parameters": {"memory": 1.0}}
+
+
+def test_angles_of_pins_and_stiffness_are_written(exported, bent):
+    record = json.loads(exported(bent, "a.json").read_text())
+    assert [pin["angle"] for pin in record["pins"]] == [None, None]
+    assert record["stiffness"] is None
+    first, second = bent.state.pins
+    stiffness = np.linspace(1, 50, len(bent.drawing.mesh.faces)).round(2)
+    state = replace(bent.state, pins=(first, replace(second, angle=-7.25)), stiffness=stiffness)
+    record = json.loads(exported(bent.with_state(state), "a.json").read_text())
+    assert [pin["angle"] for pin in record["pins"]] == [None, -7.25]
+    assert record["stiffness"] == stiffness.tolist()
 
 
 def test_pins_are_where_their_weights_say(exported, bent):
