@@ -20,6 +20,7 @@ from .options import (
     framing_options,
     make_folder_of,
     mesher_option,
+    output_files,
     overwrite_option,
     threshold_option,
 )
@@ -79,10 +80,23 @@ def export_file(
 @click.command(
     "export",
     epilog="Example: akap-editor export posed.akap -o cat.glb\n\n"
-    "Example: akap-editor export posed.akap -o cat.png --scale 2 --crop pose",
+    "Example: akap-editor export posed.akap -o cat.png --scale 2 --crop pose\n\n"
+    "Example: akap-editor export *.akap -o meshes --format .glb",
 )
-@click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, required=True, help="File to write; its ending sets the format.")
+@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=FILE)
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    required=True,
+    help="File to write; its ending sets the format. With --format, a folder for one file of each FILE.",
+)
+@click.option(
+    "--format",
+    "suffix",
+    type=click.Choice([each.suffix for each in EXPORT_FORMATS]),
+    help="Ending of the files in the folder.",
+)
 @framing_options
 @threshold_option
 @mesher_option
@@ -90,8 +104,9 @@ def export_file(
 @click.option("--rest", is_flag=True, help="Export the rest pose.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def export_command(
-    file: Path,
+    files: tuple[Path, ...],
     output: Path,
+    suffix: str | None,
     scale: float | None,
     background: str | None,
     crop: str | None,
@@ -102,14 +117,26 @@ def export_command(
     as_json: bool,
 ) -> None:
     """Export FILE, a saved drawing or a picture, for other programs."""
-    chosen = format_of(output)
+    if suffix is None and (len(files) > 1 or output.is_dir()):
+        raise InputError("--format: expected the ending of the files in the folder, got none")
+    outputs = [output] if suffix is None else output_files(files, output, suffix)
+    chosen = format_of(outputs[0])
+    if suffix is not None and chosen.suffix != suffix:
+        raise InputError(f"--format: expected {chosen.suffix}, as the output's name ends, got {suffix}")
     given = {"--scale": scale, "--background": background, "--crop": crop}
     for name, value in given.items():
         if value is not None and not chosen.uses_framing:
             raise InputError(f"{name}: expected a picture or an outline as output, got {chosen.suffix}")
     options = export_options(scale, background, crop, rest)
-    result = export_file(file, output, options, threshold, overwrite, mesher)
-    click.echo(json.dumps(result.facts, indent=2) if as_json else result.text)
+    results = [
+        export_file(file, target, options, threshold, overwrite, mesher)
+        for file, target in zip(files, outputs, strict=True)
+    ]
+    if as_json:
+        facts = [result.facts for result in results]
+        click.echo(json.dumps(facts if len(facts) > 1 else facts[0], indent=2))
+    else:
+        click.echo("\n".join(result.text for result in results))
 
 
 append_formats(export_command, [(each.suffix, each.label) for each in EXPORT_FORMATS])

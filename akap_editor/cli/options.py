@@ -1,6 +1,7 @@
 """Options that several commands share, and checks of their values."""
 
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from inspect import cleandoc
 from io import StringIO
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from ..display_text import display_text
 from ..editor.framing import CROPS, Color
 from ..errors import FileError, InputError
 from ..io.atomic import os_error_reason
@@ -145,6 +147,26 @@ def make_folder_of(path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FileError("save", path, os_error_reason(error)) from error
+
+
+def output_files(files: Sequence[Path], output: Path, suffix: str) -> list[Path]:
+    """What is written for each of ``files``: ``output`` for one, files in the folder ``output`` for several.
+
+    A folder that exists takes one, too. suffix: of the names in the folder. Raises InputError if ``output``
+    is no folder for several, or if two would have the same name.
+    """
+    if len(files) == 1 and not output.is_dir():
+        return [output]
+    if (output.exists() and not output.is_dir()) or output.name.lower().endswith(suffix):
+        raise FileError(
+            "save", output, f"expected a folder for the results of {len(files)} files, got a file"
+        )
+    name, count = Counter(file.stem for file in files).most_common(1)[0]
+    if count > 1:
+        raise InputError(
+            f"expected files of different names, got {count} that would become {display_text(name)}{suffix}"
+        )
+    return [output / f"{file.stem}{suffix}" for file in files]
 
 
 def write_picture(path: Path, picture: Any) -> None:

@@ -1,10 +1,14 @@
 """Writes the pose of a drawing as a picture."""
 
 import json
+import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import click
 
+from ..errors import InputError
+from ..io.export import ExportOptions
 from .export import export_file
 from .options import (
     FILE,
@@ -12,20 +16,32 @@ from .options import (
     export_options,
     framing_options,
     json_option,
+    output_files,
     overwrite_option,
     threshold_option,
 )
 
+STDOUT = Path("-")
 
-@click.command(epilog="Example: akap-editor render posed.akap -o pose.png --scale 2 --crop pose")
-@click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, required=True, help="PNG file to write.")
+
+@click.command(
+    epilog="Example: akap-editor render posed.akap -o pose.png --scale 2 --crop pose\n\n"
+    "Example: akap-editor render *.akap -o pictures"
+)
+@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=FILE)
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    required=True,
+    help="PNG file to write, or a folder for one picture of each FILE; - for stdout.",
+)
 @framing_options
 @threshold_option
 @overwrite_option
 @json_option
 def render(
-    file: Path,
+    files: tuple[Path, ...],
     output: Path,
     scale: float | None,
     background: str | None,
@@ -35,7 +51,29 @@ def render(
     as_json: bool,
 ) -> None:
     """Write the pose of FILE, a saved drawing or a picture, as a PNG picture."""
-    check_png(output)
     options = export_options(scale, background, crop)
-    result = export_file(file, output, options, threshold, overwrite)
-    click.echo(json.dumps(result.facts, indent=2) if as_json else result.text)
+    if output == STDOUT:
+        _write_to_stdout(files, options, threshold)
+        return
+    outputs = output_files(files, output, ".png")
+    if outputs == [output]:
+        check_png(output)
+    results = [
+        export_file(file, target, options, threshold, overwrite)
+        for file, target in zip(files, outputs, strict=True)
+    ]
+    if as_json:
+        facts = [result.facts for result in results]
+        click.echo(json.dumps(facts if len(facts) > 1 else facts[0], indent=2))
+    else:
+        click.echo("\n".join(result.text for result in results))
+
+
+def _write_to_stdout(files: tuple[Path, ...], options: ExportOptions, threshold: float | None) -> None:
+    """Write the picture of one file to stdout. Raises InputError."""
+    if len(files) > 1:
+        raise InputError(f"--output: expected a folder for the pictures of {len(files)} files, got -")
+    with TemporaryDirectory() as folder:
+        picture = Path(folder) / "pose.png"
+        export_file(files[0], picture, options, threshold)
+        sys.stdout.buffer.write(picture.read_bytes())

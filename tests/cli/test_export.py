@@ -107,3 +107,31 @@ def test_the_mesh_of_a_picture_is_made_by_the_mesher_asked_for(run, picture, tmp
         assert run("export", picture, "-o", f"{mesher}.obj", "--mesher", mesher)[0] == 0
         written.append(read_mesh(tmp_path / f"{mesher}.obj").mesh.vertices.tolist())
     assert written[0] != written[1]
+
+
+def test_many_files_become_files_of_one_format_in_a_folder(run, posed, tmp_path):
+    code, said, errors = run(
+        "export", posed, tmp_path / "bar.png", "-o", "meshes", "--format", ".obj", "--json"
+    )
+    assert (code, errors) == (0, "")
+    assert [record["files"][-1] for record in json.loads(said)] == [
+        f"meshes/{name}.obj" for name in (posed.stem, "bar")
+    ]
+    assert len(trimesh.load(tmp_path / "meshes" / "bar.obj").faces)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [
+        (("bar.png", "-o", "meshes"), ["--format", "got none"]),
+        (("bar.png", "-o", "a.obj", "--format", ".obj"), ["a folder for the results of 2 files", "a.obj"]),
+        (("bar.png", "-o", "meshes", "--format", ".fbx"), ["--format", ".fbx"]),
+    ],
+)
+def test_many_files_need_a_folder_and_a_format(run, posed, tmp_path, arguments, parts):
+    assert_one_line(run("export", posed, *arguments), *parts)
+    assert not (tmp_path / "meshes").exists()
+
+
+def test_a_format_that_contradicts_the_name_is_refused(run, posed):
+    assert_one_line(run("export", posed, "-o", "a.glb", "--format", ".obj"), "--format", ".glb", ".obj")

@@ -1,10 +1,13 @@
 """`akap-editor render`: the PNG it writes, and bad input."""
 
 import json
+from io import BytesIO
 
 import numpy as np
 import pytest
+from PIL import Image
 
+from akap_editor import cli
 from akap_editor.io.images import read_image
 from akap_editor.io.open_document import open_document
 from akap_editor.render.offscreen import OffscreenRenderer
@@ -85,3 +88,46 @@ def test_a_picture_is_written_as_png_only(run, picture, tmp_path):
     assert errors.count("\n") == 1
     assert "pose.jpg”. Expected a name that ends in .png, got .jpg" in errors
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_pictures_of_many_files_go_to_a_folder(run, picture, posed, tmp_path):
+    code, said, errors = run("render", picture, posed, "-o", "new/pictures")
+    assert (code, errors) == (0, "")
+    assert said.count("\n") == 2
+    for path in (picture, posed):
+        written = read_image(tmp_path / "new" / "pictures" / f"{path.stem}.png")
+        np.testing.assert_array_equal(written, picture_of(path))
+    code, said, _ = run("render", picture, posed, "-o", "new/pictures", "--json")
+    assert [len(record["files"]) for record in json.loads(said)] == [1, 1]
+
+
+def test_a_folder_that_exists_takes_the_picture_of_one_file(run, picture, tmp_path):
+    (tmp_path / "pictures").mkdir()
+    assert run("render", picture, "-o", "pictures")[0] == 0
+    assert [path.name for path in (tmp_path / "pictures").iterdir()] == [f"{picture.stem}.png"]
+
+
+def test_a_picture_on_stdout(monkeypatch, picture, capfdbinary):
+    monkeypatch.setattr("sys.argv", ["akap-editor", "render", str(picture), "-o", "-"])
+    cli.main()
+    written = Image.open(BytesIO(capfdbinary.readouterr().out)).convert("RGBA")
+    np.testing.assert_array_equal(np.asarray(written), picture_of(picture))
+
+
+@pytest.mark.parametrize(
+    ("output", "parts"),
+    [
+        ("pose.png", ["a folder for the results of 2 files", "pose.png"]),
+        ("-", ["--output", "a folder", "2 files"]),
+    ],
+)
+def test_many_files_need_a_folder(run, picture, posed, output, parts):
+    assert_one_line(run("render", picture, posed, "-o", output), *parts)
+
+
+def test_two_files_of_one_name_are_refused(run, picture, tmp_path):
+    (tmp_path / "other").mkdir()
+    twin = tmp_path / "other" / picture.name
+    twin.write_bytes(picture.read_bytes())
+    assert_one_line(run("render", picture, twin, "-o", "pictures"), "different names", picture.stem)
+    assert not (tmp_path / "pictures").exists()
