@@ -1,5 +1,8 @@
 """The theme: dark colors with one accent color, fonts, and sizes for the monitor's scale."""
 
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import imgui_bundle
@@ -8,6 +11,13 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from ..render.overlays import Rgba
 
 FONT_SIZE = 15.0
+_SAMPLES = "猫한\N{CAT}"  # Chinese and Japanese, Korean, an emoji
+_QUERY_SECONDS = 5.0
+_FOLDERS = {"win32": Path("C:/Windows/Fonts"), "darwin": Path("/System/Library/Fonts")}
+_NAMES = {
+    "win32": ("msyh.ttc", "malgun.ttf", "seguisym.ttf"),
+    "darwin": ("Hiragino Sans GB.ttc", "AppleSDGothicNeo.ttc", "Apple Symbols.ttf"),
+}
 
 
 def _hex(color: str, alpha: float = 1.0) -> Rgba:
@@ -68,7 +78,7 @@ _COLORS: dict[imgui.Col_, Rgba] = {
 
 
 def load_fonts() -> None:
-    """Load Roboto for text and Font Awesome for icons; both come with imgui-bundle."""
+    """Load Roboto for text and Font Awesome for icons, and fonts of the system for what these lack."""
     folder = Path(imgui_bundle.__path__[0]) / "assets" / "fonts"
     fonts = imgui.get_io().fonts
     fonts.add_font_from_file_ttf(str(folder / "Roboto" / "Roboto-Regular.ttf"), FONT_SIZE)
@@ -77,6 +87,34 @@ def load_fonts() -> None:
     icons.glyph_offset = ImVec2(0, 1)
     icons.glyph_min_advance_x = FONT_SIZE  # names beside icons are aligned
     fonts.add_font_from_file_ttf(str(folder / "Font_Awesome_6_Free-Solid-900.otf"), FONT_SIZE - 1, icons)
+    for path, number in system_fonts():
+        other = imgui.ImFontConfig()
+        other.merge_mode, other.font_no = True, number
+        other.flags |= imgui.ImFontFlags_.no_load_error
+        fonts.add_font_from_file_ttf(str(path), FONT_SIZE, other)
+
+
+def system_fonts() -> list[tuple[Path, int]]:
+    """The files of fonts with many characters, and the number of the font in each; none if there are none."""
+    if sys.platform in _FOLDERS:
+        candidates = [(_FOLDERS[sys.platform] / name, 0) for name in _NAMES[sys.platform]]
+    elif shutil.which("fc-match"):
+        candidates = [found for sample in _SAMPLES if (found := _match(sample)) is not None]
+    else:
+        candidates = []
+    return [(path, number) for path, number in dict.fromkeys(candidates) if path.is_file()]
+
+
+def _match(character: str) -> tuple[Path, int] | None:
+    """The font that fontconfig has for a character; a scalable one, as color bitmaps cannot be loaded."""
+    pattern = f":charset={ord(character):x}:scalable=true:color=false"
+    command = ["fc-match", "-f", "%{file}\n%{index}\n", pattern]
+    try:
+        run = subprocess.run(command, capture_output=True, timeout=_QUERY_SECONDS, check=True)
+        file, number = run.stdout.decode(errors="surrogateescape").splitlines()[:2]
+        return Path(file), int(number) & 0xFFFF  # the upper half is of a variable font's instance
+    except (OSError, ValueError, subprocess.SubprocessError):
+        return None
 
 
 def apply(scale: float) -> None:

@@ -133,3 +133,25 @@ def oklab(rgb):
 def test_colors_that_are_seen_together_are_told_apart_by_everybody(name, pair):
     one, other = (oklab(np.array(DEFICIENCIES[name]) @ linear(color)) for color in TOGETHER[pair])
     assert np.linalg.norm(one - other) >= APART
+
+
+@pytest.mark.parametrize(
+    "program", [None, "exit 1", "echo no font", r"printf '/none.ttf\n0\n'", r"printf '\377\n'"]
+)
+def test_without_fonts_of_the_system_there_are_none(monkeypatch, tmp_path, program):
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    if program is not None:
+        (tmp_path / "fc-match").write_text(f"#!/bin/sh\n{program}\n")
+        (tmp_path / "fc-match").chmod(0o755)
+    assert theme.system_fonts() == []
+
+
+def test_characters_of_the_system_s_fonts_are_shown(ui):
+    """Chinese and Korean, if the system has a font for them, in the font of the interface."""
+    font = imgui.get_io().fonts.fonts[0]
+    assert font.is_glyph_in_font(ord("a"))
+    names = [path.name for path, _ in theme.system_fonts()]
+    if not any("CJK" in name for name in names):
+        pytest.skip(f"the system has no font for Chinese, only {names}")
+    assert all(font.is_glyph_in_font(ord(character)) for character in "猫と한")
