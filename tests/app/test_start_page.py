@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from akap_editor import cli
 from akap_editor.app.commands.command import CTRL, Key
+from akap_editor.cli.edit import edit
 from akap_editor.errors import InputError
 from akap_editor.io.images import read_image, write_png
 from akap_editor.resources import bundled_drawings
@@ -142,19 +142,19 @@ def shown(monkeypatch):
 
 
 def test_a_file_that_cannot_be_opened_at_the_start_leads_to_the_start_page(shown, tmp_path):
-    cli.edit.callback(tmp_path / "missing.png", None)
+    edit.callback(tmp_path / "missing.png", None)
     ((document, error),) = shown
     assert document is None
     assert "missing.png" in error
 
 
 def test_without_a_file_the_program_begins_with_the_start_page(shown):
-    cli.edit.callback(None, None)
+    edit.callback(None, None)
     assert shown == [(None, "")]
 
 
 def test_a_bundled_drawing_is_opened_by_its_name(shown):
-    cli.edit.callback(None, None, "cat")
+    edit.callback(None, None, "cat")
     ((document, error),) = shown
     assert (document.drawing.name, error) == ("cat", "")
 
@@ -170,7 +170,7 @@ def test_a_bundled_drawing_is_opened_by_its_name(shown):
 )
 def test_arguments_that_make_no_sense_open_no_window(shown, arguments, part):
     with pytest.raises(InputError, match=part):
-        cli.edit.callback(*arguments)
+        edit.callback(*arguments)
     assert not shown
 
 
@@ -179,7 +179,7 @@ def test_without_a_display_a_file_that_cannot_be_opened_is_an_error(monkeypatch,
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(sys, "platform", "linux")
     with pytest.raises(InputError, match=r"missing\.png"):
-        cli.edit.callback(tmp_path / "missing.png", None)
+        edit.callback(tmp_path / "missing.png", None)
 
 
 def test_drop_works_while_a_page_of_help_is_open(ui, tmp_path, image):
