@@ -20,7 +20,8 @@ class FacePairs:
     first, second: (p,) the faces of each pair, on the region's sheets 0 and 1; regions: (p,) the number of
     the region, ascending; heads: (m,) the last block of pairs of each first face, −1 without; starts:
     (b + 1,) where the blocks begin; links: (b,) the block before with the same first face, −1 for none;
-    is_complete: whether the search ended, which it does not in crumpled poses.
+    exchanged: (r,) whether two pairs side by side in a region have their sheets exchanged, as around a point
+    where the pose winds twice; is_complete: whether the search ended, which it does not in crumpled poses.
     """
 
     first: Ints
@@ -29,6 +30,7 @@ class FacePairs:
     heads: Ints
     starts: Ints
     links: Ints
+    exchanged: Ints
     is_complete: bool = True
 
     def __len__(self) -> int:
@@ -44,7 +46,7 @@ def no_face_pairs(face_count: int) -> FacePairs:
     """The pairs of a pose that does not overlap."""
     none = np.zeros(0, dtype=np.int32)
     heads = np.full(face_count, -1, dtype=np.int32)
-    return FacePairs(none, none, none, heads, np.zeros(1, dtype=np.int32), none)
+    return FacePairs(none, none, none, heads, np.zeros(1, dtype=np.int32), none, np.zeros(0, dtype=bool))
 
 
 def overlapping_faces(topology: Topology, pose: Floats, expected: int = 0) -> FacePairs:
@@ -59,9 +61,8 @@ def overlapping_faces(topology: Topology, pose: Floats, expected: int = 0) -> Fa
     capacity, most = max(1024, expected + expected // 4), MAX_PAIRS_PER_FACE * m
     while True:
         found = _flood(pose, topology.faces, topology.neighbors, seeds, capacity)
-        first, second, regions, heads, starts, links, is_complete = found
-        if is_complete or capacity >= most:
-            return FacePairs(first, second, regions, heads, starts, links, bool(is_complete))
+        if found[-1] or capacity >= most:
+            return FacePairs(*found)
         capacity = min(4 * capacity, most)
 
 
@@ -91,31 +92,32 @@ def stretch_inside(
     cy: float,
 ) -> float:
     """The share of the segment from p to q that lies inside the triangle a, b, c of positive area."""
-    begin, end = 0.0, 1.0
-    d = (bx - ax) * (py - ay) - (by - ay) * (px - ax)
-    e = (bx - ax) * (qy - ay) - (by - ay) * (qx - ax)
-    if d <= 0 and e <= 0:
+    return positive_stretch(
+        (bx - ax) * (py - ay) - (by - ay) * (px - ax),
+        (bx - ax) * (qy - ay) - (by - ay) * (qx - ax),
+        (cx - bx) * (py - by) - (cy - by) * (px - bx),
+        (cx - bx) * (qy - by) - (cy - by) * (qx - bx),
+        (ax - cx) * (py - cy) - (ay - cy) * (px - cx),
+        (ax - cx) * (qy - cy) - (ay - cy) * (qx - cx),
+    )
+
+
+@compiled
+def positive_stretch(ap: float, aq: float, bp: float, bq: float, cp: float, cq: float) -> float:
+    """The share of a segment from p to q on which three linear functions are positive.
+
+    Their values at p and q: ap and aq of the first one, and so on.
+    """
+    # Bitwise operators and selections: branches here would be mispredicted half of the time
+    if ((ap <= 0) & (aq <= 0)) | ((bp <= 0) & (bq <= 0)) | ((cp <= 0) & (cq <= 0)):
         return 0.0
-    if d < 0:
-        begin = d / (d - e)
-    elif e < 0:
-        end = d / (d - e)
-    d = (cx - bx) * (py - by) - (cy - by) * (px - bx)
-    e = (cx - bx) * (qy - by) - (cy - by) * (qx - bx)
-    if d <= 0 and e <= 0:
-        return 0.0
-    if d < 0:
-        begin = max(begin, d / (d - e))
-    elif e < 0:
-        end = min(end, d / (d - e))
-    d = (ax - cx) * (py - cy) - (ay - cy) * (px - cx)
-    e = (ax - cx) * (qy - cy) - (ay - cy) * (qx - cx)
-    if d <= 0 and e <= 0:
-        return 0.0
-    if d < 0:
-        begin = max(begin, d / (d - e))
-    elif e < 0:
-        end = min(end, d / (d - e))
+    a, b, c = ap / (ap - aq), bp / (bp - bq), cp / (cp - cq)
+    begin = a if ap < 0 else 0.0
+    end = a if aq < 0 else 1.0
+    begin = b if (bp < 0) & (b > begin) else begin
+    end = b if (bq < 0) & (b < end) else end
+    begin = c if (cp < 0) & (c > begin) else begin
+    end = c if (cq < 0) & (c < end) else end
     return end - begin
 
 
@@ -129,78 +131,170 @@ def _flood(pose: Floats, faces: Ints, neighbors: Ints, seeds: Ints, capacity: in
     m = len(faces)
     heads = np.full(m, -1, dtype=np.int32)
     first, second = np.empty(capacity, dtype=np.int32), np.empty(capacity, dtype=np.int32)
-    regions = np.empty(capacity, dtype=np.int32)
+    regions, crossed = np.empty(capacity, dtype=np.int32), np.empty(capacity, dtype=np.int8)
     starts, links = np.empty(capacity + 1, dtype=np.int32), np.empty(capacity, dtype=np.int32)
     visited = np.zeros(m, dtype=np.int32)  # the last block that reached each second face
+    exchanged = np.zeros(len(seeds), dtype=np.bool_)
+    stack, depth = np.empty((256, 2), dtype=np.int32), 0  # where new blocks may begin
+    corners = _face_corners(pose, faces)
     size, blocks, count = 0, 0, 0
     starts[0] = 0
     for seed in range(len(seeds)):
-        f, g = seeds[seed, 0], seeds[seed, 1]
-        if (
-            pair_index(f, g, second, heads, starts, links) >= 0
-            or pair_index(g, f, second, heads, starts, links) >= 0
-        ):
+        stack[0, 0], stack[0, 1], depth = seeds[seed, 0], seeds[seed, 1], 1
+        is_new = True
+        while depth > 0:
+            depth -= 1
+            f, g = stack[depth, 0], stack[depth, 1]
+            if pair_index(f, g, second, heads, starts, links) >= 0:
+                continue
+            if heads[g] >= 0 and pair_index(g, f, second, heads, starts, links) >= 0:
+                exchanged[count - 1] |= not is_new
+                continue
+            if is_new:
+                count += 1
+                is_new = False
+            begin = size
+            size, is_exchanged = _fill_block(
+                f, g, begin, blocks + 1, corners, neighbors, second, heads, starts, links, crossed, visited
+            )
+            if size < 0:
+                return first, second, regions, heads, starts, links, exchanged[:0], False
+            exchanged[count - 1] |= is_exchanged
+            for i in range(begin, size):
+                first[i], regions[i] = f, count - 1
+            links[blocks] = heads[f]
+            heads[f] = blocks
+            blocks += 1
+            starts[blocks] = size
+            if depth + 3 * (size - begin) > len(stack):
+                larger = np.empty((2 * (depth + 3 * (size - begin)), 2), dtype=np.int32)
+                larger[:depth] = stack[:depth]
+                stack = larger
+            depth = _cross_edges(
+                f, begin, size, corners, neighbors, second, heads, starts, links, crossed, stack, depth
+            )
+    return (
+        first[:size],
+        second[:size],
+        regions[:size],
+        heads,
+        starts[: blocks + 1],
+        links[:blocks],
+        exchanged[:count],
+        True,
+    )
+
+
+@compiled
+def _face_corners(pose: Floats, faces: Ints) -> Floats:
+    """The corners of each face side by side, (m, 6): x and y of the first one, and so on."""
+    corners = np.empty((len(faces), 6))
+    for f in range(len(faces)):
+        for k in range(3):
+            corners[f, 2 * k], corners[f, 2 * k + 1] = pose[faces[f, k], 0], pose[faces[f, k], 1]
+    return corners
+
+
+@compiled
+def _fill_block(  # type: ignore[no-untyped-def]
+    f: int,
+    g: int,
+    begin: int,
+    stamp: int,
+    corners: Floats,
+    neighbors: Ints,
+    second: Ints,
+    heads: Ints,
+    starts: Ints,
+    links: Ints,
+    crossed: Ints,
+    visited: Ints,
+):
+    """Write all second faces that are connected inside the face f with g to ``second`` from ``begin`` on.
+
+    crossed: bit k is set where edge k of f may run through the second face. Returns the end of the block, −1
+    if there is no room, and whether the block touches one with its sheets exchanged.
+    """
+    if begin >= len(second):
+        return -1, False
+    ax, ay, bx, by = corners[f, 0], corners[f, 1], corners[f, 2], corners[f, 3]
+    cx, cy = corners[f, 4], corners[f, 5]
+    second[begin], visited[g] = g, stamp
+    reached, size, is_exchanged = begin, begin + 1, False
+    while reached < size:
+        other = second[reached]
+        ux, uy, vx, vy = corners[other, 0], corners[other, 1], corners[other, 2], corners[other, 3]
+        wx, wy = corners[other, 4], corners[other, 5]
+        # On which side of each line of f the corners of the other face are, 9 distances times a length
+        au = (bx - ax) * (uy - ay) - (by - ay) * (ux - ax)
+        av = (bx - ax) * (vy - ay) - (by - ay) * (vx - ax)
+        aw = (bx - ax) * (wy - ay) - (by - ay) * (wx - ax)
+        bu = (cx - bx) * (uy - by) - (cy - by) * (ux - bx)
+        bv = (cx - bx) * (vy - by) - (cy - by) * (vx - bx)
+        bw = (cx - bx) * (wy - by) - (cy - by) * (wx - bx)
+        cu = (ax - cx) * (uy - cy) - (ay - cy) * (ux - cx)
+        cv = (ax - cx) * (vy - cy) - (ay - cy) * (vx - cx)
+        cw = (ax - cx) * (wy - cy) - (ay - cy) * (wx - cx)
+        bits = 1 if (((au < 0) | (av < 0) | (aw < 0)) & ((au > 0) | (av > 0) | (aw > 0))) else 0
+        bits |= 2 if (((bu < 0) | (bv < 0) | (bw < 0)) & ((bu > 0) | (bv > 0) | (bw > 0))) else 0
+        bits |= 4 if (((cu < 0) | (cv < 0) | (cw < 0)) & ((cu > 0) | (cv > 0) | (cw > 0))) else 0
+        crossed[reached] = bits
+        reached += 1
+        for k in range(3):
+            target = neighbors[other, k]
+            if target < 0 or target == f or visited[target] == stamp:
+                continue
+            if k == 0:
+                share = positive_stretch(au, av, bu, bv, cu, cv)
+            elif k == 1:
+                share = positive_stretch(av, aw, bv, bw, cv, cw)
+            else:
+                share = positive_stretch(aw, au, bw, bu, cw, cu)
+            if share <= _SHORTEST_STRETCH:
+                continue
+            if heads[target] >= 0 and pair_index(target, f, second, heads, starts, links) >= 0:
+                is_exchanged = True  # the same pair with its sheets exchanged
+                continue
+            if size >= len(second):
+                return -1, False
+            visited[target] = stamp
+            second[size] = target
+            size += 1
+    return size, is_exchanged
+
+
+@compiled
+def _cross_edges(  # type: ignore[no-untyped-def]
+    f: int,
+    begin: int,
+    end: int,
+    corners: Floats,
+    neighbors: Ints,
+    second: Ints,
+    heads: Ints,
+    starts: Ints,
+    links: Ints,
+    crossed: Ints,
+    stack: Ints,
+    depth: int,
+):
+    """Put the pairs beyond the edges of f on the stack that are not there yet; returns its new depth."""
+    for k in range(3):
+        target = neighbors[f, k]
+        if target < 0:
             continue
-        count += 1
-        pending, walked = True, size  # `walked`: pairs whose first face has been walked on from
-        while True:
-            if pending:  # a new block of the first face f, from the second face g on
-                pending = False
-                begin, reached = size, size
-                ax, ay = pose[faces[f, 0], 0], pose[faces[f, 0], 1]
-                bx, by = pose[faces[f, 1], 0], pose[faces[f, 1], 1]
-                cx, cy = pose[faces[f, 2], 0], pose[faces[f, 2], 1]
-                if size >= capacity:
-                    return first[:size], second[:size], regions[:size], heads, starts, links, False
-                second[size] = g
-                size += 1
-                visited[g] = blocks + 1
-                while reached < size:
-                    other = second[reached]
-                    reached += 1
-                    for k in range(3):
-                        target = neighbors[other, k]
-                        if target < 0 or target == f or visited[target] == blocks + 1:
-                            continue
-                        p, q = faces[other, k], faces[other, k + 1 if k < 2 else 0]
-                        share = stretch_inside(
-                            pose[p, 0], pose[p, 1], pose[q, 0], pose[q, 1], ax, ay, bx, by, cx, cy
-                        )
-                        if share <= _SHORTEST_STRETCH:
-                            continue
-                        if heads[target] >= 0 and pair_index(target, f, second, heads, starts, links) >= 0:
-                            continue  # the same pair with its sheets exchanged
-                        if size >= capacity:
-                            return first[:size], second[:size], regions[:size], heads, starts, links, False
-                        visited[target] = blocks + 1
-                        second[size] = target
-                        size += 1
-                for i in range(begin, size):
-                    first[i], regions[i] = f, count - 1
-                links[blocks] = heads[f]
-                heads[f] = blocks
-                blocks += 1
-                starts[blocks] = size
-            if walked == size:
-                break
-            f0, other = first[walked], second[walked]
-            ax, ay = pose[faces[other, 0], 0], pose[faces[other, 0], 1]
-            bx, by = pose[faces[other, 1], 0], pose[faces[other, 1], 1]
-            cx, cy = pose[faces[other, 2], 0], pose[faces[other, 2], 1]
-            for k in range(3):
-                target = neighbors[f0, k]
-                if target < 0 or target == other:
-                    continue
-                p, q = faces[f0, k], faces[f0, k + 1 if k < 2 else 0]
-                share = stretch_inside(pose[p, 0], pose[p, 1], pose[q, 0], pose[q, 1], ax, ay, bx, by, cx, cy)
-                if (
-                    share <= _SHORTEST_STRETCH
-                    or pair_index(target, other, second, heads, starts, links) >= 0
-                    or (heads[other] >= 0 and pair_index(other, target, second, heads, starts, links) >= 0)
-                ):
-                    continue
-                f, g, pending = target, other, True
-                break
-            if not pending:
-                walked += 1
-    return first[:size], second[:size], regions[:size], heads, starts[: blocks + 1], links[:blocks], True
+        j = k + 1 if k < 2 else 0
+        px, py, qx, qy = corners[f, 2 * k], corners[f, 2 * k + 1], corners[f, 2 * j], corners[f, 2 * j + 1]
+        is_there = heads[target] >= 0
+        for i in range(begin, end):
+            other = second[i]
+            if not crossed[i] & (1 << k) or target == other:
+                continue
+            if is_there and pair_index(target, other, second, heads, starts, links) >= 0:
+                continue
+            ax, ay, bx, by = corners[other, 0], corners[other, 1], corners[other, 2], corners[other, 3]
+            cx, cy = corners[other, 4], corners[other, 5]
+            if stretch_inside(px, py, qx, qy, ax, ay, bx, by, cx, cy) > _SHORTEST_STRETCH:
+                stack[depth, 0], stack[depth, 1] = target, other
+                depth += 1
+    return depth

@@ -78,10 +78,21 @@ def _merge_tree(order: Ints, starts: Ints, neighbors: Ints, areas: Floats):  # t
 
 @compiled
 def _branch_areas(distances: Floats, parents: Ints, sizes: Floats, room: float) -> Floats:
-    result = np.empty(len(parents))
-    for v in range(len(parents)):
+    """The size of the last ancestor of each vertex that is at most ``room`` nearer to the middle, (n,)."""
+    n = len(parents)
+    height = 1
+    while 1 << height < n:
+        height += 1
+    ancestors = np.empty((height + 1, n), dtype=np.int64)  # 2^k generations up
+    ancestors[0] = parents
+    for k in range(height):
+        for v in range(n):
+            ancestors[k + 1, v] = ancestors[k, ancestors[k, v]]
+    result = np.empty(n)
+    for v in range(n):
         u = v
-        while parents[u] != u and distances[parents[u]] >= distances[v] - room:
-            u = parents[u]
+        for k in range(height, -1, -1):
+            if distances[ancestors[k, u]] >= distances[v] - room:
+                u = ancestors[k, u]
         result[v] = sizes[u]
     return result
