@@ -67,12 +67,19 @@ def spread_signs(  # type: ignore[no-untyped-def]
     begin, end = members[0], members[-1] + 1
     queue, size = np.empty(len(members), dtype=np.int64), 0
     beside = np.empty(6, dtype=np.int64)
+    is_source = np.zeros(end - begin, dtype=np.bool_)  # pairs beside one without a sign
     for i in members:
-        if signs[i] != 0:
+        if signs[i] == 0:
+            adjacent_pairs(i, begin, end, first, second, neighbors, heads, starts, links, beside)
+            for j in beside:
+                if j != -1:
+                    is_source[(j if j >= 0 else -2 - j) - begin] = True
+    for i in members:
+        if signs[i] != 0 and is_source[i - begin]:
             queue[size] = i
             size += 1
     reached = 0
-    while reached < size < len(members):
+    while reached < size:
         i = queue[reached]
         reached += 1
         adjacent_pairs(i, begin, end, first, second, neighbors, heads, starts, links, beside)
@@ -97,16 +104,26 @@ def seam_pairs(  # type: ignore[no-untyped-def]
     starts: Ints,
     links: Ints,
     steps: int,
+    is_exchanged: bool,
 ):
     """The pairs of a region that are at most ``steps`` pairs from one of the other sign, (q,), seam first.
 
-    members: indices of all pairs of the region.
+    members: indices of all pairs of the region; is_exchanged: see `FacePairs.exchanged`.
     """
     begin, end = members[0], members[-1] + 1
+    sides = np.zeros(len(neighbors), dtype=np.int8)  # of each first face: 1 with a positive pair, 2 negative
+    for i in members:
+        sides[first[i]] |= 1 if signs[i] > 0 else 2
     distance = np.full(len(first), -1, dtype=np.int32)
     queue, size = np.empty(len(members), dtype=np.int64), 0
     beside = np.empty(6, dtype=np.int64)
     for i in members:
+        around = sides[first[i]]
+        for k in range(3):
+            if neighbors[first[i], k] >= 0:
+                around |= sides[neighbors[first[i], k]]
+        if around != 3 and not is_exchanged:
+            continue
         adjacent_pairs(i, begin, end, first, second, neighbors, heads, starts, links, beside)
         for j in beside:
             if (j >= 0 and signs[j] == -signs[i]) or (j < -1 and signs[-2 - j] == signs[i]):
@@ -196,7 +213,8 @@ def cut_signs(
     A least cut (Boykov and Jolly 2001) among the pairs that are at most ``steps`` from a seam.
     """
     arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
-    band = seam_pairs(members, signs, *arrays, steps)
+    is_exchanged = bool(pairs.exchanged[pairs.regions[members[0]]])
+    band = seam_pairs(members, signs, *arrays, steps, is_exchanged)
     if not len(band):
         return signs
     sides, lengths = _borders(band, members[0], members[-1] + 1, pose, topology.faces, *arrays)

@@ -353,7 +353,9 @@ class _Decision:
         for region in order:
             members = self.members(region)
             if self.signs[members].min() != self.signs[members].max():
-                chosen.append(np.sort(seam_pairs(members, self.signs, *self.arrays, 0)))
+                is_exchanged = bool(pairs.exchanged[region])
+                seam = seam_pairs(members, self.signs, *self.arrays, 0, is_exchanged)
+                chosen.append(np.sort(seam))
                 continue
             mine = indices[valid & (indices >= members[0]) & (indices <= members[-1])]
             if len(mine):
