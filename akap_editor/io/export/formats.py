@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from ...editor.document.crossings import overlaps_of
 from ...editor.document.document import Document
-from ...editor.document.drawing import Drawing
 from ...editor.framing import Color, crop_box
 from ...errors import FileError, InputError, file_errors, join_with_or
 from ...geometry.validation import as_instance
@@ -70,12 +70,10 @@ def _encode_svg(document: Document, stem: str, options: ExportOptions, _: Painte
     return {f"{stem}.svg": text.encode()}
 
 
-def _back_to_front(document: Document) -> Drawing:
-    """The drawing with its faces sorted from back to front."""
-    drawing, order = document.drawing, document.face_order
-    if order is None:
-        return drawing
-    return replace(drawing, mesh=replace(drawing.mesh, faces=drawing.mesh.faces[order]))
+def _encode_spine(document: Document, stem: str, _: ExportOptions, __: Painter | None) -> Files:
+    mesh, state = document.drawing.mesh, document.state
+    pairs = overlaps_of(mesh, state.pins, state.positions, state.crossings).low_and_high
+    return encode_spine(document.drawing, state.positions, stem, document.face_order, pairs)
 
 
 EXPORT_FORMATS = (
@@ -89,7 +87,7 @@ EXPORT_FORMATS = (
         "Mesh and texture in one file, with the pose as a morph target, for Blender and game engines.",
         False,
         lambda document, stem, *_: {
-            f"{stem}.glb": encode_glb(_back_to_front(document), document.state.positions)
+            f"{stem}.glb": encode_glb(document.drawing, document.state.positions, document.draw_order)
         },
     ),
     ExportFormat(
@@ -97,7 +95,9 @@ EXPORT_FORMATS = (
         ".obj",
         "The posed mesh with its material and texture, as three files, for almost any 3D program.",
         False,
-        lambda document, stem, *_: encode_obj(_back_to_front(document), document.state.positions, stem),
+        lambda document, stem, *_: encode_obj(
+            document.drawing, document.state.positions, stem, document.draw_order
+        ),
         companion_names,
     ),
     ExportFormat(
@@ -105,7 +105,7 @@ EXPORT_FORMATS = (
         ".spine.json",
         "Mesh attachments with the pose as a deform key, and their texture, for Spine and its runtimes.",
         False,
-        lambda document, stem, *_: encode_spine(_back_to_front(document), document.state.positions, stem),
+        _encode_spine,
         lambda stem: [texture_name(stem)],
     ),
     ExportFormat(

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...editor.document.drawing import Drawing
-from ...geometry.validation import Floats
+from ...geometry.validation import Floats, Ints
+from ...overlap.seams import CutMesh
+from .drawn_faces import drawn_faces
 from .texture import encode_texture, y_up
 
 PIXELS_PER_UNIT = 100.0  # by the scale of the node; the mesh itself is in pixels
@@ -48,20 +50,20 @@ class _Buffer:
         return len(self.accessors) - 1
 
 
-def encode_glb(drawing: Drawing, positions: Floats) -> bytes:
+def encode_glb(drawing: Drawing, positions: Floats, order: Ints | CutMesh | None = None) -> bytes:
     """The bytes of a .glb file: the rest pose, and the pose ``positions`` (n, 2) as a morph target.
 
     The target's weight is 1, so that viewers show the pose. Faces are counterclockwise seen from +z, from
-    back to front.
+    back to front; order: see `Document.draw_order`.
     """
-    buffer = _Buffer()
-    rest, pose = (_to_3d(y_up(drawing, points)) for points in (drawing.mesh.vertices, positions))
+    buffer, drawn = _Buffer(), drawn_faces(drawing, positions, order)
+    rest, pose = (_to_3d(y_up(drawing, points)) for points in (drawn.rest, drawn.pose))
     primitive = {
         "attributes": {
             "POSITION": buffer.add_array(rest, "VEC3", bounds=True),
-            "TEXCOORD_0": buffer.add_array(drawing.uv.astype("<f4"), "VEC2"),
+            "TEXCOORD_0": buffer.add_array(drawn.uv.astype("<f4"), "VEC2"),
         },
-        "indices": buffer.add_array(drawing.mesh.faces[:, ::-1].astype("<u4"), "SCALAR"),
+        "indices": buffer.add_array(drawn.faces[:, ::-1].astype("<u4"), "SCALAR"),
         "material": 0,
         "targets": [{"POSITION": buffer.add_array(pose - rest, "VEC3", bounds=True)}],
     }

@@ -3,6 +3,7 @@
 import json
 
 from ...editor.document.document import Document
+from ...overlap.seams import CutMesh
 
 MESH_JSON_FORMAT = "akap-mesh"
 MESH_JSON_VERSION = 1
@@ -11,7 +12,8 @@ MESH_JSON_VERSION = 1
 def encode_json(document: Document) -> bytes:
     """The bytes of a .json file: one object, one line per value. Floats are exact."""
     drawing, state = document.drawing, document.state
-    mesh = drawing.mesh
+    mesh, drawn = drawing.mesh, document.draw_order
+    cut = drawn if isinstance(drawn, CutMesh) else None
     rest_points, posed_points = (
         mesh.evaluate(state.points, positions) for positions in (mesh.vertices, state.positions)
     )
@@ -25,6 +27,9 @@ def encode_json(document: Document) -> bytes:
         "uv": drawing.uv.tolist(),
         "faces": mesh.faces.tolist(),
         "order": None if document.face_order is None else document.face_order.tolist(),
+        "seams": None
+        if cut is None
+        else {"edges": cut.edges.tolist(), "shares": cut.shares.tolist(), "faces": cut.faces.tolist()},
         "pins": [
             {
                 "id": pin.id,

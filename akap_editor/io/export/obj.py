@@ -3,19 +3,24 @@
 import numpy as np
 
 from ...editor.document.drawing import Drawing
-from ...geometry.validation import Floats
+from ...geometry.validation import Floats, Ints
+from ...overlap.seams import CutMesh
+from .drawn_faces import drawn_faces
 from .texture import companion_stem, encode_texture, texture_name, y_up
 
 
-def encode_obj(drawing: Drawing, positions: Floats, stem: str) -> dict[str, bytes]:
+def encode_obj(
+    drawing: Drawing, positions: Floats, stem: str, order: Ints | CutMesh | None = None
+) -> dict[str, bytes]:
     """The contents of texture, material and mesh file, by name, for the pose ``positions`` (n, 2).
 
-    Vertices keep their order, so that other programs can blend two poses of a drawing. Faces are
-    counterclockwise seen from +z, from back to front.
+    Vertices keep their order, so that other programs can blend two poses of a drawing; new ones along seams
+    follow. Faces are counterclockwise seen from +z, from back to front; order: see `Document.draw_order`.
     """
+    drawn = drawn_faces(drawing, positions, order)
     texture, material = companion_names(stem)
-    points, uv = y_up(drawing, positions), drawing.uv * np.array([1, -1]) + np.array([0, 1])
-    corners = drawing.mesh.faces[:, ::-1] + 1
+    points, uv = y_up(drawing, drawn.pose), drawn.uv * np.array([1, -1]) + np.array([0, 1])
+    corners = drawn.faces[:, ::-1] + 1
     lines = [
         f"mtllib {material}",
         f"o {companion_stem(drawing.name) or 'drawing'}",

@@ -1,6 +1,8 @@
 """Exports Spine skeletons in its JSON format, https://esotericsoftware.com/spine-json-format."""
 
+import heapq
 import json
+from collections import defaultdict
 from typing import Any
 
 import numpy as np
@@ -16,19 +18,31 @@ MAX_ATTACHMENT_VERTICES = 32767  # runtimes count vertices with signed 16-bit in
 _DECIMALS = 3
 
 
-def encode_spine(drawing: Drawing, positions: Floats, stem: str) -> dict[str, bytes]:
+def encode_spine(
+    drawing: Drawing,
+    positions: Floats,
+    stem: str,
+    order: Ints | None = None,
+    pairs: tuple[Ints, Ints] = (np.zeros(0, dtype=int), np.zeros(0, dtype=int)),
+) -> dict[str, bytes]:
     """The contents of texture and JSON file, by name. Raises InputError if the mesh is too large.
 
-    The skeleton has one bone; each component of the mesh is a slot with one unweighted mesh attachment. The
-    setup pose is the rest pose, the animation "pose" holds ``positions`` (n, 2) as a deform key.
+    The skeleton has one bone; each component of the mesh is a slot with one unweighted mesh attachment, or
+    several slots where it passes both behind and in front of another one. The setup pose is the rest pose,
+    the animation "pose" holds ``positions`` (n, 2) as a deform key. order: (m,) faces from back to front;
+    pairs: (p,) lower and upper faces that overlap, see `Overlaps.low_and_high`.
     """
     texture, title = texture_name(stem), drawing.name or "drawing"
     rest, pose = y_up(drawing, drawing.mesh.vertices), y_up(drawing, positions)
     slots, attachments, deform = [], {}, {}
-    for number, part in enumerate(_parts(drawing.mesh), start=1):
+    mesh, order = drawing.mesh, np.arange(len(drawing.mesh.faces)) if order is None else order
+    parts = [_Part(mesh, number) for number in range(int(mesh.component.max()) + 1)]
+    runs = component_runs(mesh.component[mesh.faces[:, 0]], order, *pairs)
+    for number, (component, faces) in enumerate(runs, start=1):
+        part = parts[component]
         name = title if number == 1 else f"{title} {number}"
         slots.append({"name": name, "bone": "root", "attachment": name})
-        attachments[name] = {name: _attachment(drawing, part, rest, texture.removesuffix(".png"))}
+        attachments[name] = {name: _attachment(drawing, part, faces, rest, texture.removesuffix(".png"))}
         offsets = _flat(pose[part.order]) - _flat(rest[part.order])
         deform[name] = {name: {"deform": [{"vertices": np.round(offsets, _DECIMALS).tolist()}]}}
     low, high = rest.min(axis=0), rest.max(axis=0)
@@ -48,8 +62,9 @@ def encode_spine(drawing: Drawing, positions: Floats, stem: str) -> dict[str, by
 class _Part:
     """A component of a mesh, renumbered as Spine requires: the hull (outer contour) first, in order.
 
-    order: (p,) the mesh's vertex for each new number; hull: number of vertices of the hull; faces (m, 3),
-    edges (e, 2): in new numbers, the hull's edges first.
+    order: (p,) the mesh's vertex for each new number; hull: number of vertices of the hull; faces: (m, 3)
+    those of the whole mesh, −1 for vertices of other components; edges: (e, 2) the hull's edges first; both
+    in new numbers.
     """
 
     def __init__(self, mesh: TriMesh, number: int) -> None:
@@ -60,7 +75,7 @@ class _Part:
         self.order = np.concatenate([hull, np.setdiff1d(vertices, hull)])
         new = np.full(len(mesh.vertices), -1)
         new[self.order] = np.arange(len(self.order))
-        self.faces = new[mesh.faces[mesh.component[mesh.faces[:, 0]] == number]]
+        self.faces: Ints = new[mesh.faces]
         ring = np.stack([np.arange(self.hull), np.roll(np.arange(self.hull), -1)], axis=1)
         inner = np.sort(new[mesh.edges[mesh.component[mesh.edges[:, 0]] == number]], axis=1)
         known = {tuple(sorted(pair)) for pair in ring.tolist()}
@@ -68,18 +83,44 @@ class _Part:
         self.edges: Ints = np.array([*ring.tolist(), *rest])
 
 
-def _parts(mesh: TriMesh) -> list[_Part]:
-    """The components from back to front, because slots are drawn in order.
+def component_runs(components: Ints, order: Ints, low: Ints, high: Ints) -> list[tuple[int, Ints]]:
+    """Components and some of their faces each, from back to front, so that all overlapping pairs hold.
 
-    A component is as far in front as its faces are on average.
+    components: (m,) of the faces; order: (m,) faces from back to front, which decides where the pairs ``low``
+    and ``high`` (p,) do not. A component appears more than once only if it passes both behind and in front of
+    another one.
     """
-    components = mesh.component[mesh.faces[:, 0]]
-    ranks = np.bincount(components, np.arange(len(components))) / np.bincount(components)
-    return [_Part(mesh, int(number)) for number in np.argsort(ranks, kind="stable")]
+    rank = np.empty(len(order), dtype=int)
+    rank[order] = np.arange(len(order))
+    waiting = np.bincount(high, minlength=len(order)).tolist()
+    crossing = components[low] != components[high]
+    blocked = np.bincount(components[high[crossing]], minlength=int(components.max()) + 1).tolist()
+    above: dict[int, list[int]] = defaultdict(list)
+    for lower, upper in zip(low.tolist(), high.tolist(), strict=True):
+        above[lower].append(upper)
+    free: dict[int, list[int]] = {}  # ranks of the faces that may be drawn now, by component
+    means = np.bincount(components, rank) / np.bincount(components)
+    for component in np.argsort(means, kind="stable").tolist():  # from back to front
+        free[component] = sorted(rank[f] for f in np.flatnonzero(components == component) if not waiting[f])
+    runs: list[tuple[int, Ints]] = []
+    while any(free.values()):
+        ready = [component for component, ranks in free.items() if ranks]
+        chosen = next((component for component in ready if not blocked[component]), ready[0])
+        faces = []
+        while free[chosen]:
+            face = int(order[heapq.heappop(free[chosen])])
+            faces.append(face)
+            for upper in above[face]:
+                waiting[upper] -= 1
+                blocked[components[upper]] -= components[upper] != chosen
+                if not waiting[upper]:
+                    heapq.heappush(free[int(components[upper])], rank[upper])
+        runs.append((chosen, np.array(faces)))
+    return runs
 
 
-def _attachment(drawing: Drawing, part: _Part, rest: Floats, texture: str) -> dict[str, Any]:
-    """The mesh attachment of a component; rest (n, 2): vertices with y up."""
+def _attachment(drawing: Drawing, part: _Part, faces: Ints, rest: Floats, texture: str) -> dict[str, Any]:
+    """The mesh attachment of some faces of a component; rest (n, 2): vertices with y up."""
     if len(part.order) > MAX_ATTACHMENT_VERTICES:
         raise InputError(
             f"expected parts of at most {MAX_ATTACHMENT_VERTICES} vertices for Spine, got {len(part.order)}; "
@@ -90,7 +131,7 @@ def _attachment(drawing: Drawing, part: _Part, rest: Floats, texture: str) -> di
         "type": "mesh",
         "path": texture,
         "uvs": np.round(_flat(drawing.uv[part.order].astype(np.float64)), 6).tolist(),
-        "triangles": part.faces.ravel().tolist(),
+        "triangles": part.faces[faces].ravel().tolist(),
         "vertices": np.round(_flat(rest[part.order]), _DECIMALS).tolist(),
         "hull": part.hull,
         "edges": (2 * part.edges).ravel().tolist(),  # indices into the list of coordinates

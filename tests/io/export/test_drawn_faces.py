@@ -1,0 +1,170 @@
+"""Mesh files show at each place of an overlapping pose what the window shows there."""
+
+import json
+import struct
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from akap_editor.editor.document.crossings import overlaps_of
+from akap_editor.editor.document.document import Document
+from akap_editor.io.export.drawn_faces import DrawnFaces, drawn_faces
+from akap_editor.io.export.spine import component_runs
+from akap_editor.io.export.texture import y_up
+from akap_editor.overlap.seams import CutMesh
+
+Triangles = tuple[np.ndarray, np.ndarray]  # corners (q, 3, 2) from back to front, and their uv (q, 3, 2)
+
+
+def visible_uv(triangles: Triangles, points: np.ndarray) -> np.ndarray:
+    """The texture coordinates of the last triangle at each point, (k, 2); NaN where there is none."""
+    corners, uv = triangles
+    result = np.full((len(points), 2), np.nan)
+    for (a, b, c), texture in zip(corners, uv, strict=True):
+        weights = np.linalg.solve(np.stack([b - a, c - a], axis=1), (points - a).T)
+        inside = (weights.min(axis=0) >= 0) & (weights.sum(axis=0) <= 1)
+        u, v = weights[:, inside]
+        result[inside] = (1 - u - v)[:, None] * texture[0] + u[:, None] * texture[1] + v[:, None] * texture[2]
+    return result
+
+
+def read_obj(path: Path) -> Triangles:
+    rows = [line.split() for line in path.read_text().splitlines()]
+    points, uv = (np.array([row[1:3] for row in rows if row[0] == kind], dtype=float) for kind in ("v", "vt"))
+    faces = np.array([[int(c.split("/")[0]) - 1 for c in row[1:]] for row in rows if row[0] == "f"])
+    return points[faces], (uv * [1, -1] + [0, 1])[faces]
+
+
+def read_glb(path: Path) -> Triangles:
+    data = path.read_bytes()
+    size = struct.unpack_from("<I", data, 12)[0]
+    scene, binary = json.loads(data[20 : 20 + size]), data[28 + size :]
+
+    def array(number: int, dtype: str, columns: int) -> np.ndarray:
+        accessor = scene["accessors"][number]
+        begin = scene["bufferViews"][accessor["bufferView"]]["byteOffset"]
+        return np.frombuffer(binary, dtype, accessor["count"] * columns, begin).reshape(-1, columns)
+
+    (primitive,) = scene["meshes"][0]["primitives"]
+    attributes = primitive["attributes"]
+    pose = array(attributes["POSITION"], "<f4", 3) + array(primitive["targets"][0]["POSITION"], "<f4", 3)
+    faces = array(primitive["indices"], "<u4", 1).reshape(-1, 3)
+    return pose[faces, :2], array(attributes["TEXCOORD_0"], "<f4", 2)[faces]
+
+
+def read_spine(path: Path) -> Triangles:
+    record = json.loads(path.read_text())
+    skin, deform = record["skins"][0]["attachments"], record["animations"]["pose"]["attachments"]["default"]
+    corners, uv = [], []
+    for slot in record["slots"]:
+        mesh = skin[slot["name"]][slot["attachment"]]
+        offsets = deform[slot["name"]][slot["attachment"]]["deform"][0]["vertices"]
+        faces = np.array(mesh["triangles"]).reshape(-1, 3)
+        corners.append((np.array(mesh["vertices"]) + offsets).reshape(-1, 2)[faces])
+        uv.append(np.array(mesh["uvs"]).reshape(-1, 2)[faces])
+    return np.concatenate(corners), np.concatenate(uv)
+
+
+def read_json(path: Path) -> Triangles:
+    record = json.loads(path.read_text())
+    points, uv = np.array(record["positions"]), np.array(record["uv"])
+    faces, seams = np.array(record["faces"]), record["seams"]
+    if seams is not None:
+        ends, shares = np.array(seams["edges"]), np.array(seams["shares"])[:, None]
+        points, uv = (
+            np.concatenate([values, (1 - shares) * values[ends[:, 0]] + shares * values[ends[:, 1]]])
+            for values in (points, uv)
+        )
+        faces = np.array(seams["faces"])
+    elif record["order"] is not None:
+        faces = faces[record["order"]]
+    return points[faces], uv[faces]
+
+
+READERS = {".obj": read_obj, ".glb": read_glb, ".spine.json": read_spine, ".json": read_json}
+
+
+def woven(drawn: Document) -> Document:
+    """The disc, drawn out to a band, behind the ring on one side and in front of it on the other."""
+    mesh = drawn.drawing.mesh
+    is_disc = mesh.component == mesh.component[np.argmax(mesh.vertices[:, 0])]
+    pose = mesh.vertices.copy()
+    pose[is_disc] = (pose[is_disc] - [112, 50]) * [3.2, 0.4] + [45, 45]
+    state = replace(drawn.state, positions=pose)
+    overlaps = overlaps_of(mesh, (), pose, state.crossings)
+    assert overlaps.pairs.region_count == 2
+    low, high = overlaps.low_and_high
+    left, right = (int(np.flatnonzero(overlaps.pairs.regions == region)[0]) for region in (0, 1))
+    over, under = (high, low) if is_disc[mesh.faces[high[left], 0]] else (low, high)
+    behind, front = (high, low) if is_disc[mesh.faces[low[right], 0]] else (low, high)
+    crossings = np.array([[over[left], under[left]], [behind[right], front[right]]], dtype=np.int32)
+    return drawn.with_state(replace(state, crossings=crossings))
+
+
+def probes(document: Document) -> np.ndarray:
+    pose = document.state.positions
+    return np.random.default_rng(1).uniform(pose.min(axis=0), pose.max(axis=0), (1500, 2))
+
+
+@pytest.mark.parametrize("suffix", READERS)
+def test_files_show_what_the_window_shows(
+    suffix: str, drawn: Document, exported: Callable[..., Path]
+) -> None:
+    document = woven(drawn)
+    drawing, pose, points = document.drawing, document.state.positions, probes(document)
+    shown = drawn_faces(drawing, pose, document.draw_order)
+    expected = visible_uv((shown.pose[shown.faces], shown.uv[shown.faces]), points)
+    plain = visible_uv((pose[drawing.mesh.faces], drawing.uv[drawing.mesh.faces]), points)
+    differs = np.nan_to_num(np.abs(plain - expected)).max(axis=1) > 0.01
+    assert differs.mean() > 0.02, "the order of the mesh is another one"
+    found = READERS[suffix](exported(document, f"woven{suffix}"))
+    seen = visible_uv(found, points if suffix == ".json" else y_up(drawing, points))
+    wrong = np.abs(np.nan_to_num(seen, nan=-1) - np.nan_to_num(expected, nan=-1)).max(axis=1) > 0.005
+    assert wrong.mean() < 0.002, "but for points on edges"
+
+
+def test_a_component_has_several_slots_only_where_it_passes_over_and_under(
+    drawn: Document, exported: Callable[..., Path]
+) -> None:
+    def slots(document: Document) -> int:
+        path = exported(document, "slots.spine.json")
+        return len(json.loads(path.read_text())["slots"])
+
+    assert slots(drawn) == 2
+    assert slots(woven(drawn)) == 3
+
+
+def test_runs_of_components_hold_all_pairs_and_each_face_once() -> None:
+    rng = np.random.default_rng(2)
+    for _ in range(50):
+        components, order = rng.integers(0, 3, 30), rng.permutation(30)
+        components[:3] = 0, 1, 2
+        rank = np.argsort(rng.permutation(30))
+        pairs = rng.integers(0, 30, (40, 2))
+        pairs = pairs[rank[pairs[:, 0]] < rank[pairs[:, 1]]]
+        runs = component_runs(components, order, pairs[:, 0], pairs[:, 1])
+        drawn_order = np.concatenate([faces for _, faces in runs])
+        assert sorted(drawn_order.tolist()) == list(range(30))
+        place = np.argsort(drawn_order)
+        assert (place[pairs[:, 0]] < place[pairs[:, 1]]).all()
+        assert all((components[faces] == component).all() for component, faces in runs)
+        assert all(a[0] != b[0] for a, b in pairwise(runs))
+
+
+def test_the_new_vertices_of_a_seam_follow_those_of_the_mesh(drawn: Document) -> None:
+    drawing, pose = drawn.drawing, drawn.state.positions
+    mesh = drawing.mesh
+    edge, share = mesh.faces[:1, :2].astype(np.int32), np.array([0.25])
+    order = np.arange(len(mesh.faces))
+    cut = CutMesh(order, mesh.faces, order.astype(np.int32), edge, share)
+    result = drawn_faces(drawing, pose, cut)
+    assert isinstance(result, DrawnFaces)
+    np.testing.assert_array_equal(result.pose[: len(pose)], pose)
+    np.testing.assert_allclose(
+        result.rest[-1], 0.75 * mesh.vertices[edge[0, 0]] + 0.25 * mesh.vertices[edge[0, 1]]
+    )
+    assert len(result.uv) == len(result.rest) == len(pose) + 1
