@@ -352,11 +352,12 @@ class _Decision:
         chosen = []
         for region in order:
             members = self.members(region)
-            if self.signs[members].min() != self.signs[members].max():
-                is_exchanged = bool(pairs.exchanged[region])
+            is_exchanged = bool(pairs.exchanged[region])
+            if is_exchanged or self.signs[members].min() != self.signs[members].max():
                 seam = seam_pairs(members, self.signs, *self.arrays, 0, is_exchanged)
-                chosen.append(np.sort(seam))
-                continue
+                if len(seam):
+                    chosen.append(np.sort(seam))
+                    continue
             mine = indices[valid & (indices >= members[0]) & (indices <= members[-1])]
             if len(mine):
                 chosen.append(mine[:1])

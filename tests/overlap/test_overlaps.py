@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from akap_editor.deform.methods import make_deformer, method_names
 from akap_editor.geometry.mesh import TriMesh, signed_areas
 from akap_editor.overlap.circles import satisfies
 from akap_editor.overlap.common_area import common_areas
+from akap_editor.overlap.face_pairs import MAX_PAIRS_PER_FACE
 from akap_editor.overlap.overlaps import (
     Overlaps,
     asked_overlaps,
@@ -144,3 +146,26 @@ def test_poses_with_flipped_faces_are_survived() -> None:
             pose = mesh.vertices + rng.normal(0, spread, mesh.vertices.shape) if spread else mesh.vertices
             overlaps = next_overlaps(mesh, pose, overlaps)
         assert not len(overlaps)
+
+
+@pytest.mark.parametrize("method", method_names())
+@pytest.mark.parametrize("name", ["star", "islands"])
+def test_no_method_crashes_or_stalls_the_search_in_wild_drags(method: str, name: str) -> None:
+    """Some methods flip faces here; the decisions that are made hold nevertheless."""
+    mesh, rng = SHAPES[name], np.random.default_rng(4)
+    deformer = make_deformer(method, mesh)
+    points = mesh.locate(mesh.vertices[mesh.faces[rng.choice(len(mesh.faces), 4)]].mean(axis=1))
+    deformer.set_pins(points)
+    pose, overlaps = mesh.vertices, no_overlaps(mesh)
+    places, size = mesh.evaluate(points, pose), np.ptp(mesh.vertices, axis=0).max()
+    met = 0
+    for _ in range(25):
+        pose = deformer.step(pose, places + rng.normal(0, 0.6 * size, places.shape)).positions
+        overlaps = next_overlaps(mesh, pose, overlaps)
+        assert len(overlaps) <= MAX_PAIRS_PER_FACE * len(mesh.faces)
+        if len(overlaps):
+            met += 1
+            assert satisfies(overlaps.levels, *overlaps.low_and_high)
+            again = next_overlaps(mesh, pose, restored_overlaps(mesh, pose, overlaps.crossings))
+            assert satisfies(again.levels, *again.low_and_high)
+    assert met > 10, "the drags were wild"
