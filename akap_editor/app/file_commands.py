@@ -13,6 +13,7 @@ from ..io.akap.pose import POSE_SUFFIX, load_pose, save_pose
 from ..io.akap.recording import RECORDING_SUFFIX, write_recording
 from ..io.images import read_image, read_mask
 from ..io.open_document import PICTURE_SUFFIXES
+from ..meshing.faint import fitting_threshold
 from . import files
 from .app_state import AppState
 from .dialogs.file_dialog import FileDialog, FileRequest
@@ -58,9 +59,9 @@ def cut_out(document: Document, mask: Path) -> Document:
     visible = read_mask(mask)
     with file_errors("use", mask):
         image = apply_mask(picture, visible)
-        return new_document(
-            remove_background_and_mesh(image, replace(drawing.meshing, background=None), drawing.name)
-        )
+        threshold = fitting_threshold(image[..., 3], drawing.meshing.threshold)  # the mask may be faint
+        meshing = replace(drawing.meshing, background=None, threshold=threshold)
+        return new_document(remove_background_and_mesh(image, meshing, drawing.name))
 
 
 # -- poses --------------------------------------------------------------------------------------------------

@@ -101,3 +101,12 @@ def test_a_reference_picture_is_chosen_by_its_file(pinned, tmp_path, image):
     assert "broken.png" in pinned.state.error
     assert (pinned.state.view.reference.image == image).all()
     pinned.state.error = ""
+
+
+def test_a_faint_mask_lowers_the_threshold(document, image, tmp_path):
+    gray = np.full((*image.shape[:2], 4), 255, np.uint8)
+    gray[..., :3] = 60
+    write_png(tmp_path / "mask.png", gray)
+    drawing = file_commands.cut_out(document, tmp_path / "mask.png").drawing
+    assert drawing.image[..., 3].max() == 60
+    assert 0 < drawing.meshing.threshold < 60 / 255
