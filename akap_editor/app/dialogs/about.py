@@ -31,8 +31,8 @@ class AboutDialog:
             _WIDTH * scale,
         )
         widgets.paragraph(
-            "Free software under the GNU General Public License, version 3 or later. Of its meshers, "
-            "Triangle may be used non-commercially only, PythonCDT for everything.",
+            "Free software; the file LICENSE holds its license. Of its meshers, Triangle may be used "
+            "non-commercially only, PythonCDT for everything.",
             _WIDTH * scale,
             SECONDARY,
         )
