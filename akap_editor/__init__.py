@@ -46,6 +46,15 @@ if TYPE_CHECKING:
         InputError as InputError,
     )
     from .library import (
+        Layer as Layer,
+    )
+    from .library import (
+        LayerGroup as LayerGroup,
+    )
+    from .library import (
+        LayeredPicture as LayeredPicture,
+    )
+    from .library import (
         MeshPoints as MeshPoints,
     )
     from .library import (
@@ -73,6 +82,9 @@ if TYPE_CHECKING:
         bake as bake,
     )
     from .library import (
+        composite as composite,
+    )
+    from .library import (
         distortion as distortion,
     )
     from .library import (
@@ -95,6 +107,9 @@ if TYPE_CHECKING:
     )
     from .library import (
         open_document as open_document,
+    )
+    from .library import (
+        open_layers as open_layers,
     )
     from .library import (
         outlines as outlines,
@@ -125,6 +140,9 @@ __all__ = [
     "ExportOptions",
     "GraphicsError",
     "InputError",
+    "Layer",
+    "LayerGroup",
+    "LayeredPicture",
     "MeshPoints",
     "Outline",
     "Pin",
@@ -135,6 +153,7 @@ __all__ = [
     "TriMesh",
     "__version__",
     "bake",
+    "composite",
     "distortion",
     "export",
     "load",
@@ -143,6 +162,7 @@ __all__ = [
     "method_names",
     "new_document",
     "open_document",
+    "open_layers",
     "outlines",
     "read_image",
     "save",

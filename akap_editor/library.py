@@ -13,7 +13,10 @@ from .geometry.mesh import MeshPoints, TriMesh
 from .io.akap.project import load, save
 from .io.export import ExportOptions, export
 from .io.images import read_image, write_png
+from .io.layers.open_layers import open_layers
 from .io.open_document import open_document
+from .layers.composite import composite
+from .layers.layered_picture import Layer, LayeredPicture, LayerGroup
 from .meshing.outline import Outline, outlines
 from .meshing.triangulate import triangulate
 
@@ -28,6 +31,9 @@ __all__ = [
     "ExportOptions",
     "GraphicsError",
     "InputError",
+    "Layer",
+    "LayerGroup",
+    "LayeredPicture",
     "MeshPoints",
     "Outline",
     "Pin",
@@ -37,6 +43,7 @@ __all__ = [
     "StepResult",
     "TriMesh",
     "bake",
+    "composite",
     "distortion",
     "export",
     "load",
@@ -45,6 +52,7 @@ __all__ = [
     "method_names",
     "new_document",
     "open_document",
+    "open_layers",
     "outlines",
     "read_image",
     "save",

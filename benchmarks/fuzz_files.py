@@ -1,10 +1,10 @@
 """Fuzzes the file readers: each damaged or malicious file must open, or be refused with an InputError.
 
 Run from the project's root: python benchmarks/fuzz_files.py [--cases N] [--seed S]
-Makes .akap, .pose.json, .akaprec, mesh and picture files with damage on the outside (bytes, length, zip
-directory) or, with correct checksums, on the inside (numbers, JSON, PNG, sizes, names, bombs), and opens them
-in memory, with all Python warnings as errors. A file that opens is saved and opened again, and must be the
-same.
+Makes .akap, .pose.json, .akaprec, mesh, picture, .psd and .ora files with damage on the outside (bytes,
+length, zip directory) or, with correct checksums, on the inside (numbers, JSON, XML, PNG, sizes, names,
+bombs), and opens them in memory, with all Python warnings as errors. A file that opens is saved and opened
+again, and must be the same.
 Prints the numbers of opened and refused files, the slowest case and the peak memory. The exit code is 1 after
 any other exception, a case of over 20 seconds, or more than a gigabyte of memory. A failing case prints its
 seed; --seed S --cases 1 runs it alone.
@@ -32,6 +32,8 @@ from io import BytesIO
 from typing import Any
 
 import numpy as np
+from PIL import Image
+from psd_tools import PSDImage
 
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import Document, EditState
@@ -48,9 +50,11 @@ from akap_editor.io.akap.project import decode_document, encode_document
 from akap_editor.io.akap.recording import decode_recording
 from akap_editor.io.export.gltf import encode_glb
 from akap_editor.io.images import decode_image, encode_png
+from akap_editor.io.layers.open_layers import decode_layers
 from akap_editor.io.mesh_files.obj_off import PARSERS, decode_text
 from akap_editor.io.mesh_files.polygons import triangulate_polygons
 from akap_editor.io.mesh_files.soundness import decode_mesh, mesh_defects
+from akap_editor.layers.composite import composite
 
 MAX_CASE_SECONDS = 20.0  # of processor time; the largest allowed pictures take several
 MAX_MEMORY_BYTES = 2**30
@@ -391,6 +395,61 @@ def damaged_glb(rng: Rng, data: bytes) -> bytes:
     return header + text + binary
 
 
+def seed_psd() -> bytes:
+    """A Photoshop file with two layers, one in a group with opacity."""
+    psd = PSDImage.new("RGB", (8, 6))
+    for name, parent in (("a", psd), ("b", psd.create_group(name="group", opacity=100))):
+        picture = Image.fromarray(np.random.default_rng(1).integers(0, 256, (4, 5, 4), dtype=np.uint8))
+        parent.create_pixel_layer(picture, name=name, left=1, top=1)
+    buffer = BytesIO()
+    psd.save(buffer)
+    return buffer.getvalue()
+
+
+def seed_ora() -> Entries:
+    """The entries of an OpenRaster file with two layers, one in a group."""
+    picture = encode_png(np.random.default_rng(1).integers(0, 256, (4, 5, 4), dtype=np.uint8))
+    stack = (
+        b'<image w="8" h="6"><stack><stack name="g" opacity="0.5" x="1">'
+        b'<layer name="a" src="data/a.png" y="-1"/></stack>'
+        b'<layer name="b" src="data/b.png" composite-op="svg:multiply" visibility="hidden"/></stack></image>'
+    )
+    return [
+        ("mimetype", b"image/openraster"),
+        ("stack.xml", stack),
+        ("data/a.png", picture),
+        ("data/b.png", picture),
+    ]
+
+
+def damaged_layers(rng: Rng, psd: bytes, ora: Entries) -> bytes:
+    """A Photoshop or OpenRaster file with damage in one or two places."""
+    if rng.random() < 0.5:
+        for _ in range(int(rng.integers(1, 3))):
+            psd = pick(rng, [change_bytes, change_bytes, cut])(rng, psd)
+        return psd
+    entries = list(ora)
+    for _ in range(int(rng.integers(1, 3))):
+        index = int(rng.integers(len(entries)))
+        name, content = entries[index]
+        match int(rng.integers(6)):
+            case 0:
+                return pick(rng, [change_bytes, cut, change_directory])(
+                    rng, pack(entries, zipfile.ZIP_STORED)
+                )
+            case 1:
+                entries[index] = name, change_png(rng, content) if name.endswith(".png") else content
+            case 2:
+                entries[index] = pick(rng, NAMES), content
+            case _:
+                words = entries[1][1].split(b'"')
+                words[int(rng.integers(len(words)))] = pick(
+                    rng, [*WORDS, b"stack", b"layer", b"/>", b"<stack>"]
+                )
+                entries[1] = "stack.xml", b'"'.join(words)
+    return pack(entries, zipfile.ZIP_DEFLATED)
+
+
 # -- what must hold ------------------------------------------------------------------------------------------
 
 
@@ -412,13 +471,14 @@ class Fuzzer:
             with zipfile.ZipFile(BytesIO(encode_document(document))) as archive:
                 self.files.append([(name, archive.read(name)) for name in archive.namelist()])
         self.poses = [encode_pose(document) for document in self.documents]
+        self.psd, self.ora = seed_psd(), seed_ora()
         self.recordings = [seed_recording(document) for document in self.documents]
         self.glbs = [encode_glb(document.drawing, document.state.positions) for document in self.documents]
 
     def run(self, seed: int) -> None:
         """Check one case. Raises any exception but an `InputError` whose message is one line."""
         rng = np.random.default_rng(seed)
-        kind = pick(rng, ["akap", "akap", "akap", "pose", "akaprec", "mesh", "picture", "glb"])
+        kind = pick(rng, ["akap", "akap", "akap", "pose", "akaprec", "mesh", "picture", "glb", "layers"])
         started = time.process_time()
         try:
             getattr(self, f"_open_{kind}")(rng)
@@ -454,6 +514,12 @@ class Fuzzer:
         data = change_png(rng, encode_png(document.drawing.image))
         image = decode_image(data, ("PNG",), document.drawing.size)
         assert (decode_image(encode_png(image)) == image).all()
+
+    def _open_layers(self, rng: Rng) -> None:
+        layered = decode_layers(damaged_layers(rng, self.psd, self.ora))
+        if layered.size[0] * layered.size[1] < 2**20:
+            picture = composite(layered)
+            assert picture.shape[1::-1] == layered.size
 
     def _open_pose(self, rng: Rng) -> None:
         document = pick(rng, self.documents)

@@ -101,6 +101,7 @@ def test_package_keeps_its_import_contracts(package_copy: PackageCopy) -> None:
         ("triangle", "app/window.py", "import triangle"),
         ("cvxopt", "deform/islands.py", "from cvxopt import cholmod"),
         ("numba", "deform/islands.py", "from numba import njit"),
+        ("psd-tools", "io/images.py", "import psd_tools"),
     ],
 )
 def test_forbidden_import_breaks_the_contract(

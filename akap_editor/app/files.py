@@ -17,6 +17,7 @@ from ..io.akap.project import save as save_project
 from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.atomic import resolved
 from ..io.images import has_transparency, is_animation
+from ..io.layers.open_layers import LAYER_SUFFIXES
 from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document, opening_notes
 from ..resources import bundled_drawings
 from .app_state import AppState, error_message
@@ -45,17 +46,18 @@ def show_document(state: AppState, document: Document) -> None:
     if document.state.animation.keyframes:
         state.timeline.mode, state.timeline.is_shown = "keyframes", True
     opaque = document.path is None and not has_transparency(document.drawing.image)
-    state.notice = (
-        "This picture has no transparency, so the whole rectangle bends. "
-        "Remove Background in the Mesh section cuts out the drawing."
-        if opaque
-        else ". ".join(opening_notes(document))
-    )
+    notes = opening_notes(document)
+    if opaque:
+        notes.append(
+            "This picture has no transparency, so the whole rectangle bends. "
+            "Remove Background in the Mesh section cuts out the drawing."
+        )
+    state.notice = ". ".join(notes)
 
 
 def choose_and_open(state: AppState) -> None:
     """Ask for a picture, drawing or recording, then open it."""
-    suffixes = (PROJECT_SUFFIX, RECORDING_SUFFIX, *PICTURE_SUFFIXES, *MESH_SUFFIXES)
+    suffixes = (PROJECT_SUFFIX, RECORDING_SUFFIX, *PICTURE_SUFFIXES, *LAYER_SUFFIXES, *MESH_SUFFIXES)
     state.part(FileDialog).ask(
         FileRequest("Open picture or drawing", suffixes, state.folder, partial(open_path, state))
     )

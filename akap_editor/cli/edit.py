@@ -44,8 +44,8 @@ def edit(
     threshold: float | None = None,
     mesher: str | None = None,
 ) -> None:
-    """Open FILE in a window: a picture, a flat OBJ or OFF mesh, a drawing saved as .akap, or a recording,
-    which is then on the timeline.
+    """Open FILE in a window: a picture, also in layers (PSD, ORA, a folder of PNG pictures), a flat
+    OBJ or OFF mesh, a drawing saved as .akap, or a recording, which is then on the timeline.
 
     Without FILE, the start page shows bundled drawings and recent files, and accepts dropped files.
 

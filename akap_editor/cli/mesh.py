@@ -15,9 +15,10 @@ from ..display_text import display_text
 from ..editor.document.drawing import Meshing, apply_mask
 from ..errors import FileError, InputError, file_errors
 from ..geometry.validation import as_number
-from ..io.images import has_transparency, read_image, read_mask
+from ..io.images import has_transparency, read_mask
+from ..io.layers.open_layers import LAYER_SUFFIXES
 from ..io.mesh_files.obj_off import write_obj
-from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note
+from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note, read_picture
 from ..io.outputs import refuse_replacing
 from ..meshing.faint import DEFAULT_THRESHOLD, faint_share, fitting_threshold
 from ..meshing.mesher_process import MESHER_PROCESS
@@ -36,7 +37,8 @@ class MeshRow:
 
     faint: share of the visible pixels that the threshold cuts off, which ``covered`` does not count;
     specks: number of islands that are too small and left out; speck_share: their share of the visible area;
-    cut_out: whether the picture has transparency; seconds: from the file to the mesh; mesh: the written file.
+    cut_out: whether the picture has transparency; seconds: from the file to the mesh; mesh: the written file;
+    notes: about layers that were merged, and what was left out.
     """
 
     picture: str
@@ -54,6 +56,7 @@ class MeshRow:
     cut_out: bool
     seconds: float
     mesh: str | None
+    notes: tuple[str, ...] = ()
 
 
 @click.command(epilog="Example: akap-editor mesh drawings/*.png -o meshes --vertices 3000")
@@ -123,7 +126,7 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
     if output is not None and output.suffix.lower() != ".obj":
         raise FileError("save", output, f"expected a name that ends in .obj, got {output.suffix or 'none'}")
     started = time.perf_counter()
-    image = read_image(picture)
+    image, notes = read_picture(picture)
     shown = read_mask(mask) if mask is not None else None
     with file_errors("mesh", picture):
         if shown is not None:
@@ -147,6 +150,7 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
         cut_out=has_transparency(image),
         seconds=round(seconds, 4),
         mesh=None if output is None else str(output),
+        notes=notes,
         faint=faint,
         **{**asdict(quality), "covered": quality.covered * (1 - faint)},
     )
@@ -165,7 +169,11 @@ def _expand_folders(pictures: tuple[Path, ...]) -> list[Path]:
     paths: list[Path] = []
     for path in pictures:
         if path.is_dir():
-            children = sorted(child for child in path.iterdir() if child.suffix.lower() in PICTURE_SUFFIXES)
+            children = sorted(
+                child
+                for child in path.iterdir()
+                if child.suffix.lower() in (*PICTURE_SUFFIXES, *LAYER_SUFFIXES)
+            )
             if not children:
                 raise FileError("open", path, "the folder contains no pictures")
             paths += children
@@ -211,6 +219,7 @@ def _describe(row: MeshRow) -> str:
         f"  covered         {row.covered:.2%} of the visible area; {row.outside:.1%} of the mesh is outside",
         f"  time            {row.seconds:.3f} s",
     ]
+    lines += [f"  {note}" for note in row.notes]
     if row.faint >= MIN_REPORTED_SHARE:
         lines.append(f"  {faint_note(row.faint)}")
     if row.specks:

@@ -8,6 +8,8 @@ from typing import Any
 
 from ..errors import InputError
 from ..geometry.distortion import distortion
+from ..layers.composite import composite
+from ..layers.layered_picture import LayeredPicture
 from ..meshing.faint import fitting_threshold
 from ..meshing.picture_mesh import mesh_picture
 from .akap.json_records import pairs, parse_record, require
@@ -16,7 +18,8 @@ from .akap.project import decode_document
 from .akap.recording import decode_recording
 from .akap.state_records import read_pins
 from .atomic import read_file
-from .images import decode_image, has_transparency
+from .images import Picture, decode_image, has_transparency
+from .layers.open_layers import LAYER_SUFFIXES, PSD_MAGIC, decode_layers, has_layers, open_layers
 from .mesh_files.soundness import count_parts, decode_mesh, mesh_defects
 
 Facts = dict[str, Any]
@@ -35,6 +38,7 @@ _KIND_OF_SUFFIX = {
     ".akaprec": "recording",
     **dict.fromkeys((".obj", ".off", ".glb", ".json"), "mesh"),
     **dict.fromkeys((".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif"), "picture"),
+    **dict.fromkeys(LAYER_SUFFIXES, "layers"),
 }
 
 
@@ -42,8 +46,8 @@ _KIND_OF_SUFFIX = {
 class Inspection:
     """The result of an inspection.
 
-    kind: "picture", "drawing", "pose", "recording", "mesh" or "unknown"; facts: values by name; problems:
-    one line each, none if the file is sound.
+    kind: "picture", "layers", "drawing", "pose", "recording", "mesh" or "unknown"; facts: values by name;
+    problems: one line each, none if the file is sound.
     """
 
     kind: str
@@ -57,7 +61,9 @@ class Inspection:
 
 
 def inspect(path: str | Path) -> Inspection:
-    """Inspect a file. Raises FileError if it cannot be read at all."""
+    """Inspect a file, or a folder of layers. Raises FileError if it cannot be read at all."""
+    if Path(path).is_dir():
+        return Inspection("layers", *_layer_facts("folder", open_layers(path)))
     data = read_file(path, "a file")
     kind = _kind_by_content(data) or _KIND_OF_SUFFIX.get(Path(path).suffix.lower(), "unknown")
     if kind == "unknown":
@@ -79,6 +85,8 @@ def _kind_by_content(data: bytes) -> str | None:
     """The kind of a file by its first bytes, None if they do not tell."""
     if any(data.startswith(magic) for magic in _PICTURE_KINDS):
         return "picture"
+    if has_layers(data):
+        return "layers"
     if data.startswith(b"PK"):
         return "drawing"
     if b'"akap-recording"' in data[:200]:
@@ -92,6 +100,25 @@ def _inspect_picture(data: bytes) -> tuple[Facts, list[str]]:
     image = decode_image(data)
     kind = next(name for magic, name in _PICTURE_KINDS.items() if data.startswith(magic))
     facts: Facts = {"format": kind, "width": image.shape[1], "height": image.shape[0]}
+    return _mesh_facts(facts, image)
+
+
+def _inspect_layers(data: bytes) -> tuple[Facts, list[str]]:
+    return _layer_facts("Photoshop" if data.startswith(PSD_MAGIC) else "OpenRaster", decode_layers(data))
+
+
+def _layer_facts(kind: str, layered: LayeredPicture) -> tuple[Facts, list[str]]:
+    width, height = layered.size
+    facts: Facts = {"format": kind, "width": width, "height": height, "layers": len(layered.layers)}
+    facts["groups"] = len({id(group) for layer in layered.layers for group in layer.groups})
+    facts["hidden layers"] = len(layered.hidden)
+    if layered.left_out:
+        facts["not drawn"] = "; ".join(layered.left_out)
+    return _mesh_facts(facts, composite(layered))
+
+
+def _mesh_facts(facts: Facts, image: Picture) -> tuple[Facts, list[str]]:
+    """Add what a picture (h, w, 4) becomes as a drawing."""
     facts["transparent"] = has_transparency(image)
     try:
         meshed = mesh_picture(image[..., 3], threshold=fitting_threshold(image[..., 3]))
@@ -167,6 +194,7 @@ def _inspect_mesh(data: bytes) -> tuple[Facts, list[str]]:
 
 _INSPECTORS: dict[str, Callable[[bytes], tuple[Facts, list[str]]]] = {
     "picture": _inspect_picture,
+    "layers": _inspect_layers,
     "drawing": _inspect_drawing,
     "pose": _inspect_pose,
     "recording": _inspect_recording,

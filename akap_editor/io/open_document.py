@@ -1,5 +1,6 @@
 """Opens any file that can be edited as a document."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from ..display_text import display_name
@@ -7,12 +8,14 @@ from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import apply_mask, make_drawing
 from ..editor.session.replay import Replay
 from ..errors import FileError, InputError, file_errors
+from ..layers.composite import composite
 from ..meshing.faint import DEFAULT_THRESHOLD, faint_share, fitting_threshold
 from ..progress import announce, part
 from .akap.project import PROJECT_SUFFIX, load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
 from .atomic import as_path
-from .images import read_image, read_mask
+from .images import Picture, read_image, read_mask
+from .layers.open_layers import is_layered, merging_notes, open_layers
 from .mesh_files.mesh_drawing import read_mesh
 from .mesh_files.obj_off import PARSERS
 
@@ -30,7 +33,8 @@ def open_document(
     """Open a file as a document; the ending of its name decides how.
 
     .akap: the saved document; .akaprec: the document at the end of the recording; .obj, .off: a flat mesh,
-    see `read_mesh`; any other: a picture, which is cut out along its alpha and meshed.
+    see `read_mesh`; any other: a picture, which is cut out along its alpha and meshed. The visible layers of
+    a picture in layers (.psd, .psb, .ora, a folder of PNG pictures, see `open_layers`) are merged.
     mask: a picture that is bright, or opaque, where the picture is to be visible; threshold: share of full
     opacity at which the picture ends, None for one that suits it, see `fitting_threshold`; mesher: of a
     picture, see `make_drawing`.
@@ -49,24 +53,38 @@ def open_document(
         return _open_recording(path)
     if suffix in MESH_SUFFIXES:
         return new_document(read_mesh(path))
-    image = read_image(path)
+    image, notes = read_picture(path)
     shown = read_mask(mask) if mask is not None else None
     with file_errors("open", path):
         if shown is not None:
             image = apply_mask(image, shown)
         if threshold is None:
             threshold = fitting_threshold(image[..., 3])
-        with part(0.25, 1.0):
+        with part(0.5 if is_layered(path) else 0.25, 1.0):
             drawing = make_drawing(image, threshold=threshold, name=path.stem, mesher=mesher)
-        return new_document(drawing)
+        return replace(new_document(drawing), notes=notes)
+
+
+def read_picture(path: str | Path) -> tuple[Picture, tuple[str, ...]]:
+    """The picture (h, w, 4) uint8, straight alpha, of a picture file, or of one in layers.
+
+    The visible layers are merged; the second value is sentences, without period, about this and about what
+    is left out. Raises FileError.
+    """
+    if not is_layered(path):
+        return read_image(path), ()
+    with part(0.0, 0.4):
+        layered = open_layers(path)
+    with part(0.4, 0.5):
+        return composite(layered), tuple(merging_notes(layered))
 
 
 def opening_notes(document: Document) -> list[str]:
-    """Sentences about what was cut off a picture that was opened: a lower threshold, and faint parts."""
+    """Sentences about a picture that was opened: merged layers, a lower threshold, and faint parts."""
     drawing = document.drawing
     if document.path is not None or drawing.meshing is None:
         return []
-    alpha, threshold, notes = drawing.image[..., 3], drawing.meshing.threshold, []
+    alpha, threshold, notes = drawing.image[..., 3], drawing.meshing.threshold, list(document.notes)
     most = int(alpha.max())
     if most <= 255 * DEFAULT_THRESHOLD and threshold < DEFAULT_THRESHOLD:
         notes.append(

@@ -13,6 +13,7 @@ from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import write_png
 from akap_editor.resources import bundled_drawings, resource
 from tests.support.command_line import assert_one_line
+from tests.support.layered_files import add_layer, filled, ora_bytes, psd_bytes
 from tests.support.names import assert_readable
 
 RECORDING = resource("assets", "recordings", "elephant.akaprec")
@@ -198,3 +199,20 @@ def test_a_defect_that_no_reader_names_is_no_traceback(run, monkeypatch, tmp_pat
     assert second.startswith(f"  the file is damaged ({type(error).__name__}: ")
     assert len(second) < 200
     assert_readable(said)
+
+
+def test_pictures_in_layers(facts, tmp_path):
+    bar = filled(60, 30, 200, 30, 30)
+    (tmp_path / "a.psd").write_bytes(psd_bytes(lambda psd: add_layer(psd, "bar", bar, 10, 10), (90, 60)))
+    (tmp_path / "a.ora").write_bytes(
+        ora_bytes("<text name='Hi'/><layer src='a.png'/>", {"a.png": bar}, "w='90' h='60'")
+    )
+    (tmp_path / "folder").mkdir()
+    write_png(tmp_path / "folder" / "a.png", bar)
+    for path, kind in (("a.psd", "Photoshop"), ("a.ora", "OpenRaster"), ("folder", "folder")):
+        record = facts(path)
+        assert (record["kind"], record["sound"], record["facts"]["format"]) == ("layers", True, kind)
+        assert (record["facts"]["layers"], record["facts"]["parts"]) == (1, 1)
+    assert facts("a.ora")["facts"]["not drawn"] == "“Hi”, which is no picture but of the kind “text”"
+    (tmp_path / "a.psd").write_bytes(b"8BPS and nothing else")
+    assert not facts("a.psd")["sound"]

@@ -83,7 +83,8 @@ class Document:
     """An open drawing with its state.
 
     revision: grows with every change of ``state``; path: the .akap file, None if there is none; digest: of
-    the bytes of this file when they were read or written here, "" if unknown.
+    the bytes of this file when they were read or written here, "" if unknown; notes: sentences, without
+    period, about what opening a file of another program merged or left out; they are not saved.
     """
 
     drawing: Drawing
@@ -91,6 +92,7 @@ class Document:
     revision: int = 0
     path: Path | None = None
     digest: str = ""
+    notes: tuple[str, ...] = ()
 
     @property
     def face_order(self) -> Ints | None:

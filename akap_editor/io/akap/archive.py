@@ -39,14 +39,15 @@ def check_expanded(size: int) -> None:
 class Archive:
     """Reads the entries of a zip file by their exact names. Each name may occur once.
 
-    All methods raise InputError on damage of any kind, and nothing else.
+    kind: what the file should be, for messages. All methods raise InputError on damage of any kind, and
+    nothing else.
     """
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data: bytes, kind: str = "an .akap file") -> None:
         try:
             self._archive = zipfile.ZipFile(BytesIO(data))
         except Exception as error:  # zipfile reports damage with exceptions of many kinds
-            raise InputError("the file is damaged or not an .akap file") from error
+            raise InputError(f"the file is damaged or not {kind}") from error
         entries = self._archive.infolist()
         self._entries = {entry.filename: entry for entry in entries}
         self._expanded = 0

@@ -1,0 +1,133 @@
+"""Opens pictures in layers: Photoshop and OpenRaster files, and folders of PNG pictures."""
+
+import re
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+
+from ...display_text import display_name
+from ...errors import FileError, InputError, file_errors
+from ...layers.layered_picture import Layer, LayeredPicture, trimmed
+from ...progress import announce
+from ..atomic import as_path, os_error_reason, read_file
+from ..images import read_image
+from .limits import LayerBudget, quoted
+from .ora import ORA_MIMETYPE, decode_ora
+
+PSD_MAGIC = b"8BPS"
+_MAX_NAMED = 5  # layers or parts named in a sentence
+
+
+def _decode_psd(file: BytesIO) -> LayeredPicture:
+    from .psd import decode_psd  # psd-tools takes 0.2 s to load
+
+    return decode_psd(file)
+
+
+_DECODERS: dict[str, Callable[[BytesIO], LayeredPicture]] = {
+    ".psd": _decode_psd,
+    ".psb": _decode_psd,
+    ".ora": decode_ora,
+}
+LAYER_SUFFIXES = tuple(_DECODERS)
+
+
+def is_layered(path: str | Path) -> bool:
+    """Whether `open_layers` opens a path: by the ending of its name, or because it is a folder."""
+    path = as_path(path)
+    return path.suffix.lower() in LAYER_SUFFIXES or path.is_dir()
+
+
+def open_layers(path: str | Path) -> LayeredPicture:
+    """Open the layers of a Photoshop file (.psd, .psb), an OpenRaster file (.ora) or a folder.
+
+    Of a folder they are its PNG pictures, which must have one size; the first one by name is at the bottom,
+    and numbers in names count as numbers. Each layer is cut to its visible pixels. Raises FileError.
+
+    >>> puppet = open_layers("puppet.psd")                                              # doctest: +SKIP
+    >>> for layer in puppet.layers:                                                     # doctest: +SKIP
+    ...     print("/".join(layer.path), layer.offset, layer.picture.shape)
+    body (310, 420) (512, 380, 4)
+    head/eye left (321, 264) (60, 58, 4)
+    """
+    path = as_path(path)
+    if path.is_dir():
+        return _open_folder(path)
+    decode = _DECODERS.get(path.suffix.lower())
+    if decode is None:
+        endings = ", ".join(LAYER_SUFFIXES)
+        reason = f"expected a folder or a file that ends in {endings}, got {path.suffix or 'no ending'}"
+        raise FileError("open", path, reason)
+    with file_errors("open", path):
+        return decode(BytesIO(read_file(path, "a picture in layers")))
+
+
+def decode_layers(data: bytes) -> LayeredPicture:
+    """The layers in the bytes of a Photoshop or OpenRaster file. Raises InputError."""
+    return (_decode_psd if data.startswith(PSD_MAGIC) else decode_ora)(BytesIO(data))
+
+
+def has_layers(data: bytes) -> bool:
+    """Whether the first bytes of a file are those of a Photoshop or OpenRaster file."""
+    return data.startswith(PSD_MAGIC) or b"mimetype" + ORA_MIMETYPE in data[:100]
+
+
+def merging_notes(layered: LayeredPicture) -> list[str]:
+    """Sentences without period about what a flat drawing of a picture in layers shows and leaves out."""
+    shown = len(layered.layers) - len(layered.hidden)
+    notes = [f"{shown} {'layer was' if shown == 1 else 'layers were'} merged into one drawing"]
+    if layered.hidden:
+        names = _listed([quoted(layer.name) for layer in layered.hidden])
+        count = len(layered.hidden)
+        notes.append(f"{count} hidden {'layer was' if count == 1 else 'layers were'} left out: {names}")
+    if layered.left_out:
+        notes.append(f"Not drawn: {_listed(list(layered.left_out))}")
+    return notes
+
+
+def _listed(names: list[str]) -> str:
+    """The names separated by commas; of many, the first ones and the number of the others."""
+    others = len(names) - _MAX_NAMED
+    if others < 2:
+        return ", ".join(names)
+    return f"{', '.join(names[:_MAX_NAMED])} and {others} more"
+
+
+def _open_folder(folder: Path) -> LayeredPicture:
+    """The PNG pictures of a folder as layers. Raises FileError."""
+    try:
+        paths = [
+            path
+            for path in folder.iterdir()
+            if path.suffix.lower() == ".png" and not path.name.startswith(".") and path.is_file()
+        ]
+    except OSError as error:
+        raise FileError("open", folder, os_error_reason(error)) from error
+    if not paths:
+        raise FileError("open", folder, "the folder contains no PNG pictures, which would be its layers")
+    size: tuple[int, int] | None = None
+    layers, budget = [], LayerBudget()
+    for number, path in enumerate(sorted(paths, key=_natural_key)):
+        announce(number / (len(paths) + 1), f"Reading the layer {quoted(path.stem)}")
+        picture = read_image(path)
+        with file_errors("open", folder):
+            came = picture.shape[1], picture.shape[0]
+            size = size or came
+            if came != size:
+                expected = f"pictures of one size, {size[0]} x {size[1]} pixels like the first one"
+                got = f"{display_name(path)} with {came[0]} x {came[1]}"
+                raise InputError(f"expected {expected}, got {got}")
+            budget.add_layer()
+            cut = trimmed(picture, (0, 0))
+            if cut is not None:
+                budget.add_pixels(cut[0].size // 4)
+                layers.append(Layer(path.stem, *cut))
+    if not layers or size is None:
+        raise FileError("open", folder, "its pictures are fully transparent")
+    return LayeredPicture(size, tuple(layers))
+
+
+def _natural_key(path: Path) -> tuple[list[tuple[int, str]], str]:
+    """A key that sorts "layer 2" before "layer 10"."""
+    parts = re.split(r"([0-9]+)", path.stem.casefold())
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in parts], path.name

@@ -1,0 +1,174 @@
+"""Reads OpenRaster files (.ora), the layers of Krita, MyPaint and GIMP.
+
+https://www.openraster.org: a zip archive of PNG pictures and of stack.xml, which lists the topmost first.
+"""
+
+from dataclasses import dataclass, field
+from io import BytesIO
+from typing import Any
+from xml.etree.ElementTree import Element, TreeBuilder
+from xml.parsers import expat
+
+from ...errors import InputError, error_context
+from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
+from ...progress import announce
+from ..akap.archive import Archive
+from ..images import decode_image
+from .limits import MAX_DEPTH, LayerBudget, check_size, quoted
+
+ORA_MIMETYPE = b"image/openraster"
+MAX_STACK_BYTES = 2**22
+MAX_LAYER_BYTES = 2**29
+MAX_OFFSET = 1_000_000  # pixels
+
+_BLEND_MODES = {
+    "svg:src-over": "normal",
+    "svg:multiply": "multiply",
+    "svg:screen": "screen",
+    "svg:plus": "add",
+}
+
+
+def decode_ora(file: BytesIO) -> LayeredPicture:
+    """The layers in an OpenRaster file. Raises InputError."""
+    return _OraReader(file.getvalue()).read()
+
+
+@dataclass
+class _OraReader:
+    data: bytes
+    layers: list[Layer] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    budget: LayerBudget = field(default_factory=LayerBudget)
+
+    def __post_init__(self) -> None:
+        self._archive = Archive(self.data, "an OpenRaster file")
+        self._count = 1  # of the layers in the file, for the progress
+
+    def read(self) -> LayeredPicture:
+        mimetype = self._archive.read("mimetype", 100).strip()
+        if mimetype != ORA_MIMETYPE:
+            raise InputError(f"expected the type {ORA_MIMETYPE.decode()}, got {mimetype!r}")
+        with error_context("stack.xml"):
+            root = _parse_xml(self._archive.read("stack.xml", MAX_STACK_BYTES))
+            stack = root.find("stack")
+            if root.tag != "image" or stack is None:
+                raise InputError("expected an image with a stack of layers")
+            size = _integer(root, "w", None), _integer(root, "h", None)
+        check_size(*size, "canvas")
+        self._count = max(1, sum(1 for _ in root.iter("layer")))
+        self._read_stack(stack, (), (0, 0))
+        if not self.layers:
+            raise InputError("the file contains no layer with visible pixels")
+        return LayeredPicture(size, tuple(self.layers), tuple(self.left_out))
+
+    def _read_stack(self, stack: Element, groups: tuple[LayerGroup, ...], offset: tuple[int, int]) -> None:
+        """Read what a stack contains; ``offset`` is that of the stack, to which those of layers are added."""
+        for item in reversed(stack):
+            name = item.get("name", "") or "unnamed"
+            with error_context(f"layer {quoted(name)}"):
+                at = offset[0] + _integer(item, "x", 0), offset[1] + _integer(item, "y", 0)
+                if item.tag in ("stack", "layer"):
+                    self.budget.add_layer()
+                    common: dict[str, Any] = {
+                        "name": name,
+                        "opacity": _opacity(item),
+                        "blend": self._blend(item, name),
+                        "visible": item.get("visibility", "visible") != "hidden",
+                    }
+            if item.tag == "stack":
+                self._read_stack(item, (*groups, LayerGroup(**(common | _isolation(item, common)))), at)
+            elif item.tag == "layer":
+                self._read_layer(item, common, groups, at)
+            else:
+                self.left_out.append(
+                    f"{quoted(name)}, which is no picture but of the kind {quoted(item.tag)}"
+                )
+
+    def _read_layer(
+        self, item: Element, common: dict[str, Any], groups: tuple[LayerGroup, ...], at: tuple[int, int]
+    ) -> None:
+        announce(self.budget.layers / (self._count + 1), f"Reading the layer {quoted(common['name'])}")
+        with error_context(f"layer {quoted(common['name'])}"):
+            source = item.get("src")
+            if source is None:
+                raise InputError("expected the name of its picture, got none")
+            if not source.lower().endswith(".png"):
+                self.left_out.append(f"the layer {quoted(common['name'])}, which is no PNG picture")
+                return
+            cut = trimmed(decode_image(self._archive.read(source, MAX_LAYER_BYTES), ("PNG",)), at)
+            if cut is not None:
+                self.budget.add_pixels(cut[0].size // 4)
+                self.layers.append(Layer(picture=cut[0], offset=cut[1], groups=groups, **common))
+
+    def _blend(self, item: Element, name: str) -> str:
+        """The blend mode; one that is not known is named as left out, and drawn as normal."""
+        operation = item.get("composite-op", "svg:src-over")
+        if operation not in _BLEND_MODES:
+            self.left_out.append(f"the blend mode {quoted(operation)} of {quoted(name)}")
+        return _BLEND_MODES.get(operation, "normal")
+
+
+def _isolation(item: Element, common: dict[str, Any]) -> dict[str, str]:
+    """The blending of a group that is drawn with what lies below it, as OpenRaster says which one is."""
+    is_isolated = item.get("isolation") == "isolate" or common["opacity"] < 1 or common["blend"] != "normal"
+    return {} if is_isolated else {"blend": PASS_THROUGH}
+
+
+def _parse_xml(data: bytes) -> Element:
+    """The root of an XML document without a document type, so that it can define no entities."""
+    builder, depth = TreeBuilder(), 0
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal depth
+        depth += 1
+        if depth > MAX_DEPTH:
+            raise InputError(f"expected groups in groups at most {MAX_DEPTH} deep, got more")
+        builder.start(tag, attributes)
+
+    def end(tag: str) -> None:
+        nonlocal depth
+        depth -= 1
+        builder.end(tag)
+
+    def refuse(*_: object) -> None:
+        raise InputError("expected no document type and no entities, got some")
+
+    parser = expat.ParserCreate()
+    parser.StartElementHandler, parser.EndElementHandler = start, end
+    parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = refuse
+    try:
+        parser.Parse(data, True)
+        return builder.close()
+    except InputError:
+        raise
+    except Exception as error:  # expat and the builder report damage with exceptions of many kinds
+        raise InputError("the list of layers is damaged") from error
+
+
+def _integer(item: Element, name: str, default: int | None) -> int:
+    """A number of whole pixels; some programs write fractions."""
+    text = item.get(name)
+    if text is None and default is not None:
+        return default
+    value = _number(item, name, text)
+    if abs(value) > MAX_OFFSET:
+        raise InputError(f"{name}: expected at most {MAX_OFFSET} pixels, got {value:g}")
+    return round(value)
+
+
+def _opacity(item: Element) -> float:
+    value = _number(item, "opacity", item.get("opacity", "1"))
+    if not 0 <= value <= 1:
+        raise InputError(f"opacity: expected a number from 0 to 1, got {value:g}")
+    return value
+
+
+def _number(item: Element, name: str, text: str | None) -> float:
+    try:
+        value = float(text or "")
+    except ValueError:
+        value = float("nan")
+    if not abs(value) < float("inf"):
+        raise InputError(f"{name}: expected a number, got {(text or 'nothing')[:20]!r}")
+    return value

@@ -1,0 +1,216 @@
+"""Reads Photoshop files (.psd, .psb) with psd-tools: the pictures of their layers, as 8-bit RGBA."""
+
+import logging
+import warnings
+from dataclasses import dataclass, field
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+from psd_tools import ParseLimits, PSDDecompressionWarning, PSDImage
+from psd_tools.api.layers import AdjustmentLayer, Group
+from psd_tools.api.layers import Layer as PsdLayer
+from psd_tools.constants import BlendMode, ChannelID, ColorMode
+
+from ...errors import AkapError, InputError, error_context
+from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
+from ...progress import announce
+from ..images import MAX_PIXELS, Picture
+from .limits import MAX_DEPTH, LayerBudget, check_size, quoted
+
+MAX_ALLOCATED_BYTES = 2**30  # by psd-tools at once
+_LIMITS = ParseLimits(max_read_bytes=2**30)
+_COLOR_MODES = (
+    ColorMode.RGB,
+    ColorMode.CMYK,
+    ColorMode.GRAYSCALE,
+    ColorMode.DUOTONE,
+    ColorMode.INDEXED,
+    ColorMode.BITMAP,
+)
+_BLEND_MODES = {
+    BlendMode.NORMAL: "normal",
+    BlendMode.MULTIPLY: "multiply",
+    BlendMode.SCREEN: "screen",
+    BlendMode.LINEAR_DODGE: "add",
+    BlendMode.PASS_THROUGH: PASS_THROUGH,
+}
+
+logging.getLogger("psd_tools").addHandler(logging.NullHandler())  # its remarks are not for our users
+
+
+def decode_psd(file: BytesIO) -> LayeredPicture:
+    """The layers in a Photoshop file, which is closed once it has been read. Raises InputError.
+
+    The picture of a text, a shape or a smart object is the one that the file contains. Masks are multiplied
+    into the opacity of layers, those of groups into each of their layers.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("error", PSDDecompressionWarning)  # psd-tools would go on with black pixels
+        try:
+            psd = PSDImage.open(file, MAX_ALLOCATED_BYTES, _LIMITS)
+        except Exception as error:  # psd-tools reports damage with exceptions of many kinds
+            raise InputError("the file is damaged or not a Photoshop file") from error
+        file.close()
+        return _PsdReader(psd).read()
+
+
+@dataclass
+class _PsdReader:
+    psd: PSDImage
+    layers: list[Layer] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    budget: LayerBudget = field(default_factory=LayerBudget)
+
+    def read(self) -> LayeredPicture:
+        size = self.psd.width, self.psd.height
+        check_size(*size, "canvas")
+        if self.psd.color_mode not in _COLOR_MODES:
+            mode = self.psd.color_mode.name.capitalize()
+            raise InputError(f"expected RGB, CMYK or gray colors, got {mode}; convert the file to RGB")
+        if self.psd.depth == 32:
+            raise InputError("expected samples of 8 or 16 bits, got 32; convert the file to 16 bits")
+        try:
+            self._count = max(1, sum(1 for _ in self.psd.descendants()))
+            if len(self.psd):
+                self._read_group(self.psd, (), ())
+            else:  # a flat picture
+                self._read_merged()
+        except AkapError:
+            raise
+        except Exception as error:  # psd-tools reports damage with exceptions of many kinds
+            raise InputError("the Photoshop file is damaged or incomplete") from error
+        if not self.layers:
+            raise InputError("the file contains no layer with visible pixels")
+        return LayeredPicture(size, tuple(self.layers), tuple(self.left_out))
+
+    def _read_merged(self) -> None:
+        image = self.psd.topil()
+        if image is not None:
+            self._add("Background", np.array(image.convert("RGBA")), (0, 0), {})
+
+    def _read_group(self, group: Any, groups: tuple[LayerGroup, ...], masks: tuple[PsdLayer, ...]) -> None:
+        """Read what a group contains, which psd-tools lists from the bottom to the top.
+
+        masks: the groups around it that have a mask.
+        """
+        if len(groups) > MAX_DEPTH:
+            raise InputError(f"expected groups in groups at most {MAX_DEPTH} deep, got more")
+        base_is_drawn = True  # whether the layer to which others are clipped has pixels
+        for layer in group:
+            self.budget.add_layer()
+            clipping = bool(layer.clipping)
+            if clipping and not base_is_drawn:
+                self.left_out.append(f"{quoted(layer.name)}, which is clipped to a layer that is not drawn")
+                continue
+            before = len(self.layers)
+            if isinstance(layer, Group):
+                self._name_what_is_left_out(layer)
+                own = LayerGroup(**self._common(layer), clipping=clipping)
+                self._read_group(layer, (*groups, own), (*masks, layer) if _is_masked(layer) else masks)
+            else:
+                self._read_layer(layer, {"groups": groups, "clipping": clipping}, masks)
+            if not clipping:
+                base_is_drawn = len(self.layers) > before
+
+    def _read_layer(self, layer: PsdLayer, place: dict[str, Any], masks: tuple[PsdLayer, ...]) -> None:
+        name = quoted(layer.name)
+        announce(self.budget.layers / (self._count + 1), f"Reading the layer {name}")
+        if not layer.has_pixels():
+            if isinstance(layer, AdjustmentLayer):
+                self.left_out.append(f"the adjustment layer {name}")
+            elif layer.kind != "pixel":
+                self.left_out.append(f"{name}, of which the file contains no picture")
+            return
+        if layer.width < 1 or layer.height < 1:
+            return
+        self._name_what_is_left_out(layer)
+        with error_context(f"layer {name}"):
+            check_size(layer.width, layer.height, "size")
+            try:
+                picture = _rgba(layer)
+                for masked in (*masks, *([layer] if _is_masked(layer) else ())):
+                    _apply_mask(picture, layer.offset, masked)
+            except InputError:
+                raise
+            except Exception as error:  # psd-tools reports damage with exceptions of many kinds
+                raise InputError("the layer is damaged or incomplete") from error
+            self._add(layer.name, picture, layer.offset, self._common(layer) | place)
+
+    def _add(self, name: str, picture: Picture, offset: tuple[int, int], values: dict[str, Any]) -> None:
+        cut = trimmed(picture, offset)
+        if cut is not None:
+            self.budget.add_pixels(cut[0].size // 4)
+            self.layers.append(Layer(**({"name": name} | values), picture=cut[0], offset=cut[1]))
+
+    def _common(self, layer: PsdLayer) -> dict[str, Any]:
+        """What groups and layers have in common."""
+        mode = _BLEND_MODES.get(layer.blend_mode, "normal")
+        if mode == PASS_THROUGH and not isinstance(layer, Group):
+            mode = "normal"
+        opacity = layer.opacity / 255 * _fill_opacity(layer)
+        return {"name": layer.name, "opacity": opacity, "blend": mode, "visible": bool(layer.visible)}
+
+    def _name_what_is_left_out(self, layer: PsdLayer) -> None:
+        """Note what a layer or group has besides pixels."""
+        name = quoted(layer.name)
+        if layer.blend_mode not in _BLEND_MODES:
+            mode = layer.blend_mode.name.lower().replace("_", " ")
+            self.left_out.append(f"the blend mode “{mode}” of {name}")
+        if layer.has_effects():
+            self.left_out.append(f"the effects of {name}")
+        has_rendered_mask = layer.mask is not None and layer.mask.has_real()
+        if layer.has_vector_mask() and layer.kind != "shape" and not has_rendered_mask:
+            self.left_out.append(f"the vector mask of {name}")
+        if _is_masked(layer) and _feather(layer):
+            self.left_out.append(f"the soft edge of the mask of {name}")
+
+
+def _fill_opacity(layer: PsdLayer) -> float:
+    value = layer.fill_opacity
+    return min(max(value, 0), 255) / 255 if isinstance(value, int) else 1.0
+
+
+def _is_masked(layer: PsdLayer) -> bool:
+    return layer.mask is not None and not layer.mask.disabled
+
+
+def _feather(layer: PsdLayer) -> float:
+    parameters = layer.mask.parameters if layer.mask is not None else None
+    return (parameters.user_mask_feather or 0.0) if parameters is not None else 0.0
+
+
+def _rgba(layer: PsdLayer) -> Picture:
+    """The picture of a layer, (h, w, 4) uint8, without its mask."""
+    image = layer.topil()
+    if image is None:
+        raise InputError("the layer is damaged or incomplete")
+    if image.mode in ("RGBA", "LA"):
+        return np.array(image.convert("RGBA"))
+    picture = np.array(image.convert("RGB").convert("RGBA"))
+    alpha = layer.topil(ChannelID.TRANSPARENCY_MASK)  # Pillow's CMYK pictures have none
+    if alpha is not None:
+        picture[..., 3] = np.asarray(alpha.convert("L"))
+    return picture
+
+
+def _apply_mask(picture: Picture, offset: tuple[int, int], masked: PsdLayer) -> None:
+    """Multiply the opacity of a picture whose corner is at ``offset`` by the mask of a layer or group."""
+    mask = masked.mask
+    assert mask is not None
+    if mask.width * mask.height > MAX_PIXELS:
+        raise InputError(f"mask: expected at most {MAX_PIXELS / 1e6:g} megapixels")
+    height, width = picture.shape[:2]
+    full = Image.new("L", (width, height), mask.background_color)
+    image = mask.topil()
+    if image is not None:
+        full.paste(image.convert("L"), (mask.left - offset[0], mask.top - offset[1]))
+    visible: NDArray[Any] = np.asarray(full).astype(np.uint16)
+    parameters = mask.parameters
+    density = parameters.user_mask_density if parameters is not None else None
+    if density is not None and not mask.has_real():
+        visible = 255 - (255 - visible) * density // 255
+    picture[..., 3] = (picture[..., 3] * visible + 127) // 255

@@ -1,0 +1,1 @@
+"""Pictures in layers, and their composition into one picture."""
