@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..geometry.distortion import distortion
-from ..layers.composite import composite
+from ..layers.composite import composite, hidden_layers
 from ..layers.layered_picture import LayeredPicture
 from ..meshing.faint import fitting_threshold
 from ..meshing.picture_mesh import mesh_picture
@@ -111,7 +111,7 @@ def _layer_facts(kind: str, layered: LayeredPicture) -> tuple[Facts, list[str]]:
     width, height = layered.size
     facts: Facts = {"format": kind, "width": width, "height": height, "layers": len(layered.layers)}
     facts["groups"] = len({id(group) for layer in layered.layers for group in layer.groups})
-    facts["hidden layers"] = len(layered.hidden)
+    facts["hidden layers"] = len(hidden_layers(layered))
     if layered.left_out:
         facts["not drawn"] = "; ".join(layered.left_out)
     return _mesh_facts(facts, composite(layered))

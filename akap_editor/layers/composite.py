@@ -56,6 +56,24 @@ def composite(layered: LayeredPicture) -> NDArray[np.uint8]:
     return result
 
 
+def hidden_layers(layered: LayeredPicture) -> list[Layer]:
+    """The layers that `composite` does not draw, from the bottom to the top.
+
+    They or their groups are not visible, or they clip to what is not.
+    """
+    shown: set[int] = set()
+
+    def walk(nodes: list[_Node]) -> None:
+        for node in nodes:
+            if node.content.visible:
+                shown.add(id(node.content))
+                walk(node.children)
+                walk(node.clipped)
+
+    walk(_arrange(layered.layers))
+    return [layer for layer in layered.layers if id(layer) not in shown]
+
+
 def _arrange(layers: Sequence[Layer]) -> list[_Node]:
     """The tree of groups and layers."""
     root: list[_Node] = []

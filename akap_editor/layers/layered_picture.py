@@ -1,7 +1,6 @@
 """Pictures that consist of layers, as a drawing program saves them."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,11 +110,6 @@ class LayeredPicture:
         object.__setattr__(self, "size", (int(width), int(height)))
         object.__setattr__(self, "layers", tuple(self.layers))
         object.__setattr__(self, "left_out", tuple(self.left_out))
-
-    @cached_property
-    def hidden(self) -> tuple[Layer, ...]:
-        """The layers that are not shown, from the bottom to the top."""
-        return tuple(layer for layer in self.layers if not layer.is_shown)
 
 
 def trimmed(

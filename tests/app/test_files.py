@@ -16,6 +16,7 @@ from akap_editor.io.akap.project import load, save
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.open_document import open_document
 from akap_editor.resources import bundled_drawings
+from tests.support.layered_files import add_layer, filled, ora_bytes, psd_bytes
 from tests.support.window_driver import state_bits
 
 OPEN, SAVE = "Open picture or drawing", "Save drawing"
@@ -321,3 +322,30 @@ def test_a_dropped_picture_opens(pinned, tmp_path, image):
     np.testing.assert_array_equal(pinned.document.drawing.mesh.vertices, expected.drawing.mesh.vertices)
     assert pinned.state.folder == tmp_path
     assert not pinned.editor.is_modified
+
+
+@pytest.mark.parametrize("name", ["puppet.psd", "puppet.ora", "puppet"])
+def test_pictures_in_layers_open_as_one_drawing_with_a_notice(pinned, tmp_path, name):
+    body = filled(60, 30, 200, 30, 30)
+    path = tmp_path / name
+    if name.endswith(".psd"):
+        path.write_bytes(psd_bytes(lambda psd: add_layer(psd, "body", body, 10, 10), (90, 60)))
+    elif name.endswith(".ora"):
+        path.write_bytes(
+            ora_bytes("<layer name='body' src='a.png' x='10'/>", {"a.png": body}, "w='90' h='60'")
+        )
+    else:
+        path.mkdir()
+        write_png(path / "1 body.png", body)
+    pinned.drop(path)
+    finish(pinned)
+    assert not pinned.state.error
+    assert pinned.document.drawing.name == "puppet"
+    assert pinned.state.notice.startswith("1 layer was merged into one drawing")
+    assert path in pinned.state.preferences.recent
+    path_of_damage = tmp_path / "damaged.psd"
+    path_of_damage.write_bytes(b"8BPS")
+    pinned.drop(path_of_damage)
+    finish(pinned)
+    assert "damaged.psd”. The file is damaged or not a Photoshop file." in pinned.state.error
+    assert pinned.document.drawing.name == "puppet"

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from akap_editor.layers import composite as module
-from akap_editor.layers.composite import composite
+from akap_editor.layers.composite import composite, hidden_layers
 from akap_editor.layers.layered_picture import BLEND_MODES, Layer, LayeredPicture, LayerGroup
 from tests.support.layered_files import filled
 
@@ -148,6 +148,25 @@ def test_what_is_hidden_or_outside_is_not_drawn_nor_what_clips_to_it(hidden):
         0,
         0,
         255,
+    ]
+
+
+def test_hidden_layers_are_those_that_are_not_drawn():
+    old = LayerGroup("old", visible=False)
+    layers = (
+        Layer("body", RED),
+        Layer("spots", GREEN, clipping=True),
+        Layer("sketch", RED, visible=False),
+        Layer("shade", BLUE, clipping=True),
+        Layer("arm", RED, groups=(old,)),
+        Layer("sleeve", RED, clipping=True),
+        Layer("head", RED),
+    )
+    assert [layer.name for layer in hidden_layers(LayeredPicture((1, 1), layers))] == [
+        "sketch",
+        "shade",
+        "arm",
+        "sleeve",
     ]
 
 

@@ -18,7 +18,6 @@ def test_a_layer_knows_its_place_and_whether_it_is_shown():
     assert eye.is_shown
     hidden = Layer("eye", RED, groups=(head, LayerGroup("face", visible=False)))
     assert not hidden.is_shown
-    assert LayeredPicture((9, 9), (eye, hidden)).hidden == (hidden,)
 
 
 def test_pictures_are_copied_and_read_only():

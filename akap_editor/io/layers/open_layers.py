@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...display_text import display_name
 from ...errors import FileError, InputError, file_errors
+from ...layers.composite import hidden_layers
 from ...layers.layered_picture import Layer, LayeredPicture, trimmed
 from ...progress import announce
 from ..atomic import as_path, os_error_reason, read_file
@@ -74,11 +75,11 @@ def has_layers(data: bytes) -> bool:
 
 def merging_notes(layered: LayeredPicture) -> list[str]:
     """Sentences without period about what a flat drawing of a picture in layers shows and leaves out."""
-    shown = len(layered.layers) - len(layered.hidden)
+    hidden = hidden_layers(layered)
+    shown = len(layered.layers) - len(hidden)
     notes = [f"{shown} {'layer was' if shown == 1 else 'layers were'} merged into one drawing"]
-    if layered.hidden:
-        names = _listed([quoted(layer.name) for layer in layered.hidden])
-        count = len(layered.hidden)
+    if hidden:
+        names, count = _listed([quoted(layer.name) for layer in hidden]), len(hidden)
         notes.append(f"{count} hidden {'layer was' if count == 1 else 'layers were'} left out: {names}")
     if layered.left_out:
         notes.append(f"Not drawn: {_listed(list(layered.left_out))}")
