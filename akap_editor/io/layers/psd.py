@@ -12,7 +12,8 @@ from PIL import Image
 from psd_tools import ParseLimits, PSDDecompressionWarning, PSDImage
 from psd_tools.api.layers import AdjustmentLayer, Group
 from psd_tools.api.layers import Layer as PsdLayer
-from psd_tools.constants import BlendMode, ChannelID, ColorMode
+from psd_tools.constants import BlendMode, ChannelID, ColorMode, Tag
+from psd_tools.psd.descriptor import Descriptor
 
 from ...errors import AkapError, InputError, error_context
 from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
@@ -160,8 +161,10 @@ class _PsdReader:
         if layer.blend_mode not in _BLEND_MODES:
             mode = layer.blend_mode.name.lower().replace("_", " ")
             self.left_out.append(f"the blend mode “{mode}” of {name}")
-        if layer.has_effects():
+        if layer.has_effects() or _has_older_effects(layer):
             self.left_out.append(f"the effects of {name}")
+        if _has_background(layer):
+            self.left_out.append(f"the background of the artboard {name}")
         has_rendered_mask = layer.mask is not None and layer.mask.has_real()
         if layer.has_vector_mask() and layer.kind != "shape" and not has_rendered_mask:
             self.left_out.append(f"the vector mask of {name}")
@@ -172,6 +175,25 @@ class _PsdReader:
 def _fill_opacity(layer: PsdLayer) -> float:
     value = layer.fill_opacity
     return min(max(value, 0), 255) / 255 if isinstance(value, int) else 1.0
+
+
+def _has_older_effects(layer: PsdLayer) -> bool:
+    """Whether a layer has effects as Photoshop CS5 and before wrote them, which psd-tools does not list."""
+    effects = layer.tagged_blocks.get_data(Tag.OBJECT_BASED_EFFECTS_LAYER_INFO)
+    if effects is None or not effects.get(b"masterFXSwitch"):
+        return False
+    entries = (value for value in effects.values() if isinstance(value, Descriptor))
+    return any(entry.get(b"enab") and b"present" not in entry for entry in entries)
+
+
+def _has_background(layer: PsdLayer) -> bool:
+    """Whether a layer is an artboard that is not transparent."""
+    for tag in (Tag.ARTBOARD_DATA1, Tag.ARTBOARD_DATA2, Tag.ARTBOARD_DATA3):
+        data = layer.tagged_blocks.get_data(tag)
+        kind = data.get(b"artboardBackgroundType") if data is not None else None
+        if kind is not None and int(kind) != 1:
+            return True
+    return False
 
 
 def _is_masked(layer: PsdLayer) -> bool:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 from psd_tools import PSDImage
-from psd_tools.constants import BlendMode
+from psd_tools.constants import BlendMode, Tag
+from psd_tools.psd.descriptor import Bool, Descriptor, DescriptorBlock, DescriptorBlock2, Double, Integer
 
 from akap_editor.errors import InputError
 from akap_editor.io.layers import limits
@@ -58,6 +59,32 @@ def test_other_blend_modes_become_normal_and_are_named():
     layered = read(lambda psd: add_layer(psd, "shade", RED, blend_mode=BlendMode.COLOR_BURN))
     assert layered.layers[0].blend == "normal"
     assert layered.left_out == ("the blend mode “color burn” of “shade”",)
+
+
+@pytest.mark.parametrize("is_on", [True, False])
+def test_effects_of_older_files_are_named(is_on):
+    def build(psd):
+        shadow = Descriptor(classID=b"DrSh", items={b"enab": Bool(True)})
+        block = DescriptorBlock2(
+            classID=b"null", items={b"masterFXSwitch": Bool(is_on), b"DrSh": shadow}, version=0
+        )
+        add_layer(psd, "hat", RED).tagged_blocks.set_data(Tag.OBJECT_BASED_EFFECTS_LAYER_INFO, block)
+
+    assert read(build).left_out == (("the effects of “hat”",) if is_on else ())
+
+
+@pytest.mark.parametrize("kind", [1, 2])
+def test_the_background_of_an_artboard_is_named(kind):
+    def build(psd):
+        board = psd.create_group(name="page")
+        sides = {key: Double(0.0) for key in (b"Top ", b"Left", b"Btom", b"Rght")}
+        rectangle = Descriptor(classID=b"classFloatRect", items=sides)
+        items = {b"artboardRect": rectangle, b"artboardBackgroundType": Integer(kind)}
+        block = DescriptorBlock(classID=b"artboard", items=items, version=16)
+        board.tagged_blocks.set_data(Tag.ARTBOARD_DATA1, block)
+        add_layer(board, "a", RED)
+
+    assert read(build).left_out == (("the background of the artboard “page”",) if kind == 2 else ())
 
 
 def test_groups_keep_opacity_visibility_and_blending():
