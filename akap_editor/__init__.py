@@ -49,10 +49,10 @@ if TYPE_CHECKING:
         Layer as Layer,
     )
     from .library import (
-        LayerGroup as LayerGroup,
+        LayeredPicture as LayeredPicture,
     )
     from .library import (
-        LayeredPicture as LayeredPicture,
+        LayerGroup as LayerGroup,
     )
     from .library import (
         MeshPoints as MeshPoints,
