@@ -23,6 +23,7 @@ Area = tuple[int, int, int, int]  # left, top, width, height in screen coordinat
 DEFAULT_SIZE, MIN_SIZE = (1280, 800), (640, 400)  # design points
 MAX_SIDE = 16384  # of a remembered size, design points
 ICON_SIDES = (16, 32, 48, 128)  # pixels
+FRAME_ROOM = 48  # screen coordinates beside a window for its frame and title
 GRIP = 64  # screen coordinates of the window's upper left corner that must be on a screen, to drag it by
 
 
@@ -62,6 +63,8 @@ def create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
         glfw.set_window_icon(handle, len(icons), icons)
     if not null:  # the null platform takes the smallest height for the largest
         glfw.set_window_size_limits(handle, *MIN_SIZE, glfw.DONT_CARE, glfw.DONT_CARE)
+    if not null:
+        _fit_into_screen(handle)
     glfw.make_context_current(handle)
     glfw.swap_interval(1)
     return handle
@@ -79,6 +82,20 @@ def set_drop_callback(handle: Any, on_drop: Callable[[list[Path]], None]) -> obj
     callback: object = glfw._GLFWdropfun(pass_on)  # type: ignore[attr-defined]  # not in its stubs
     glfw._glfw.glfwSetDropCallback(handle, callback)  # type: ignore[attr-defined]
     return callback
+
+
+def _fit_into_screen(handle: Any) -> None:
+    """Make a window smaller that is larger than the largest screen, for example on one of 200 %."""
+    size, rooms = glfw.get_window_size(handle), [area[2:] for area in screens()]
+    if rooms:
+        fitting = fitting_size(size, max(rooms, key=lambda room: room[0] * room[1]))
+        if fitting != size:
+            glfw.set_window_size(handle, *fitting)
+
+
+def fitting_size(size: tuple[int, int], room: tuple[int, int]) -> tuple[int, int]:
+    """A window's size that leaves `FRAME_ROOM` in a screen's room for its frame; screen coordinates."""
+    return min(size[0], room[0] - FRAME_ROOM), min(size[1], room[1] - FRAME_ROOM)
 
 
 def remembered_size(preferences: Preferences) -> tuple[int, int]:

@@ -222,9 +222,24 @@ def show_tooltip(text: str) -> None:
     """Show a text, unless it is empty, while the pointer rests on the last item, also if it is disabled."""
     flags = imgui.HoveredFlags_.delay_normal | imgui.HoveredFlags_.allow_when_disabled
     if text and imgui.is_item_hovered(flags):
+        _place_tooltip()
         imgui.begin_tooltip()
         paragraph(text, imgui.get_font_size() * _TOOLTIP_WIDTH)
         imgui.end_tooltip()
+
+
+def _place_tooltip() -> None:
+    """Place the next tooltip beside the side bar of the last item, so that it covers no other item."""
+    window, viewport = imgui.internal.get_current_window_read().root_window, imgui.get_main_viewport()
+    low, gap = imgui.get_item_rect_min(), 0.4 * imgui.get_font_size()
+    match window.name:
+        case "Tools":
+            imgui.set_next_window_pos(ImVec2(window.pos.x + window.size.x + gap, low.y))
+        case "Panel":
+            imgui.set_next_window_pos(ImVec2(window.pos.x - gap, low.y), imgui.Cond_.always, ImVec2(1, 0))
+        case "Timeline":
+            x = min(low.x, viewport.pos.x + viewport.size.x - _TOOLTIP_WIDTH * imgui.get_font_size())
+            imgui.set_next_window_pos(ImVec2(x, window.pos.y - gap), imgui.Cond_.always, ImVec2(0, 1))
 
 
 def tooltip_due() -> float:

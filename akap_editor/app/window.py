@@ -324,7 +324,10 @@ class Window:
             self._canvas.choose_cursor(state)
         if state.editor.advance():
             self._frames_due = SETTLE_FRAMES
-        state.timeline.session_playback.follow(state.editor.session)
+        if state.timeline.session_playback.follow(state.editor.session):
+            state.notice = (
+                "Continued from an earlier moment: what came after it is cut off. Undo brings it back."
+            )
         state.editor.start_next_step()
         draw_markers(state, self.scale)
         draw_legend(state.view, state.editor, self.scale)

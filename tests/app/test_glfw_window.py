@@ -3,7 +3,13 @@
 import glfw
 import pytest
 
-from akap_editor.app.glfw_window import DEFAULT_SIZE, MIN_SIZE, remembered_position, remembered_size
+from akap_editor.app.glfw_window import (
+    DEFAULT_SIZE,
+    MIN_SIZE,
+    fitting_size,
+    remembered_position,
+    remembered_size,
+)
 from akap_editor.app.preferences import Preferences
 from akap_editor.app.window import Window
 from akap_editor.errors import DisplayError, GraphicsError
@@ -43,6 +49,17 @@ def test_the_remembered_position_is_used_if_it_is_still_on_a_screen(remembered, 
     preferences.put("place", remembered)
     assert remembered_position(preferences, [(0, 24, 1920, 1056), (-1280, 0, 1280, 800)]) == position
     assert remembered_position(preferences, []) is None
+
+
+@pytest.mark.parametrize(
+    ("size", "room"), [((1280, 800), (1920, 1080)), ((2560, 1600), (1920, 1053)), ((1280, 800), (1024, 2000))]
+)
+def test_a_window_and_its_frame_fit_into_the_screen_and_it_grows_never(size, room):
+    fitting = fitting_size(size, room)
+    assert all(part < side for part, side in zip(fitting, room, strict=True))
+    assert all(part <= before for part, before in zip(fitting, size, strict=True))
+    if all(part < side - 100 for part, side in zip(size, room, strict=True)):
+        assert fitting == size
 
 
 def test_no_display_is_said_in_one_sentence(monkeypatch):

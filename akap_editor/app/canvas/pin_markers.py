@@ -26,7 +26,7 @@ def draw_markers(state: AppState, scale: float) -> None:
         return
     draw, markers = imgui.get_background_draw_list(), editor.tool.markers
     draw.push_clip_rect(ImVec2(*editor.canvas[:2]), ImVec2(*editor.canvas[2:]))
-    if state.view.show_pins and "h" not in editor.held:
+    if state.view.show_pins and "h" not in editor.held and not state.timeline.playback.is_playing:
         _draw_pins(draw, editor, session, markers, scale)
         if markers.new_pin is not None:
             _draw_new_pin(draw, markers.new_pin, scale)

@@ -4,18 +4,14 @@ from imgui_bundle import imgui
 
 from ...editor.editor import HELD_KEYS
 from ...editor.events import ARROWS, Button, KeyEvent, PointerEvent, ScrollEvent
-from ...editor.tools.base import DRAG_DISTANCE, Cursor, distance
+from ...editor.tools.base import DRAG_DISTANCE, distance
 from ..app_state import AppState
 from ..panels.pin_popup import PinPopup
+from .cursors import show_cursor
 
 _BUTTONS: tuple[Button, ...] = ("left", "right", "middle")  # in ImGui's order
 _ARROW_KEYS = {name: imgui.Key[f"{name}_arrow"] for name in ARROWS}
 _CLICK_KEYS = (imgui.Key.enter, imgui.Key.keypad_enter, imgui.Key.space)  # of the keyboard pointer
-_CURSORS: dict[Cursor, imgui.MouseCursor_] = {
-    "hand": imgui.MouseCursor_.hand,
-    "move": imgui.MouseCursor_.resize_all,
-    "hidden": imgui.MouseCursor_.none,
-}
 
 
 class Canvas:
@@ -54,9 +50,8 @@ class Canvas:
     @staticmethod
     def choose_cursor(state: AppState) -> None:
         """Give the mouse pointer the cursor of the active tool."""
-        cursor = state.editor.tool.cursor
-        if cursor in _CURSORS and not imgui.get_io().want_capture_mouse:
-            imgui.set_mouse_cursor(_CURSORS[cursor])
+        if imgui.is_mouse_pos_valid() and not imgui.get_io().want_capture_mouse:
+            show_cursor(state.editor.tool.cursor, state.editor.ui_scale)
 
     def _read_movement(self, state: AppState) -> None:
         editor, position = state.editor, _mouse_position()

@@ -66,7 +66,8 @@ class Command:
 
     label: in menus, "..." at its end if it opens a dialog; chords: keys, the first one is shown; icon: in the
     toolbar; enabled: whether it can be run now; checked: for a switch, whether it is on; typed: a character
-    that runs it, too, wherever a keyboard has it; repeats: whether it runs repeatedly while its key is held.
+    that runs it, too, wherever a keyboard has it; repeats: whether it runs repeatedly while its key is held;
+    missing: a sentence for the status bar if its key is pressed while it cannot be run.
     """
 
     label: str
@@ -77,6 +78,7 @@ class Command:
     checked: Callable[[AppState], bool] | None = None
     typed: str = ""
     repeats: bool = False
+    missing: str = ""
 
     @property
     def name(self) -> str:

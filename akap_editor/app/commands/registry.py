@@ -263,8 +263,23 @@ FIT = Command(
     "Fit in Window", _on_editor(Editor.fit), (Key.f, CTRL | Key._0), icons.ICON_FA_EXPAND, has_drawing
 )
 ACTUAL_SIZE = Command("Actual Size", _show_actual_size, (Key._1, CTRL | Key._1), "", has_drawing)
-ZOOM_IN = Command("Zoom In", _zoom(1.25), (Key.equal, CTRL | Key.equal), "", has_drawing, repeats=True)
-ZOOM_OUT = Command("Zoom Out", _zoom(0.8), (Key.minus, CTRL | Key.minus), "", has_drawing, repeats=True)
+ZOOM_IN = Command(
+    "Zoom In",
+    _zoom(1.25),
+    (CTRL | Key.equal, CTRL | SHIFT | Key.equal, CTRL | Key.keypad_add, Key.equal),
+    "",
+    has_drawing,
+    typed="+",  # where a keyboard has it: Shift+= on some, a key of its own on others
+    repeats=True,
+)
+ZOOM_OUT = Command(
+    "Zoom Out",
+    _zoom(0.8),
+    (CTRL | Key.minus, CTRL | Key.keypad_subtract, Key.minus, Key.keypad_subtract),
+    "",
+    has_drawing,
+    repeats=True,
+)
 SHOW_MESH = _switch("Show Mesh", "show_mesh", (Key.m,), icons.ICON_FA_DRAW_POLYGON)
 SHOW_PINS = _switch("Show Pins", "show_pins", (SHIFT | Key.p,))
 SHOW_FIELD = _switch("Show Vector Field", "show_vector_fields", (Key.v,), "", has_drawing)
@@ -390,5 +405,9 @@ PALETTE_ITEMS = (*(item for _, items in MENUS for item in items if item is not N
 def run_pressed(state: AppState) -> None:
     """Run the commands whose keys were pressed in this frame."""
     for command in COMMANDS:
-        if command.is_pressed() and command.enabled(state):
+        if not command.is_pressed():
+            continue
+        if not command.enabled(state):
+            state.notice = command.missing or state.notice
+        else:
             state.run_reporting_errors(lambda command=command: command.run(state))  # type: ignore[misc]

@@ -20,7 +20,7 @@ _MOUSE: tuple[Line, ...] = (
     ("Double-click a pin", "Edit its values"),
     ("Right-click a pin", "Open its menu"),
     ("Alt-click a pin", "Remove it"),
-    ("Alt-drag its ring", "Rotate around it"),
+    ("Drag its ring", "Rotate around it"),
     ("Arrows", "Nudge; with Shift by 10"),
     ("C, arrows, Enter", "Point without a mouse"),
     ("Middle-drag, Space-drag", "Pan"),

@@ -81,13 +81,16 @@ def _select_all(playback: KeyframePlayback) -> None:
     playback.selected = frozenset(playback.stored_animation.times)
 
 
-PLAY = Command("Play", _play, (Key.l,), icons.ICON_FA_PLAY, _can_play)
+_NOTHING_TO_PLAY = "There is no motion yet: bend the drawing, or set two keyframes (K) at different times"
+
+PLAY = Command("Play", _play, (Key.l,), icons.ICON_FA_PLAY, _can_play, missing=_NOTHING_TO_PLAY)
 EXPORT_ANIMATION = Command(
     "Export Animation...",
     lambda state: state.part(ExportAnimationDialog).open(state),
     (CTRL | SHIFT | Key.e,),
     icons.ICON_FA_FILM,
     _can_play,
+    missing=_NOTHING_TO_PLAY,
 )
 
 STEP_FORWARD = Command("Step Forward", _step(TIME_STEP), (Key.page_down,), "", _is_shown, repeats=True)

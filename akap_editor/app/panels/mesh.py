@@ -35,7 +35,7 @@ def draw(state: AppState, scale: float) -> None:
         imgui.SliderFlags_.logarithmic,
     )
     if vertices is not None:
-        state.remesher.request(replace(meshing, vertices=_two_digits(vertices)), dragging=True)
+        state.remesher.request(replace(meshing, vertices=_two_digits(vertices)), imgui.is_item_active())
     margin = _slider(
         state,
         "Margin",
@@ -44,7 +44,7 @@ def draw(state: AppState, scale: float) -> None:
         "How far the mesh extends beyond the outline. Parts that are closer to each other are joined.",
     )
     if margin is not None:
-        state.remesher.request(replace(meshing, expand=round(margin, 1)), dragging=True)
+        state.remesher.request(replace(meshing, expand=round(margin, 1)), imgui.is_item_active())
     threshold = _slider(
         state,
         "Alpha threshold",
@@ -53,7 +53,7 @@ def draw(state: AppState, scale: float) -> None:
         "How opaque a pixel must be to belong to the drawing. Lower it to include faint parts.",
     )
     if threshold is not None:
-        state.remesher.request(replace(meshing, threshold=round(threshold) / 100), dragging=True)
+        state.remesher.request(replace(meshing, threshold=round(threshold) / 100), imgui.is_item_active())
     _draw_mesher(state, meshing)
     for label, value, tooltip in _figures(state.document.drawing.mesh):
         widgets.row(label, value, tooltip)
@@ -71,7 +71,9 @@ def _draw_background(state: AppState, meshing: Meshing) -> None:
             "How different from the border's color the background may be.",
         )
         if tolerance is not None:
-            state.remesher.request(replace(meshing, background=round(tolerance) / 100), dragging=True)
+            state.remesher.request(
+                replace(meshing, background=round(tolerance) / 100), imgui.is_item_active()
+            )
         if imgui.button("Restore Background", ImVec2(widgets.FULL, 0)):
             state.remesher.request(replace(meshing, background=None))
     elif state.document.drawing.is_opaque:
@@ -106,7 +108,7 @@ def _draw_mesher(state: AppState, meshing: Meshing) -> None:
 def _slider(
     state: AppState, label: str, value: float, limits: tuple[float, float, str], tooltip: str, flags: int = 0
 ) -> float | None:
-    """Draw a label and a slider; return the new value while it is moved, otherwise None.
+    """Draw a label and a slider, the last item; return the new value when it is moved or typed, else None.
 
     limits: lowest and highest value, and the printf format.
     """

@@ -71,8 +71,8 @@ def _draw_values(state: AppState, pin: Pin, scale: float) -> None:
     imgui.push_item_width(_FIELD_WIDTH * scale)
     if imgui.is_window_appearing():
         imgui.set_keyboard_focus_here()
-    new_x = _field(state, pin, "X", x, lambda value: imgui.input_double("##X", value, 0, 0, "%.2f"))
-    new_y = _field(state, pin, "Y", y, lambda value: imgui.input_double("##Y", value, 0, 0, "%.2f"))
+    new_x = _number_field(state, pin, "X", x, "%.2f")
+    new_y = _number_field(state, pin, "Y", y, "%.2f")
     depth = _field(state, pin, "Depth", pin.depth, lambda value: imgui.input_int("##Depth", value, 0, 0))
     widgets.show_tooltip("Where limbs overlap, the higher number is in front.")
     _draw_angle(state, pin)
@@ -93,9 +93,7 @@ def _draw_angle(state: AppState, pin: Pin) -> None:
     imgui.begin_disabled(not session.supports_rotation)
     degrees = math.degrees(session.pin_angle(pin.id) if pin.angle is None else pin.angle)
     degrees = 0.0 if abs(degrees) < 0.05 else degrees  # not -0.0°
-    new_degrees = _field(
-        state, pin, "Angle", degrees, lambda value: imgui.input_double("##Angle", value, 0, 0, "%.1f°")
-    )
+    new_degrees = _number_field(state, pin, "Angle", degrees, "%.1f°")
     widgets.show_tooltip("Rotation of the drawing around the pin, clockwise.")
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + _LABEL_WIDTH * imgui.get_font_size())
     is_clicked, is_held = widgets.switch(
@@ -109,6 +107,17 @@ def _draw_angle(state: AppState, pin: Pin) -> None:
     else:
         return
     state.run_reporting_errors(lambda: gestures.set_pin_angle(state.editor, pin.id, angle))
+
+
+def _number_field(state: AppState, pin: Pin, name: str, value: float, text_format: str) -> float | None:
+    """Draw a label and a field; return the new value in the frame in which its edit ends.
+
+    A field that is only looked at would return the digits that it shows, so these are no new value.
+    """
+    new = _field(
+        state, pin, name, value, lambda each: imgui.input_double(f"##{name}", each, 0, 0, text_format)
+    )
+    return None if new is None or text_format % new == text_format % value else new
 
 
 def _field(state: AppState, pin: Pin, name: str, value: T, item: Callable[[T], tuple[bool, T]]) -> T | None:

@@ -41,8 +41,9 @@ class KeyframeTrack:
     def draw(self, state: AppState, scale: float) -> None:
         """Draw one frame. scale: points per design point."""
         playback = state.timeline.keyframe_playback
-        label = f"{playback.time:.2f} / {playback.duration:.2f} s"
-        label_width = imgui.calc_text_size("000.00 / 000.00 s").x + 12 * scale
+        is_unkeyed = playback.shows_unkeyed_pose
+        label = f"{playback.time:.2f}{'*' * is_unkeyed} / {playback.duration:.2f} s"
+        label_width = imgui.calc_text_size("000.00* / 000.00 s").x + 12 * scale
         corner, height = imgui.get_cursor_screen_pos(), _BOTTOM * scale
         width = max(imgui.get_content_region_avail().x - label_width, 40 * scale)
         margin = MARK_REACH * scale
@@ -65,6 +66,10 @@ class KeyframeTrack:
         label_y = corner.y + (height - imgui.get_text_line_height()) / 2
         imgui.set_cursor_screen_pos(ImVec2(corner.x + width + 12 * scale, label_y))
         imgui.text_colored(ImVec4(*SECONDARY), label)
+        if is_unkeyed:
+            widgets.show_tooltip(
+                "* The pose on the canvas is not the animation's at this time. K keeps it there."
+            )
 
     def _handle_mouse(self, state: AppState, time_scale: TimeScale, top: float, scale: float) -> None:
         """Press, drag and release on the track, Escape during a drag, and the context menu."""

@@ -14,7 +14,7 @@ from .session_track import SessionTrack
 from .timeline import TimelineMode
 from .track import RED
 
-_SESSION_HEIGHT, _KEYFRAMES_HEIGHT = 44, 64  # design points, as all sizes here
+_HEIGHT = 64  # design points, as all sizes here; the same in both modes, so that the canvas stays
 _BUTTON_WIDTH, _BUTTON_HEIGHT = 30, 28
 _TRACK_RISE = 10  # the top of the keyframe track above that of the buttons
 _MODES: tuple[tuple[TimelineMode, str, str], ...] = (
@@ -32,15 +32,14 @@ def draw(state: AppState, scale: float) -> None:
     if timeline.mode == "keyframes":
         timeline.keyframe_playback.update()
     timeline.playback.advance()
-    height = _KEYFRAMES_HEIGHT if timeline.mode == "keyframes" else _SESSION_HEIGHT
-    if widgets.side_bar("Timeline", imgui.Dir.down, height * scale, ImVec2(10 * scale, 8 * scale)):
+    if widgets.side_bar("Timeline", imgui.Dir.down, _HEIGHT * scale, ImVec2(10 * scale, 8 * scale)):
         _draw_content(state, scale)
     imgui.end()
 
 
 def _draw_content(state: AppState, scale: float) -> None:
     shows_keyframes = state.timeline.mode == "keyframes"
-    rise = _TRACK_RISE * scale if shows_keyframes else 0.0
+    rise = _TRACK_RISE * scale
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + rise)
     _draw_mode_buttons(state, scale)
     imgui.same_line(0, 12 * scale)
@@ -51,8 +50,8 @@ def _draw_content(state: AppState, scale: float) -> None:
     imgui.same_line(0, 4 * scale)
     _draw_playback_buttons(state, scale)
     imgui.same_line(0, 12 * scale)
-    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - rise)
     if shows_keyframes:
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - rise)
         state.part(KeyframeTrack).draw(state, scale)
     else:
         state.part(SessionTrack).draw(state, scale)

@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from time import monotonic
 from typing import Literal
 
+import numpy as np
+
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
 from ..document.crossings import draw_order
@@ -172,6 +174,7 @@ class KeyframePlayback(Playback):
         if session is not self._session:
             self._session = session
             self._reset()
+            self.time = self._time_of_present()
         if session is None:
             return
         self.selected &= set(self.stored_animation.times)
@@ -183,6 +186,23 @@ class KeyframePlayback(Playback):
             self._show()
         else:
             self._present_pose = self._last_update = None
+
+    def _time_of_present(self) -> float:
+        """The time of the first keyframe whose pose is the present one; 0 if there is none."""
+        session = self._editor.session
+        if session is None:
+            return 0.0
+        pose, keyframes = session.present.positions, self.stored_animation.keyframes
+        return next((each.time for each in keyframes if np.array_equal(each.positions, pose)), 0.0)
+
+    @property
+    def shows_unkeyed_pose(self) -> bool:
+        """Whether the pose that is shown differs from that of the animation at the playhead."""
+        session = self._editor.session
+        if session is None or not self.animation.keyframes or self.is_previewing:
+            return False
+        pose = self.pose(self.time)
+        return pose is not None and not np.array_equal(pose, session.state.positions)
 
     def scrub(self, time: float) -> None:
         """Move the playhead and show the pose there, also after the last keyframe."""
@@ -311,6 +331,8 @@ class KeyframePlayback(Playback):
         playhead = as_keyframe_time(self.time)
         if not copy and playhead in moves:
             self.time = moves[playhead]
+            if self.is_previewing:
+                self._show()
 
     def _edit(self, label: str, *edits: KeyframeEdit) -> None:
         session = self._editor.session

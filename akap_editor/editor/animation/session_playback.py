@@ -53,6 +53,8 @@ class SessionPlayback(Playback):
         self.time = self.marked_range = self._last_update = None
         self.visible_range = VisibleRange(1.0)
         self.take_start: float | None = None
+        self._before_branch: list[Snapshot] | None = None  # snapshots that the last branch has cut off
+        self._branch_time: float | None = None  # of the branch, until its first gesture ends
         self._last_change = self._clock()
 
     @property
@@ -60,17 +62,34 @@ class SessionPlayback(Playback):
         """Seconds from the first snapshot to the last one."""
         return self.snapshots[-1].time if self.snapshots else 0.0
 
-    def follow(self, session: Session | None) -> None:
-        """Record the session's state if it has changed; to be called once a frame."""
+    def follow(self, session: Session | None) -> bool:
+        """Record the session's state if it has changed; to be called once a frame.
+
+        Returns whether a gesture that continued from an earlier time has just ended: what came later is cut
+        off, and comes back when the gesture is undone.
+        """
         if session is not self._session:
             self._session = session
             self._reset()
         if session is None or session.is_previewing or session.has_pending_step:
-            return
+            return False
+        is_open, continues = session.history.is_open, False
+        if not is_open and self._before_branch is not None:
+            if self._before_branch[-1].state is session.state:  # undone, or a gesture that was cancelled
+                self._end_branch()
+                return False
+            continues, self._branch_time = self._branch_time is not None, None
+        is_at_end = bool(self.snapshots) and self.snapshots[-1].state is session.state
+        if self.time is not None and is_at_end and not is_open:
+            self.scrub(self.time)  # a gesture has begun and changed nothing
+            return False
         if self.time is not None:  # an edit continued from an earlier snapshot
             self._start_branch(self.time)
-        if self.snapshots and self.snapshots[-1].state is session.state:
-            return
+        if not (self.snapshots and self.snapshots[-1].state is session.state):
+            self._add_snapshot(session)
+        return continues
+
+    def _add_snapshot(self, session: Session) -> None:
         now = self._clock()
         pause = min(now - self._last_change, MAX_PAUSE_SECONDS) if self.snapshots else 0.0
         self._last_change = now
@@ -80,8 +99,17 @@ class SessionPlayback(Playback):
             half = len(self.snapshots) // 2
             self.snapshots = self.snapshots[:half:2] + self.snapshots[half:]
 
+    def _end_branch(self) -> None:
+        """Return to the snapshots from before the branch, and to its time if nothing was edited there."""
+        assert self._before_branch is not None
+        time, self._branch_time = self._branch_time, None
+        self.snapshots, self._before_branch = self._before_branch, None
+        if time is not None:
+            self.scrub(time)
+
     def _start_branch(self, time: float) -> None:
         """Drop the snapshots after a time, and what refers to them."""
+        self._before_branch, self._branch_time = self.snapshots, time
         self.snapshots = self.snapshots[: self._index(time) + 1]
         self.time = self._last_update = None
         if self.take_start is not None:

@@ -65,6 +65,7 @@ class Session:
         self._stepper = Stepper(document.drawing.mesh, document.state)
         self._saved_state: EditState | None = document.state
         self._preview: Preview | None = None
+        self._has_gone_back = False  # whether the open gesture began with a return to an earlier state
         self._taken_pose: EditState | None = None  # the state after the open gesture took a previewed pose
         self._pending_line = 0  # index of the pending step in the recording
         self._clock, self._started = clock, clock() if started is None else started
@@ -260,6 +261,7 @@ class Session:
             self.return_to(preview.shown, preview.line)
             self.history.commit()
             self._record("commit")
+            self._has_gone_back = True
         self.history.begin(label, self.state)
         self._stepper.reset_full_turns()
         self._record("begin", label=label)
@@ -279,10 +281,10 @@ class Session:
         """
         if self._is_unchanged():
             self.finish_step()  # a pending step may be the only change
-        if self.state is self._taken_pose:  # nothing was edited after the previewed pose was taken over
-            self.abort()
+        if self.state is self._taken_pose or (self._has_gone_back and self._is_unchanged()):
+            self.abort()  # nothing was edited in the previewed state
             return
-        self._taken_pose = None
+        self._taken_pose, self._has_gone_back = None, False
         if self.history.is_unchanged(self.state):
             self.history.abort()
         else:
@@ -302,6 +304,9 @@ class Session:
         self._restore(self.history.abort())
         self._stepper.steps_left = steps_left
         self._record("abort")
+        if self._has_gone_back:
+            self._has_gone_back = False
+            self.undo()
 
     def undo(self) -> None:
         """Restore the state before the last gesture, if there is one. Raises SolverError if a step failed."""

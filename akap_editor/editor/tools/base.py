@@ -15,7 +15,7 @@ from ..session.session import Session
 
 DRAG_DISTANCE = 3.0  # points of the screen: a shorter movement between press and release is a click
 
-Cursor = Literal["arrow", "hand", "move", "hidden"]
+Cursor = Literal["arrow", "hand", "grab", "rotate", "pan", "panning", "hidden"]
 
 
 def distance(a: Point, b: Point) -> float:
@@ -248,7 +248,7 @@ class PinGesture(Tool):
     selection_before: the selection before the press.
     """
 
-    cursor = "hand"
+    cursor: Cursor = "grab"
 
     def __init__(self, context: ToolContext, selection_before: frozenset[int]) -> None:
         super().__init__(context)

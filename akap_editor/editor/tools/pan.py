@@ -9,7 +9,7 @@ class HandIdle(IdleTool):
     """The hand waits for a press: the left button pans, the right one opens the menu of a pin."""
 
     press_hint = "Drag to move the canvas, scroll to zoom"
-    cursor = "move"
+    cursor = "pan"
 
     @property
     def markers(self) -> Markers:
@@ -28,7 +28,7 @@ class Panning(Tool):
     """The canvas follows the pointer. This edits nothing, so the history gets no entry."""
 
     hint = "Release to stop moving the canvas, Esc to cancel"
-    cursor = "move"
+    cursor = "panning"
 
     def __init__(self, context: ToolContext, event: PointerEvent) -> None:
         super().__init__(context)

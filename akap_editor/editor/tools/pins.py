@@ -52,7 +52,9 @@ class PinsIdle(IdleTool):
 
     @property
     def cursor(self) -> Cursor:
-        return "hand" if self.hovered_pin is not None or self._hovered_ring is not None else "arrow"
+        if self._hovered_ring is not None:
+            return "rotate"
+        return "hand" if self.hovered_pin is not None else "arrow"
 
     @property
     def markers(self) -> Markers:
@@ -77,6 +79,8 @@ class PinsIdle(IdleTool):
         context, pointer = self.context, self.context.pointer
         if pointer is None or self.hovered_pin is not None or context.held & {"shift", "alt"}:
             return None
+        if self._hovered_ring is not None:
+            return None
         return pointer if context.is_on_drawing(pointer) else None
 
     def press(self, event: PointerEvent) -> None:
@@ -84,7 +88,7 @@ class PinsIdle(IdleTool):
         if context.session is None:
             return
         pin = context.pin_at(event.position)
-        ring_pin = ring_at(context, event.position) if event.alt else None
+        ring_pin = None if event.shift and not event.alt else ring_at(context, event.position)
         if event.button == "right":
             if pin is not None:
                 context.set_tool(OpeningPinMenu(context, event, pin))

@@ -4,29 +4,30 @@ import math
 
 from ..camera import Point
 from ..events import PointerEvent
+from ..gestures import add_pin
 from ..session.edits import SetAngles
 from ..session.pin_edits import hold_stopped_pins
 from .base import Markers, PinGesture, Pointing, RotationRing, ToolContext, distance
 
 RING_RADIUS = 28.0  # points of the screen
-_REACH = 14.0  # points of the screen: a press this close to the ring takes it
+_REACH = 14.0  # points of the screen: with Alt, a press this close to the ring takes it
+_HALF_WIDTH = 7.0  # points of the screen: without Alt, a press this close to the ring's line takes it
 SNAP_ANGLE = math.radians(15.0)
 
 
 def pin_with_ring(context: ToolContext) -> int | None:
-    """The pin that shows its ring: while Alt is held, the one near the pointer or the only selected one.
+    """The pin that shows its ring: the only selected one; while Alt is held, rather the one near the pointer.
 
     None with a method that cannot rotate pins, and during a gesture.
     """
     session, pointer = context.session, context.pointer
     if session is None or not session.supports_rotation or context.is_busy:
         return None
-    if "alt" not in context.held or pointer is None:
-        return None
-    distances = [(distance(center, pointer), pin) for pin, center in context.pins_on_screen().items()]
-    nearest = min(distances, default=None)
-    if nearest is not None and nearest[0] <= (RING_RADIUS + _REACH) * context.ui_scale:
-        return nearest[1]
+    if "alt" in context.held and pointer is not None:
+        distances = [(distance(center, pointer), pin) for pin, center in context.pins_on_screen().items()]
+        nearest = min(distances, default=None)
+        if nearest is not None and nearest[0] <= (RING_RADIUS + _REACH) * context.ui_scale:
+            return nearest[1]
     return next(iter(context.selection)) if len(context.selection) == 1 else None
 
 
@@ -35,8 +36,10 @@ def ring_at(context: ToolContext, position: Point) -> int | None:
     pin = pin_with_ring(context)
     if pin is None or context.pin_at(position) is not None:
         return None
-    radius = distance(context.pins_on_screen()[pin], position)
-    return pin if radius <= (RING_RADIUS + _REACH) * context.ui_scale else None
+    radius = distance(context.pins_on_screen()[pin], position) / context.ui_scale
+    if "alt" in context.held:
+        return pin if radius <= RING_RADIUS + _REACH else None
+    return pin if abs(radius - RING_RADIUS) <= _HALF_WIDTH else None
 
 
 def rotation_ring(context: ToolContext, pin: int, is_dragged: bool = False) -> RotationRing:
@@ -48,10 +51,10 @@ def rotation_ring(context: ToolContext, pin: int, is_dragged: bool = False) -> R
 
 
 class PointingRotationRing(Pointing):
-    """The ring of a pin is pressed and not dragged yet."""
+    """The ring of a pin is pressed and not dragged yet. A click without Alt does what it does elsewhere."""
 
     hint = "Drag to rotate the drawing around this pin"
-    cursor = "hand"
+    cursor = "rotate"
 
     def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
         super().__init__(context, event)
@@ -63,11 +66,17 @@ class PointingRotationRing(Pointing):
         rotating.move(event)
 
     def click(self, event: PointerEvent) -> None:
-        self.context.return_to_idle()
+        context = self.context
+        context.return_to_idle()
+        is_plain = not (event.alt or event.shift or context.held & {"alt", "shift"})
+        if is_plain and add_pin(context, context.camera.to_drawing(self.start)) is None:
+            context.select(())
 
 
 class RotatingPin(PinGesture):
     """The drawing around a pin rotates with the pointer; Shift snaps to steps of 15°."""
+
+    cursor = "rotate"
 
     def __init__(self, context: ToolContext, start: Point, pin: int) -> None:
         super().__init__(context, context.selection)

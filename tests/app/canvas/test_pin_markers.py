@@ -33,6 +33,28 @@ def test_h_hides_the_pins_while_it_is_held(pinned):
     assert (pinned.screenshot() == shown).all()
 
 
+def test_pins_are_hidden_while_the_timeline_plays(pinned):
+    timeline, shots = pinned.state.timeline, []
+    timeline.show_keyframes()
+    timeline.keyframe_playback.update()
+    timeline.keyframe_playback.set_keyframe(0.0)
+    timeline.keyframe_playback.set_keyframe(60.0)
+    pinned.editor.select(())
+    timeline.keyframe_playback.scrub(0.0)
+    pinned.state.view.show_pins = False
+    hidden = pinned.screenshot()
+    pinned.state.view.show_pins = True
+    timeline.playback.toggle_playing()
+    pinned.window.after_draw.append(lambda: shots.append(pinned.window.screenshot()))
+    pinned.frame()
+    pinned.window.after_draw.clear()
+    left, top, right, bottom = map(round, pinned.editor.canvas)
+    assert timeline.playback.is_playing
+    assert (shots[0][top:bottom, left:right] == hidden[top:bottom, left:right]).all()
+    timeline.playback.stop()
+    assert (pinned.screenshot()[top:bottom, left:right] != hidden[top:bottom, left:right]).any()
+
+
 def marker_pixels(shot, at, radius):
     """The part of a screenshot around a point."""
     x, y = map(round, at)

@@ -313,6 +313,37 @@ def test_by_key(pinned, command, chord):
     check(pinned, command, lambda: pinned.key(chord))
 
 
+@pytest.mark.parametrize(
+    ("key", "text"),
+    [("equal", "+"), ("right_bracket", "+"), ("keypad_add", "+")],
+    ids=["US", "German", "keypad"],
+)
+def test_a_typed_plus_zooms_in_once_wherever_the_keyboard_has_it(pinned, key, text):
+    moved_camera(pinned)
+    io = imgui.get_io()
+    if key == "equal":
+        io.add_key_event(imgui.Key.mod_shift, True)
+        io.add_key_event(imgui.Key.left_shift, True)
+    io.add_key_event(imgui.Key[key], True)
+    io.add_input_character(ord(text))
+    io.add_key_event(imgui.Key[key], False)
+    if key == "equal":
+        io.add_key_event(imgui.Key.left_shift, False)
+        io.add_key_event(imgui.Key.mod_shift, False)
+    pinned.settle()
+    assert pinned.editor.camera.zoom == pytest.approx(0.7 * 1.25)
+
+
+MISSING = [command for command in COMMANDS if command.missing]
+
+
+@pytest.mark.parametrize("command", MISSING, ids=[command.label for command in MISSING])
+def test_a_key_that_cannot_do_anything_now_says_why(ui, command):
+    assert not command.enabled(ui.state)
+    ui.key(command.chords[0])
+    assert ui.state.notice == command.missing
+
+
 BUTTONS = [
     commands.PIN_TOOL,
     commands.HAND_TOOL,

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from imgui_bundle import imgui
 from PIL import Image
 
 from akap_editor.app import files
@@ -59,6 +60,23 @@ def test_vertices_slider_gives_another_mesh_as_one_entry(opened):
     opened.editor.undo()
     assert opened.document.state is before.state
     assert opened.document.drawing is before.drawing
+
+
+@pytest.mark.parametrize(
+    ("label", "text", "expected"),
+    [("Detail", "700", Meshing(700, 2.0, 0.5)), ("Margin", "5", Meshing(200, 5.0, 0.5))],
+)
+def test_a_typed_value_gives_another_mesh_and_the_lines_of_the_mesh_go(opened, label, text, expected):
+    def type_value(hand):
+        hand.key_down(imgui.Key.mod_ctrl)
+        hand.item_click(f"//Panel/##{label}")
+        hand.key_up(imgui.Key.mod_ctrl)
+        hand.key_chars_replace_enter(text)
+
+    opened.do(type_value)
+    assert opened.document.drawing.meshing == expected
+    assert not opened.state.remesher.is_active, "the wireframe is shown as long as it is active"
+    assert opened.session.history.labels[-1] == "Change Mesh"
 
 
 def test_two_drags_are_two_entries(opened):

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.events import PinRequest
 
 Key = imgui.Key
@@ -63,6 +64,18 @@ def test_escape_closes_the_values_at_once(pinned):
     before = pinned.session.state
     open_values(pinned, 3, lambda hand: (hand.key_chars_replace("19"), hand.key_press(Key.escape)))
     assert pinned.editor.request is None
+    assert pinned.session.state is before
+
+
+@pytest.mark.parametrize("end", [Key.escape, Key.enter, Key.tab])
+def test_looking_at_the_values_changes_nothing_however_many_digits_they_have(pinned, end):
+    gestures.move_pin(pinned.editor, 3, (209.123456789, 80.987654321))
+    pinned.settle()
+    gestures.set_pin_angle(pinned.editor, 3, 0.123456789)
+    pinned.settle()
+    before, labels = pinned.session.state, pinned.session.history.labels
+    open_values(pinned, 3, *([lambda hand: hand.key_press(end)] * 4), lambda hand: hand.key_press(Key.escape))
+    assert pinned.session.history.labels == labels
     assert pinned.session.state is before
 
 

@@ -36,6 +36,22 @@ def on_track(ui, share, down=0.5):
     )
 
 
+def test_the_other_mode_leaves_the_canvas_where_it_is(bent):
+    camera, canvas = bent.editor.camera, bent.editor.canvas
+    for mode in ("keyframes", "session"):
+        bent.state.timeline.set_mode(mode)
+        bent.settle()
+        assert bent.editor.canvas == canvas
+        assert bent.editor.camera == camera
+
+
+def test_a_pin_dragged_at_an_earlier_moment_says_that_what_came_after_is_cut_off(bent):
+    bent.drag(on_track(bent, 0.99), on_track(bent, 0.02))
+    start = bent.to_screen(bent.pin_position(3))
+    bent.drag(start, (start[0] + 30, start[1] + 40))
+    assert bent.state.notice.startswith("Continued from an earlier moment")
+
+
 def test_a_drag_on_the_track_goes_back_and_forth(bent):
     now = bent.session.state
     rest = bent.session.drawing.mesh.vertices

@@ -19,7 +19,7 @@ from akap_editor.editor.document.remesh import remesh_drawing
 from akap_editor.editor.document.rest_pose import with_pose_as_rest
 from akap_editor.editor.session.edits import Remesh
 from akap_editor.editor.session.session import Session
-from tests.support.editor_driver import bits, replayed_state
+from tests.support.editor_driver import Driver, bits, replayed_state
 
 END = (105.0, 40.0)
 
@@ -143,6 +143,33 @@ def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(playback, pinned
     playback.drag_keyframes({0.2: 0.5})
     playback.drop_keyframes(keep=False)
     assert times(pinned) == (0.0, 0.2, 0.5)
+
+
+@pytest.mark.parametrize("selected", [(1.0,), (0.0, 1.0)])
+def test_after_a_stretch_the_canvas_shows_the_pose_at_the_playhead(playback, pinned, selected):
+    playback.selected = frozenset(selected)
+    playback.scrub(1.0)
+    for time in (1.2, 1.6, 2.0):
+        playback.drag_keyframes(stretch_times((0.0, 1.0), 1.0, time))
+        np.testing.assert_array_equal(pinned.state.positions, playback.pose(playback.time))
+    playback.drop_keyframes()
+    assert playback.time == 2.0
+    np.testing.assert_array_equal(pinned.state.positions, playback.pose(2.0))
+    playback.shift_keyframes(-0.5)
+    np.testing.assert_array_equal(pinned.state.positions, playback.pose(playback.time))
+
+
+def test_a_reopened_drawing_has_its_playhead_at_the_keyframe_that_it_shows(playback, pinned):
+    again = Driver(pinned.session.present_document)
+    reopened = KeyframePlayback(again.editor)
+    reopened.update()
+    assert reopened.time == 1.0
+    assert not reopened.shows_unkeyed_pose
+    gestures.move_pin(again.editor, 3, (100.0, 20.0))
+    again.settle()
+    assert reopened.shows_unkeyed_pose
+    reopened.scrub(1.0)
+    assert not reopened.shows_unkeyed_pose
 
 
 @pytest.mark.parametrize(

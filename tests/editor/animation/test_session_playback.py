@@ -85,6 +85,49 @@ def test_dragging_from_an_earlier_moment_branches(playback, pinned, drawing):
     assert bits(recorded(session, drawing)) == old
 
 
+def test_a_gesture_at_an_earlier_moment_that_changes_nothing_leaves_everything(playback, pinned, drawing):
+    snapshots, depth, now = list(playback.snapshots), pinned.depth, pinned.session.present
+    time = snapshots[2].time
+    playback.scrub(time)
+    pinned.press((2.0, 2.0))
+    assert not playback.follow(pinned.session)
+    pinned.release((2.0, 2.0))
+    assert not playback.follow(pinned.session)
+    pinned.press(pinned.where(3))
+    pinned.move((90.0, 50.0))
+    assert not playback.follow(pinned.session)
+    pinned.key("escape")
+    assert not playback.follow(pinned.session)
+    assert playback.snapshots == snapshots
+    assert playback.time == time
+    assert pinned.session.is_previewing
+    assert pinned.session.present is now
+    assert pinned.depth == depth
+    playback.show_present()
+    assert bits(recorded(pinned.session, drawing)) == bits(now)
+
+
+def test_a_branch_is_told_once_and_undo_brings_back_what_came_later(playback, pinned, drawing):
+    snapshots, now = list(playback.snapshots), pinned.state
+    playback.scrub(snapshots[2].time)
+    pinned.press(pinned.where(3))
+    pinned.move((90.0, 50.0))
+    assert not playback.follow(pinned.session), "it is not certain before the end of the gesture"
+    pinned.advance()
+    pinned.release((90.0, 50.0))
+    assert playback.follow(pinned.session)
+    assert not playback.follow(pinned.session)
+    assert playback.snapshots[:2] == snapshots[:2]
+    assert playback.snapshots[-1] is not snapshots[-1]
+    pinned.undo()
+    pinned.undo()
+    assert pinned.state is now
+    playback.follow(pinned.session)
+    assert playback.snapshots == snapshots
+    assert playback.time is None
+    assert bits(recorded(pinned.session, drawing)) == bits(now)
+
+
 def test_looking_does_not_change_the_last_bits_of_what_comes_after(playback, pinned, drawing):
     session = pinned.session
     for number in range(4):

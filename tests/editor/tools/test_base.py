@@ -78,18 +78,20 @@ CASES = {
     "new pin pressed": Case("PointingPin", press(FREE), "Add Pin"),
     "pin pressed": Case("PointingPin", press(NECK)),
     "pin dragged": Case(
-        "DraggingPin", drag(END, (90.0, 60.0)), "Drag Pin", markers=frozenset({"pin_targets"})
+        "DraggingPin", drag(END, (90.0, 60.0)), "Drag Pin", cursor="grab", markers=frozenset({"pin_targets"})
     ),
     "pins dragged": Case(
         "DraggingPin",
         drag(END, (95.0, 55.0), shift=True),
         "Drag 2 Pins",
+        cursor="grab",
         markers=frozenset({"pin_targets"}),
     ),
     "new pin dragged": Case(
         "DraggingPin",
         drag(FREE, (55.0, 55.0)),
         "Add and Drag Pin",
+        cursor="grab",
         markers=frozenset({"pin_targets"}),
     ),
     "pin pressed with Alt": Case("RemovingPin", press(NECK, alt=True), "Remove Pin"),
@@ -101,15 +103,15 @@ CASES = {
     "box": Case(
         "RubberBand", drag(OUTSIDE, (70.0, 70.0)), cursor="arrow", markers=frozenset({"selection_box"})
     ),
-    "ring pressed": Case("PointingRotationRing", press_ring),
-    "ring dragged": Case("RotatingPin", rotate, "Rotate Pin", markers=frozenset({"ring"})),
-    "panning": Case("Panning", drag(NECK, (70.0, 70.0), button="middle"), button="middle", cursor="move"),
-    "panning by the hand": Case("Panning", drag(NECK, (70.0, 70.0)), cursor="move", tool="hand_tool"),
+    "ring pressed": Case("PointingRotationRing", press_ring, cursor="rotate"),
+    "ring dragged": Case("RotatingPin", rotate, "Rotate Pin", cursor="rotate", markers=frozenset({"ring"})),
+    "panning": Case("Panning", drag(NECK, (70.0, 70.0), button="middle"), button="middle", cursor="panning"),
+    "panning by the hand": Case("Panning", drag(NECK, (70.0, 70.0)), cursor="panning", tool="hand_tool"),
     "panning while painting": Case(
         "Panning",
         drag(NECK, (70.0, 70.0), button="middle"),
         button="middle",
-        cursor="move",
+        cursor="panning",
         tool="brush_tool",
     ),
     "painting": Case(

@@ -54,7 +54,7 @@ def test_the_hand_opens_the_menu_of_a_pin_and_drags_none(pinned):
     pinned.move(NECK)
     assert pinned.hovered_pin == 2
     assert not pinned.would_add_pin
-    assert pinned.editor.tool.cursor == "move"
+    assert pinned.editor.tool.cursor == "pan"
     pinned.press(NECK, "right")
     pinned.release(NECK, "right")
     assert pinned.editor.request == PinRequest("menu", 2)

@@ -129,7 +129,7 @@ def test_the_ring_is_that_of_the_pin_nearby_or_of_the_only_selected_one(pinned):
         return ring_pin(pinned)
 
     outside = pinned.editor.camera.to_screen((2.0, 78.0))
-    assert shown(on_ring(pinned, 2, 30)) is None, "only with Alt"
+    assert shown(on_ring(pinned, 2, 30)) is None, "no pin is selected"
     pinned.key("alt")
     assert shown(on_ring(pinned, 2, 30)) == 2
     assert shown(pinned.editor.pins_on_screen()[3]) == 3
@@ -139,6 +139,60 @@ def test_the_ring_is_that_of_the_pin_nearby_or_of_the_only_selected_one(pinned):
     assert shown(on_ring(pinned, 2, 30)) == 2
     pinned.editor.chosen_tool = pinned.editor.hand_tool
     assert shown(on_ring(pinned, 2, 30)) is None
+
+
+def test_the_only_selected_pin_always_shows_its_ring_which_rotates_without_any_key(pinned):
+    outside = pinned.editor.camera.to_screen((2.0, 78.0))
+    point(pinned, "move", outside)
+    pinned.editor.select({2})
+    assert ring_pin(pinned) == 2
+    assert pinned.editor.tool.cursor == "arrow"
+    point(pinned, "move", on_ring(pinned, 2, 0))
+    assert pinned.editor.tool.cursor == "rotate"
+    assert not pinned.would_add_pin
+    point(pinned, "press", on_ring(pinned, 2, 0))
+    for direction in (10, 20, 30):
+        point(pinned, "move", on_ring(pinned, 2, direction))
+        pinned.advance()
+    point(pinned, "release", on_ring(pinned, 2, 30))
+    assert pinned.state.pin(2).angle == pytest.approx(math.radians(30), abs=1e-9)
+    pinned.editor.select({1, 2})
+    assert ring_pin(pinned) is None, "several pins have no ring"
+
+
+@pytest.mark.parametrize(
+    ("distance", "rotates"), [(12.5, False), (20, False), (24, True), (34, True), (37, False)]
+)
+def test_without_alt_only_the_line_of_the_ring_takes_a_press(driver, distance, rotates):
+    driver.click((62.0, 40.0))
+    x, y = driver.editor.pins_on_screen()[1]
+    driver.handle(PointerEvent("press", (x + distance, y)))
+    assert (driver.tool == "PointingRotationRing") == rotates
+
+
+def test_a_click_on_the_ring_adds_a_pin_as_anywhere_on_the_drawing(pinned):
+    pinned.editor.select({2})
+    at = next(
+        on_ring(pinned, 2, angle)
+        for angle in range(0, 360, 10)
+        if pinned.editor.is_on_drawing(on_ring(pinned, 2, angle))
+    )
+    point(pinned, "press", at)
+    point(pinned, "release", at)
+    assert len(pinned.ids) == 4
+    assert pinned.editor.selection == {max(pinned.ids)}
+    pinned.undo()
+    assert len(pinned.ids) == 3
+
+
+def test_another_pin_in_reach_of_the_ring_is_dragged_and_not_the_ring(pinned):
+    pinned.editor.select({2})
+    pinned.editor.camera = pinned.editor.camera.zoomed(
+        RING_RADIUS / math.dist(pinned.editor.pins_on_screen()[1], pinned.editor.pins_on_screen()[2]),
+        pinned.editor.pins_on_screen()[2],
+    )
+    point(pinned, "press", pinned.editor.pins_on_screen()[1])
+    assert pinned.tool == "PointingPin"
 
 
 def test_a_method_that_cannot_rotate_pins_has_no_ring_and_keeps_the_angles(pinned):
