@@ -145,9 +145,12 @@ def button(label: str, primary: bool = False) -> bool:
 # -- lists --------------------------------------------------------------------------------------------------
 
 
-def begin_list(name: str, count: int, most: int) -> None:
-    """Begin a list that is as high as its rows, or as ``most`` of them; `imgui.end_child` must follow."""
-    height = min(count, most) * imgui.get_text_line_height_with_spacing()
+def begin_list(name: str, rows: int) -> None:
+    """Begin a list that is always as high as ``rows``, so that nothing below it moves when it changes.
+
+    `imgui.end_child` must follow.
+    """
+    height = rows * imgui.get_text_line_height_with_spacing()
     imgui.begin_child(name, ImVec2(0, height), NAV_FLATTENED)
     # the highlight of a row extends by half of the space between rows, above the first one, too
     imgui.set_cursor_pos_y(0.5 * imgui.get_style().item_spacing.y)

@@ -324,10 +324,7 @@ class Window:
             self._canvas.choose_cursor(state)
         if state.editor.advance():
             self._frames_due = SETTLE_FRAMES
-        if state.timeline.session_playback.follow(state.editor.session):
-            state.notice = (
-                "Continued from an earlier moment: what came after it is cut off. Undo brings it back."
-            )
+        state.notice = state.timeline.follow() or state.notice
         state.editor.start_next_step()
         draw_markers(state, self.scale)
         draw_legend(state.view, state.editor, self.scale)

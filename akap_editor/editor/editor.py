@@ -321,7 +321,9 @@ class Editor:
 
     def pin_at(self, position: Point) -> int | None:
         """The nearest pin within reach of a point of the screen, or None."""
-        distances = [(distance(center, position), pin) for pin, center in self.pins_on_screen().items()]
+        hidden = {pin.id for pin in self.session.state.pins if pin.is_hidden} if self.session else set()
+        centers = self.pins_on_screen().items()
+        distances = [(distance(center, position), pin) for pin, center in centers if pin not in hidden]
         nearest = min(distances, default=None)
         return nearest[1] if nearest is not None and nearest[0] <= PICK_RADIUS * self.ui_scale else None
 

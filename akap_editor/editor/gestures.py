@@ -67,11 +67,28 @@ def add_pin(editor: EditContext, position: Point) -> int | None:
     return pin
 
 
+def rename_pin(editor: EditContext, pin: int, name: str) -> None:
+    """Name a pin; an empty name is “Pin” and its id. Raises InputError if it is too long."""
+    editor.edit("Rename Pin", lambda session: pin_edits.change_pin(session, pin, name=name.strip()))
+
+
+def set_pin_hidden(editor: EditContext, pin: int, is_hidden: bool) -> None:
+    """Leave a pin out on the canvas, or show it again; it holds the drawing in both cases."""
+    label = "Hide Pin" if is_hidden else "Show Pin"
+    editor.edit(label, lambda session: pin_edits.change_pin(session, pin, is_hidden=is_hidden))
+
+
+def set_pin_locked(editor: EditContext, pin: int, is_locked: bool) -> None:
+    """Protect a pin from being moved and removed by hand, or end that."""
+    label = "Lock Pin" if is_locked else "Unlock Pin"
+    editor.edit(label, lambda session: pin_edits.change_pin(session, pin, is_locked=is_locked))
+
+
 def remove_pins(editor: EditContext, pins: Iterable[int]) -> None:
-    """Remove pins by their ids; the drawing keeps its pose. Unknown ids are ignored."""
+    """Remove pins by their ids; the drawing keeps its pose. Locked pins stay, unknown ids are ignored."""
     if editor.session is None:
         return
-    removed = frozenset(pins) & {pin.id for pin in editor.session.state.pins}
+    removed = frozenset(pins) & {pin.id for pin in editor.session.state.pins if not pin.is_locked}
     if removed:
         label = "Remove Pin" if len(removed) == 1 else f"Remove {len(removed)} Pins"
         editor.edit(label, lambda session: pin_edits.remove_pins(session, removed))
@@ -84,8 +101,9 @@ def remove_selected_pins(editor: EditContext) -> None:
 
 def remove_last_pin(editor: EditContext) -> None:
     """Remove the pin that was added last; the drawing keeps its pose."""
-    if editor.session is not None and editor.session.state.pins:
-        remove_pins(editor, {editor.session.state.pins[-1].id})
+    session = editor.session
+    free = [pin.id for pin in session.state.pins if not pin.is_locked] if session is not None else []
+    remove_pins(editor, free[-1:])
 
 
 def move_pin(editor: EditContext, pin: int, position: Point) -> None:
@@ -144,8 +162,12 @@ class NudgeSeries:
 
     def nudge(self, editor: EditContext, dx: float, dy: float) -> None:
         """Move the targets of the selected pins by (dx, dy) pixels."""
-        session, pins = editor.session, editor.selection
-        if session is None or editor.is_busy or not pins:
+        session = editor.session
+        if session is None or editor.is_busy:
+            return
+        locked = {pin.id for pin in session.state.pins if pin.is_locked}
+        pins = editor.selection - locked
+        if not pins:
             return
         now = self._clock()
         entry, last_pins, last_time = self._last or (None, pins, now)

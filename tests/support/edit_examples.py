@@ -39,7 +39,8 @@ def _pins(session: Session) -> Edit:
     """The first pin in front of the others, and a new one."""
     first = [replace(pin, depth=2) for pin in session.state.pins[:1]]
     new_id = 1 + max((pin.id for pin in session.state.pins), default=0)
-    return SetPins((*first, Pin(new_id, 5, np.array([0.2, 0.3, 0.5]), np.array([60.0, 50.0]), angle=0.5)))
+    new = Pin(new_id, 5, np.array([0.2, 0.3, 0.5]), np.array([60.0, 50.0]), 0, 0.5, "hand", True, True)
+    return SetPins((*first, new))
 
 
 def _first_pose(session: Session) -> str:

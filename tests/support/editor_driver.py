@@ -33,7 +33,10 @@ class Ticks:
 def bits(state: EditState) -> tuple[Any, ...]:
     """A state as a value to compare; two are equal only if the states are equal to the last bit."""
     pins = tuple(
-        (pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes(), pin.depth, pin.angle)
+        (
+            *(pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes(), pin.depth, pin.angle),
+            *(pin.name, pin.is_hidden, pin.is_locked),
+        )
         for pin in state.pins
     )
     mesh = None if state.drawing is None else state.drawing.mesh

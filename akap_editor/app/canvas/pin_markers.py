@@ -3,6 +3,7 @@
 import math
 
 from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor.camera import Point
 from ...editor.document.pin import Pin
@@ -59,14 +60,27 @@ def _draw_pins(
 ) -> None:
     centers = editor.pins_on_screen()
     for pin in session.state.pins:
+        if pin.is_hidden:
+            continue
         center = centers[pin.id]
         if pin.id in markers.pin_targets:
             ends = ImVec2(*center), ImVec2(*markers.pin_targets[pin.id])
             draw.add_line(*ends, packed(ACCENT, 0.8), 1.5 * scale)
         draw_pin(draw, center, scale, pin.id in editor.selection, pin.id == markers.hovered_pin)
+        if pin.is_locked:
+            _draw_lock(draw, center)
         _draw_pin_values(draw, pin, center, scale, session.supports_rotation)
         if pin.id == markers.hovered_pin and markers.removes_hovered_pin:
             _draw_sign(draw, center, 4.0 * scale, scale, _TIMES)
+
+
+def _draw_lock(draw: imgui.ImDrawList, center: Point) -> None:
+    """Draw a small padlock on a pin."""
+    imgui.push_font(None, 0.55 * imgui.get_style().font_size_base)
+    size = imgui.calc_text_size(icons.ICON_FA_LOCK)
+    corner = ImVec2(center[0] - size.x / 2, center[1] - size.y / 2)
+    draw.add_text(corner, packed(_WHITE), icons.ICON_FA_LOCK)
+    imgui.pop_font()
 
 
 def _draw_pin_values(

@@ -13,7 +13,11 @@ def draw(state: AppState, scale: float) -> None:
     if widgets.begin_dialog("Error"):
         widgets.paragraph(state.error, _WIDTH * scale)
         imgui.spacing()
-        if widgets.button("OK", primary=True) or widgets.cancel_pressed() or widgets.confirm_pressed():
+        if (
+            widgets.button("OK", primary=True)
+            or widgets.cancel_pressed()
+            or (widgets.confirm_pressed() and not imgui.is_window_appearing())
+        ):
             state.error = ""
             widgets.close_popup()
         imgui.end_popup()

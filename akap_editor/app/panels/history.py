@@ -21,7 +21,7 @@ def draw(state: AppState, scale: float) -> None:
     session = state.editor.session
     assert session is not None
     depth, labels = session.history.depth, [_FIRST, *session.history.labels]
-    widgets.begin_list("##history", len(labels), _ROWS)
+    widgets.begin_list("##history", _ROWS)
     for index, label in enumerate(labels):
         is_undone = index > depth
         if is_undone:

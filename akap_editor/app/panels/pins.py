@@ -1,13 +1,18 @@
-"""The Pins section: a list of the pins, which selects them."""
+"""The Pins section: a list of the pins with eye, padlock, name and depth."""
 
 from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...editor import gestures
+from ...editor.document.pin import MAX_DEPTH, Pin
 from .. import widgets
 from ..app_state import AppState
 from ..commands.registry import REMOVE_SELECTED
-from ..theme import SECONDARY
+from ..pending_values import PendingValues
+from ..theme import SECONDARY, TEXT
 
 _ROWS = 6  # pins that are visible at once
+_ICON_WIDTH, _DEPTH_WIDTH = 1.5, 3.0  # times the font size
 
 
 def pin_count(state: AppState) -> str:
@@ -18,23 +23,116 @@ def pin_count(state: AppState) -> str:
 
 def draw(state: AppState, scale: float) -> None:
     """Draw the section. scale: points per design point."""
-    assert state.document is not None
-    pins, editor = state.document.state.pins, state.editor
-    if not pins:
-        widgets.secondary_text("None yet. Click on the drawing where it should hold still.")
-        return
-    widgets.begin_list("##pins", len(pins), _ROWS)
-    for index, pin in enumerate(pins):
-        if imgui.selectable(f"  Pin {pin.id}##pin", pin.id in editor.selection)[0]:
-            extends = imgui.get_io().key_shift
-            editor.select(editor.selection ^ {pin.id} if extends else {pin.id})
+    state.part(PinList).draw(state)
+
+
+class PinList:
+    """The list; a double click on a name, or F2, renames the pin there.
+
+    renamed: the pin whose name is being typed, None if there is none.
+    """
+
+    def __init__(self) -> None:
+        self.renamed: int | None = None
+        self._new_name: str | None = None  # None until the field has the keyboard
+
+    def draw(self, state: AppState) -> None:
+        """Draw the list, which has the same height for any number of pins, and its button."""
+        assert state.document is not None
+        pins, editor = state.document.state.pins, state.editor
+        widgets.begin_list("##pins", _ROWS)
+        if not pins:
+            widgets.secondary_text("None yet. Click on the drawing where it should hold still.")
+        for index, pin in enumerate(pins):
+            self._draw_row(state, pin, index)
+        imgui.end_child()
+        imgui.begin_disabled(not editor.selection)
+        if imgui.button("Remove Selected", ImVec2(widgets.FULL, 0)):
+            widgets.run(state, REMOVE_SELECTED)
+        imgui.end_disabled()
+
+    def _draw_row(self, state: AppState, pin: Pin, index: int) -> None:
+        editor, font_size = state.editor, imgui.get_font_size()
+        left, room = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
+        eye = icons.ICON_FA_EYE_SLASH if pin.is_hidden else icons.ICON_FA_EYE
+        if _icon(eye, f"eye {pin.id}", not pin.is_hidden, "Hide on the canvas; it still holds the drawing"):
+            state.run_reporting_errors(lambda: gestures.set_pin_hidden(editor, pin.id, not pin.is_hidden))
+        imgui.same_line(left + _ICON_WIDTH * font_size)
+        lock = icons.ICON_FA_LOCK if pin.is_locked else icons.ICON_FA_LOCK_OPEN
+        if _icon(lock, f"lock {pin.id}", pin.is_locked, "Lock: it cannot be moved or removed by hand"):
+            state.run_reporting_errors(lambda: gestures.set_pin_locked(editor, pin.id, not pin.is_locked))
+        imgui.same_line(left + 2 * _ICON_WIDTH * font_size)
+        name_width = room - (2 * _ICON_WIDTH + _DEPTH_WIDTH + 0.4) * font_size
+        if self.renamed == pin.id:
+            self._draw_name_field(state, pin, name_width)
+        else:
+            self._draw_name(state, pin, name_width)
         if editor.selection == {pin.id}:
             widgets.scroll_to_row(index, _ROWS)
+        imgui.same_line(left + room - _DEPTH_WIDTH * font_size)
+        _draw_depth(state, pin)
+
+    def _draw_name(self, state: AppState, pin: Pin, width: float) -> None:
+        editor = state.editor
+        label = widgets.shortened(pin.label, width)
+        flags = imgui.SelectableFlags_.allow_double_click
+        if imgui.selectable(f"{label}###name {pin.id}", pin.id in editor.selection, flags, ImVec2(width, 0))[
+            0
+        ]:
+            if imgui.is_mouse_double_clicked(0):
+                self.renamed, self._new_name = pin.id, None
+            extends = imgui.get_io().key_shift
+            editor.select(editor.selection ^ {pin.id} if extends else {pin.id})
+        is_at = imgui.is_item_hovered() or imgui.is_item_focused()
+        if is_at and imgui.is_key_pressed(imgui.Key.f2, False):
+            self.renamed, self._new_name = pin.id, None
         target = f"{pin.target[0]:.0f}, {pin.target[1]:.0f}"
-        imgui.same_line(imgui.get_content_region_avail().x - imgui.calc_text_size(target).x - 6 * scale)
-        imgui.text_colored(ImVec4(*SECONDARY), target)
-    imgui.end_child()
-    imgui.begin_disabled(not editor.selection)
-    if imgui.button("Remove Selected", ImVec2(widgets.FULL, 0)):
-        widgets.run(state, REMOVE_SELECTED)
-    imgui.end_disabled()
+        widgets.show_tooltip(f"{pin.label} at {target}. Double-click or F2 to rename.")
+
+    def _draw_name_field(self, state: AppState, pin: Pin, width: float) -> None:
+        """Draw a field in place of the name. Enter or a click elsewhere renames, Escape does not."""
+        if self._new_name is None:  # in every frame: a mouse button that is still down takes the focus away
+            imgui.set_keyboard_focus_here()
+        imgui.set_next_item_width(width)
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
+        typed = pin.label if self._new_name is None else self._new_name
+        _, typed = imgui.input_text("##new name", typed, imgui.InputTextFlags_.auto_select_all)
+        imgui.pop_style_var()
+        if imgui.is_item_active():
+            self._new_name = typed
+        if imgui.is_item_deactivated():
+            name, self.renamed = (self._new_name or "").strip(), None
+            if name != pin.label and not imgui.is_key_pressed(imgui.Key.escape, False):
+                state.run_reporting_errors(lambda: gestures.rename_pin(state.editor, pin.id, name))
+
+
+def _icon(icon: str, name: str, is_on: bool, tooltip: str) -> bool:
+    """Draw an icon that is a switch, as high as a line of text; return whether it was clicked."""
+    imgui.push_style_color(imgui.Col_.text, ImVec4(*(TEXT if is_on else SECONDARY)))
+    imgui.push_style_color(imgui.Col_.button, ImVec4(0, 0, 0, 0))
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))
+    size = ImVec2(_ICON_WIDTH * imgui.get_font_size(), imgui.get_text_line_height())
+    is_clicked = imgui.button(f"{icon}###{name}", size)
+    imgui.pop_style_var()
+    imgui.pop_style_color(2)
+    widgets.show_tooltip(tooltip)
+    return bool(is_clicked)
+
+
+def _draw_depth(state: AppState, pin: Pin) -> None:
+    """Draw the depth as a number that is dragged or typed."""
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
+    imgui.push_style_color(imgui.Col_.frame_bg, ImVec4(0, 0, 0, 0))
+    imgui.set_next_item_width(_DEPTH_WIDTH * imgui.get_font_size())
+    depth = state.part(PendingValues).edit(
+        ("depth in list", pin.id),
+        pin.depth,
+        lambda value: imgui.drag_int(
+            f"###depth {pin.id}", value, 0.05, -MAX_DEPTH, MAX_DEPTH, "%+d" if value else "%d"
+        ),
+    )
+    imgui.pop_style_color()
+    imgui.pop_style_var()
+    widgets.show_tooltip("Depth: where limbs overlap, the higher number is in front. Drag, or double-click.")
+    if depth is not None and depth != pin.depth:
+        state.run_reporting_errors(lambda: gestures.set_depth(state.editor, pin.id, depth))

@@ -36,6 +36,12 @@ class Timeline:
         """Whether the panel is visible and shows keyframes."""
         return self.is_shown and self.mode == "keyframes"
 
+    def follow(self) -> str:
+        """Record the session's state, once a frame; a sentence if it was continued from an earlier moment."""
+        if self.session_playback.follow(self._editor.session):
+            return "Continued from an earlier moment: what came after it is cut off. Undo brings it back."
+        return ""
+
     def set_mode(self, mode: TimelineMode) -> None:
         """Show the other motion; the canvas goes back to the present pose."""
         if mode != self.mode:

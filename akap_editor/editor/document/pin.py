@@ -15,6 +15,7 @@ from ...geometry.validation import MAX_COORDINATE, Floats, as_floats
 
 MAX_PINS = 10_000
 MAX_DEPTH = 999  # in front of the drawing or behind it
+MAX_PIN_NAME = 100  # characters
 MAX_PIN_ANGLE = 20 * math.pi  # radians, in either direction
 WEIGHT_TOLERANCE = 1e-9
 
@@ -26,7 +27,9 @@ class Pin:
     id: unique in its document; face, weights: its place on the mesh, weights (3,) float64 barycentric;
     target: (2,) float64, where it is to go, pixels; depth: higher is nearer to the viewer, see
     `crossings.face_order`; angle: to which the drawing around the pin is to rotate, radians from the rest
-    pose, clockwise on the screen; None lets it rotate freely.
+    pose, clockwise on the screen; None lets it rotate freely; name: empty for “Pin” and its id; is_hidden:
+    whether it is left out on the canvas, where it still holds the drawing; is_locked: whether the hand can
+    neither move nor remove it.
     """
 
     id: int
@@ -35,6 +38,14 @@ class Pin:
     target: Floats
     depth: int = 0
     angle: float | None = None
+    name: str = ""
+    is_hidden: bool = False
+    is_locked: bool = False
+
+    @property
+    def label(self) -> str:
+        """The name on the screen."""
+        return self.name or f"Pin {self.id}"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "weights", as_floats(self.weights, "weights"))
@@ -49,6 +60,9 @@ class Pin:
             "target": self.target.tolist(),
             **({"depth": int(self.depth)} if self.depth else {}),
             **({"angle": float(self.angle)} if self.angle is not None else {}),
+            **({"name": self.name} if self.name else {}),
+            **({"hidden": True} if self.is_hidden else {}),
+            **({"locked": True} if self.is_locked else {}),
         }
 
 
@@ -93,6 +107,10 @@ def _check_pin(pin: Pin, faces: int) -> None:
     if pin.angle is not None and not abs(pin.angle) <= MAX_PIN_ANGLE:
         expected = f"an angle from -{MAX_PIN_ANGLE:.5g} to {MAX_PIN_ANGLE:.5g} radians"
         raise InputError(f"pin {pin.id}: expected {expected}, got {pin.angle}")
+    if len(pin.name) > MAX_PIN_NAME:
+        raise InputError(
+            f"pin {pin.id}: expected a name of up to {MAX_PIN_NAME} characters, got {len(pin.name)}"
+        )
     if not np.isfinite(pin.target).all():
         raise InputError(f"pin {pin.id}: expected a finite target, got {pin.target.tolist()}")
     if (np.abs(pin.target) > MAX_COORDINATE).any():

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from ..document.crossings import check_depths, depth_at
-from ..document.pin import Pin
+from ..document.pin import Pin, check_pins
 from ..document.pin_angles import with_held_angles
 from .edits import SetPins, SetTargets
 from .session import Session
@@ -42,6 +43,13 @@ def set_depths(session: Session, depths: Mapping[int, int]) -> None:
     check_depths(depths)
     pins = (replace(pin, depth=depths.get(pin.id, pin.depth)) for pin in session.state.pins)
     session.apply(SetPins(tuple(pins)))
+
+
+def change_pin(session: Session, pin: int, **changes: Any) -> None:
+    """Replace fields of a pin that no step depends on: name, is_hidden, is_locked. Raises InputError."""
+    pins = tuple(replace(each, **changes) if each.id == pin else each for each in session.state.pins)
+    check_pins(pins, len(session.drawing.mesh.faces))
+    session.apply(SetPins(pins))
 
 
 def hold_angles(session: Session, ids: Iterable[int], hold: bool = True) -> None:

@@ -21,11 +21,14 @@ class PinsIdle(IdleTool):
         context = self.context
         if self._hovered_ring is not None:
             return "Drag the ring to rotate the drawing around this pin, Shift snaps to 15°"
-        if self.hovered_pin is not None:
+        hovered_pin = self.hovered_pin
+        if hovered_pin is not None:
             if "alt" in context.held:
                 return "Click to remove this pin, drag its ring to rotate the drawing around it"
             if "shift" in context.held:
                 return "Click to add this pin to the selection, or to remove it from there"
+            if self.session.state.pin(hovered_pin).is_locked:
+                return "This pin is locked: a click selects it, the padlock in the list of pins unlocks it"
             return "Drag to bend the drawing, Shift-click to select several pins, double-click to edit values"
         if self._new_pin is not None:
             return "Click to add a pin, or drag to add one and bend the drawing"
@@ -137,6 +140,9 @@ class PointingPin(Pointing):
             context.select({pin})
 
     def drag(self, event: PointerEvent) -> None:
+        if self.session.state.pin(self.pin).is_locked:
+            self.context.return_to_idle()
+            return
         dragging = DraggingPin(self.context, self.start, self._selection_before, self._is_new)
         self.context.set_tool(dragging)
         dragging.move(event)
@@ -177,7 +183,9 @@ class DraggingPin(PinGesture):
             session.begin("Drag Pin" if count == 1 else f"Drag {count} Pins")
         hold_stopped_pins(session)
         positions = zip(session.state.pins, session.pin_positions(), strict=True)
-        self._positions_before = {pin.id: (x, y) for pin, (x, y) in positions if pin.id in context.selection}
+        self._positions_before = {
+            pin.id: (x, y) for pin, (x, y) in positions if pin.id in context.selection and not pin.is_locked
+        }
 
     @property
     def hint(self) -> str:
@@ -199,7 +207,7 @@ class DraggingPin(PinGesture):
         targets = {
             pin.id: self.context.camera.to_screen(tuple(pin.target))
             for pin in self.session.state.pins
-            if pin.id in self.context.selection
+            if pin.id in self._positions_before
         }
         return Markers(pin_targets=targets)
 
@@ -280,10 +288,11 @@ class RubberBand(Tool):
     def move(self, event: PointerEvent) -> None:
         self._end = event.position
         low, high = np.minimum(self._start, self._end), np.maximum(self._start, self._end)
+        hidden = {pin.id for pin in self.session.state.pins if pin.is_hidden}
         pins_inside = {
             pin
             for pin, position in self.context.pins_on_screen().items()
-            if (low <= position).all() and (position <= high).all()
+            if pin not in hidden and (low <= position).all() and (position <= high).all()
         }
         self.context.select(self._extended_selection | pins_inside)
 

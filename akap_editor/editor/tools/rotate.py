@@ -23,12 +23,15 @@ def pin_with_ring(context: ToolContext) -> int | None:
     session, pointer = context.session, context.pointer
     if session is None or not session.supports_rotation or context.is_busy:
         return None
+    fixed = {pin.id for pin in session.state.pins if pin.is_hidden or pin.is_locked}
     if "alt" in context.held and pointer is not None:
-        distances = [(distance(center, pointer), pin) for pin, center in context.pins_on_screen().items()]
+        centers = context.pins_on_screen().items()
+        distances = [(distance(center, pointer), pin) for pin, center in centers if pin not in fixed]
         nearest = min(distances, default=None)
         if nearest is not None and nearest[0] <= (RING_RADIUS + _REACH) * context.ui_scale:
             return nearest[1]
-    return next(iter(context.selection)) if len(context.selection) == 1 else None
+    selected = context.selection - fixed
+    return next(iter(selected)) if len(selected) == len(context.selection) == 1 else None
 
 
 def ring_at(context: ToolContext, position: Point) -> int | None:

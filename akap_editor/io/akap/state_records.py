@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ...display_text import display_text
 from ...editor.document.crossings import as_crossings
 from ...editor.document.document import EditState
 from ...editor.document.named_poses import as_pose
@@ -31,7 +32,17 @@ def _read_pin(record: Any) -> Pin:
     weights, target = (numbers(require(record, name, list), name) for name in ("weights", "target"))
     depth = optional(record, "depth", int, 0)
     angle = float(numbers([record["angle"]], "angle")[0]) if "angle" in record else None
-    return Pin(require(record, "id", int), require(record, "face", int), weights, target, depth, angle)
+    return Pin(
+        require(record, "id", int),
+        require(record, "face", int),
+        weights,
+        target,
+        depth,
+        angle,
+        display_text(optional(record, "name", str, "")),
+        optional(record, "hidden", bool, False),
+        optional(record, "locked", bool, False),
+    )
 
 
 def read_crossings(record: Json) -> Ints:

@@ -6,6 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from ....display_text import display_text
 from ....errors import InputError
 from ....geometry.mesh import MeshPoints, TriMesh
 from ....geometry.validation import as_number, as_points
@@ -64,7 +65,17 @@ class SetPins(Edit):
         targets = target.points([pin["target"] for pin in pins], "target", len(pins))
         edit = cls(
             tuple(
-                Pin(int(pin["id"]), face, weights, goal, int(pin.get("depth", 0)), _angle(pin.get("angle")))
+                Pin(
+                    int(pin["id"]),
+                    face,
+                    weights,
+                    goal,
+                    int(pin.get("depth", 0)),
+                    _angle(pin.get("angle")),
+                    display_text(pin.get("name", "")),
+                    pin.get("hidden", False) is True,
+                    pin.get("locked", False) is True,
+                )
                 for pin, (face, weights), goal in zip(pins, points, targets, strict=True)
             )
         )
