@@ -94,7 +94,9 @@ def _fit_into_screen(handle: Any) -> None:
 
 
 def fitting_size(size: tuple[int, int], room: tuple[int, int]) -> tuple[int, int]:
-    """A window's size that leaves `FRAME_ROOM` in a screen's room for its frame; screen coordinates."""
+    """A window's size, or if it is larger than a screen, one that leaves `FRAME_ROOM` there for its frame."""
+    if size[0] <= room[0] and size[1] <= room[1]:
+        return size
     return min(size[0], room[0] - FRAME_ROOM), min(size[1], room[1] - FRAME_ROOM)
 
 
