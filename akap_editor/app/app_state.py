@@ -52,7 +52,8 @@ class AppState:
 
     notice: text in the status bar until the next edit; error: text that must be read before anything else;
     task: the work whose progress a dialog shows; pose_exports: exports in the background; is_closing: whether
-    the window is about to close.
+    the window is about to close; panels_are_hidden: whether only canvas and menus are shown; is_full_screen:
+    whether the window is to cover its monitor.
 
     folder: where the next file dialog starts; preferences: what is stored between runs; autosave: keeps
     recovery copies, None for none; offscreen_renderer, thumbnails: share the window's OpenGL context.
@@ -69,6 +70,8 @@ class AppState:
     task: Task | None = None
     pose_exports: PoseExportQueue = field(init=False)
     is_closing: bool = False
+    panels_are_hidden: bool = False
+    is_full_screen: bool = False
     folder: Path = field(default_factory=Path.cwd)
     preferences: Preferences = field(default_factory=Preferences)
     autosave: Autosave | None = None

@@ -2,6 +2,7 @@
 
 # imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
 from imgui_bundle import imgui  # isort: skip
+import math
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -98,6 +99,36 @@ def fitting_size(size: tuple[int, int], room: tuple[int, int]) -> tuple[int, int
     if size[0] <= room[0] and size[1] <= room[1]:
         return size
     return min(size[0], room[0] - FRAME_ROOM), min(size[1], room[1] - FRAME_ROOM)
+
+
+class FullScreen:
+    """Lets a window cover the monitor that it is on, and return to its size and position."""
+
+    def __init__(self, handle: Any) -> None:
+        self._handle = handle
+        self._windowed: Area | None = None  # None while it covers none
+
+    @property
+    def is_on(self) -> bool:
+        """Whether the window covers a monitor."""
+        return self._windowed is not None
+
+    def set(self, is_on: bool) -> None:
+        """Cover the monitor, or return; nothing if it is so already, or if there is no monitor."""
+        monitors = glfw.get_monitors()
+        if is_on == self.is_on or not monitors:
+            return
+        if self._windowed is not None:
+            area, self._windowed = self._windowed, None
+            glfw.set_window_monitor(self._handle, None, *area, glfw.DONT_CARE)  # type: ignore[arg-type]
+            return
+        x, y = glfw.get_window_pos(self._handle)
+        width, height = glfw.get_window_size(self._handle)
+        self._windowed = x, y, width, height
+        center = x + width / 2, y + height / 2
+        monitor = min(monitors, key=lambda each: math.dist(glfw.get_monitor_pos(each), center))
+        mode = glfw.get_video_mode(monitor)
+        glfw.set_window_monitor(self._handle, monitor, 0, 0, *mode.size, mode.refresh_rate)
 
 
 def remembered_size(preferences: Preferences) -> tuple[int, int]:

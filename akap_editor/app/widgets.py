@@ -294,6 +294,11 @@ def begin_dialog(title: str) -> bool:
     return bool(is_shown)
 
 
+def popup_is_open() -> bool:
+    """Whether any menu, popup or dialog is open."""
+    return bool(imgui.is_popup_open("", imgui.PopupFlags_.any_popup))
+
+
 def label(text: str, width: float) -> None:
     """Draw the label of the field that is drawn next, which begins at ``width`` points."""
     imgui.align_text_to_frame_padding()

@@ -33,7 +33,7 @@ from .commands.registry import run_pressed
 from .dialogs import dialogs
 from .dialogs.file_dialog import FileDialog, has_native_dialogs
 from .dialogs.recovery import RecoveryDialog
-from .glfw_window import create_window, on_key, remembered_position, remembered_size, screens
+from .glfw_window import FullScreen, create_window, on_key, remembered_position, remembered_size, screens
 from .panels import side_panel
 from .preferences import Preferences
 from .termination import TerminationSignals, rescue_on_lost_display
@@ -94,7 +94,7 @@ class Window:
         wait_for_wake: Callable[[float], object] = self._woken.wait
         self.wait_for_events = wait_for_wake if null else glfw.wait_events_timeout
         self.handle = create_window(null, hidden, size or remembered_size(self.state.preferences))
-        self._is_open = True
+        self._is_open, self._full_screen = True, FullScreen(self.handle)
         position = remembered_position(self.state.preferences, screens())
         if position is not None:
             glfw.set_window_pos(self.handle, *position)
@@ -230,7 +230,11 @@ class Window:
         width, height = glfw.get_window_size(self.handle)
         preferences = self.state.preferences
         preferences.put("maximized", is_maximized)
-        if not is_maximized and not glfw.get_window_attrib(self.handle, glfw.ICONIFIED):
+        if (
+            not is_maximized
+            and not self._full_screen.is_on
+            and not glfw.get_window_attrib(self.handle, glfw.ICONIFIED)
+        ):
             preferences.put("window", [round(width / self.scale), round(height / self.scale)])
             preferences.put("place", list(glfw.get_window_pos(self.handle)))
         self.state.save_preferences()
@@ -240,8 +244,7 @@ class Window:
         is_typing, tooltip_delay = imgui.get_io().want_text_input, widgets.tooltip_due()
         limit = tooltip_delay or (BLINK_SECONDS if is_typing else IDLE_SECONDS)
         dialog_delay = self.state.task.seconds_until_shown if self.state.task is not None else 0.0
-        if dialog_delay > 0:
-            limit = min(limit, dialog_delay)
+        limit = min(limit, dialog_delay or limit)
         if self.state.part(FileDialog).native_is_open:
             limit = min(limit, NATIVE_DIALOG_SECONDS)
         has_happened = self._wait(limit)
@@ -295,6 +298,7 @@ class Window:
             action()
         glfw.swap_buffers(self.handle)
         self._update_title()
+        self._full_screen.set(self.state.is_full_screen)
         self._drops_input |= self.state.is_waiting
         if self.state.run_pending():
             self._frames_due = SETTLE_FRAMES
@@ -306,14 +310,16 @@ class Window:
         while self._dropped and not state.is_waiting:
             files.open_dropped(state, self._dropped.pop(0))
         handle_focus_keys(state)
-        is_modal = _popup_is_open()  # also before, because the key that closes a dialog must do nothing else
+        is_modal = (
+            widgets.popup_is_open()
+        )  # also before, because the key that closes a dialog must do nothing else
         state.editor.canvas = split_view.draw(state, side_panel.draw(state, self.scale), self.scale)
         if state.document is None:
             start_page.draw(state, self.scale, self._density)
         state.part(Palette).draw(state, self.scale)
         dialogs.draw(state, self.scale)
         self._canvas.draw_popup(state, self.scale)
-        is_modal = is_modal or _popup_is_open() or state.is_waiting or self._drops_input
+        is_modal = is_modal or widgets.popup_is_open() or state.is_waiting or self._drops_input
         self._drops_input = self._drops_input and imgui.get_current_context().input_events_queue.size() > 0
         if not imgui.get_io().want_text_input and not is_modal:
             run_pressed(state)
@@ -394,7 +400,3 @@ class Window:
         """Draw at once: while the user resizes a window, some systems do not return to the loop."""
         self._frames_due = SETTLE_FRAMES
         self.frame()
-
-
-def _popup_is_open() -> bool:
-    return bool(imgui.is_popup_open("", imgui.PopupFlags_.any_popup))

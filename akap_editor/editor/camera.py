@@ -62,3 +62,9 @@ def fit(low: Point, high: Point, canvas_low: Point, canvas_high: Point, margin: 
             (canvas_low[1] + canvas_high[1] - zoom * (low[1] + high[1])) / 2,
         ),
     )
+
+
+def shift_into(value: float, low: float, high: float, margin: float) -> float:
+    """How much to add to ``value`` so that it lies between the limits, with a margin where there is room."""
+    margin = min(margin, (high - low) / 2)
+    return max(low + margin - value, 0.0) + min(high - margin - value, 0.0)

@@ -9,7 +9,7 @@ from typing import Literal
 from ..errors import SolverError
 from ..geometry.mesh import TriMesh
 from ..geometry.validation import Floats
-from .camera import ZOOM_STEP, Camera, Point, fit
+from .camera import ZOOM_STEP, Camera, Point, fit, shift_into
 from .document.document import Document
 from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
 from .gestures import NudgeSeries, T
@@ -22,11 +22,13 @@ from .tools.keyboard_pointer import MARGIN, KeyboardPointer
 from .tools.pan import HandIdle, Panning
 from .tools.pins import PinsIdle
 from .tools.stiffness_brush import BrushIdle
+from .tools.zoom import ZoomIdle
 
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
 FRAME_BUDGET = 0.02  # seconds that a frame waits for steps
 NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
-HELD_KEYS = ("space", "alt", "shift", "h")  # keys that have a meaning while they are held
+WHEEL_STEP = 60.0  # points of the design that a notch of the wheel pans by
+HELD_KEYS = ("space", "zoom", "alt", "shift", "h")  # keys that have a meaning while they are held
 
 
 class Editor:
@@ -49,8 +51,10 @@ class Editor:
         self.ui_scale = 1.0  # points of the window per point of the design
         self.held: frozenset[str] = frozenset()  # of HELD_KEYS
         self.request: PinRequest | None = None
+        self.menu_request: Point | None = None  # where the menu of the empty canvas is to open
         self.trails = Trails()
-        self.pins_tool, self.hand_tool, self.brush_tool = PinsIdle(self), HandIdle(self), BrushIdle(self)
+        self.pins_tool, self.hand_tool = PinsIdle(self), HandIdle(self)
+        self.zoom_tool, self.brush_tool = ZoomIdle(self), BrushIdle(self)
         self.chosen_tool: IdleTool = self.pins_tool
         self._active_tool: Tool | None = None  # None while the idle tool is active
         self._canvas = (0.0, 0.0, 1280.0, 800.0)
@@ -71,6 +75,7 @@ class Editor:
         self.return_to_idle()
         self.session = session
         self.trails.clear()
+        self.brush_tool.last_end = None
         self.select(())
         self.fit()
 
@@ -100,7 +105,9 @@ class Editor:
 
     @property
     def idle_tool(self) -> IdleTool:
-        """The tool whose gesture a press starts: the chosen one, or the hand while Space is held."""
+        """The tool whose gesture a press starts: the chosen one, or hand or zoom while their key is held."""
+        if "zoom" in self.held:
+            return self.zoom_tool
         return self.hand_tool if "space" in self.held else self.chosen_tool
 
     def set_tool(self, tool: Tool) -> None:
@@ -126,6 +133,12 @@ class Editor:
         if self.session is not None and self.session.history.is_open:
             self.session.abort()
 
+    def finish(self) -> None:
+        """Keep what the gesture under way has done, as a release of its button does."""
+        if self.last_pointer is not None and not self.tool.is_idle:
+            for button in ("left", "right", "middle"):
+                self.handle_event(PointerEvent("release", self.last_pointer, button))
+
     @property
     def is_busy(self) -> bool:
         """Whether a gesture is under way."""
@@ -143,6 +156,8 @@ class Editor:
             if isinstance(event, ScrollEvent):
                 if self.tool.scroll(event):
                     return
+                step = WHEEL_STEP * self.ui_scale
+                self.camera = self.camera.panned(step * event.sideways, 0.0)
                 self.camera = self.camera.zoomed(ZOOM_STEP**event.amount, event.position)
             else:
                 self._handle_pointer(event)
@@ -166,7 +181,10 @@ class Editor:
         elif event.pressed and self.tool.key(event):
             return
         elif event.key == "escape" and event.pressed:
-            self.cancel()
+            if self.is_busy:
+                self.cancel()
+            else:
+                self.select(())
         elif event.key in ARROWS and event.pressed:
             length = BIG_NUDGE if event.shift else NUDGE
             x, y = ARROWS[event.key]
@@ -362,8 +380,8 @@ class Editor:
     def reveal(self, position: Point) -> Point:
         """Pan until a point of the screen is inside the canvas, with a margin; return where it is then."""
         left, top, right, bottom = self.canvas
-        dx = _shift_into(position[0], left, right, MARGIN * self.ui_scale)
-        dy = _shift_into(position[1], top, bottom, MARGIN * self.ui_scale)
+        dx = shift_into(position[0], left, right, MARGIN * self.ui_scale)
+        dy = shift_into(position[1], top, bottom, MARGIN * self.ui_scale)
         self.camera = self.camera.panned(dx, dy)
         return position[0] + dx, position[1] + dy
 
@@ -381,9 +399,3 @@ class Editor:
             (left, top),
             (right, bottom),
         )
-
-
-def _shift_into(value: float, low: float, high: float, margin: float) -> float:
-    """How much to add to ``value`` so that it lies between the limits, with a margin where there is room."""
-    margin = min(margin, (high - low) / 2)
-    return max(low + margin - value, 0.0) + min(high - margin - value, 0.0)

@@ -26,10 +26,14 @@ class PointerEvent:
 
 @dataclass(frozen=True)
 class ScrollEvent:
-    """A turn of the mouse wheel by ``amount`` notches, up is positive, at ``position``."""
+    """A turn of the mouse wheel by ``amount`` notches, up is positive, at ``position``.
+
+    sideways: notches to the left, of a horizontal wheel or of the other one with Shift.
+    """
 
     position: Point
     amount: float
+    sideways: float = 0.0
 
 
 @dataclass(frozen=True)

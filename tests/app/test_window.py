@@ -155,13 +155,13 @@ def test_a_key_pressed_and_released_in_the_last_frame_is_handled(loop):
 
     def press(count):
         if count == SETTLE_FRAMES:
-            io.add_key_event(imgui.Key.m, True)
-            io.add_key_event(imgui.Key.m, False)
+            io.add_key_event(imgui.Key.b, True)
+            io.add_key_event(imgui.Key.b, False)
 
     loop.on_poll = press
     loop.run()
-    assert loop.ui.state.view.show_mesh
-    assert not imgui.is_key_down(imgui.Key.m)
+    assert loop.ui.editor.chosen_tool is loop.ui.editor.brush_tool
+    assert not imgui.is_key_down(imgui.Key.b)
 
 
 def test_it_does_not_sleep_until_a_dialog_has_dimmed_the_rest(loop):

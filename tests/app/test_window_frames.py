@@ -173,9 +173,9 @@ def test_view_changes_are_seen_in_the_very_next_frame(ui, press):
     if press == "wheel":
         io.add_mouse_wheel_event(0.0, 1.0)
     else:
-        io.add_key_event(imgui.Key.m, True)
+        io.add_key_event(imgui.Key.equal, True)
     after = one_frame(ui)
-    io.add_key_event(imgui.Key.m, False)
+    io.add_key_event(imgui.Key.equal, False)
     assert (canvas(ui, after) != canvas(ui, before)).any(axis=2).mean() > 0.01
 
 

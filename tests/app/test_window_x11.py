@@ -88,7 +88,7 @@ def picture():
 def test_bend_save_quit_and_open_again(start, picture, tmp_path):
     alpha = read_image(picture)[..., 3]
     program = start(picture)
-    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
     pins = np.rint(far_apart(alpha, 3) * zoom + offset).astype(int)
     rest = program.grab()
 
@@ -126,7 +126,7 @@ def test_bend_save_quit_and_open_again(start, picture, tmp_path):
     assert akap_editor.distortion(drawing.mesh, state.positions).angle > 2.001
 
     again = start(saved)
-    screen = again.key("b", "the checkerboard is gone")
+    screen = again.key("shift+c", "the checkerboard is gone")
     assert (canvas(screen) == canvas(last)).all(), f"see {again.save(last)} and {again.save(screen)}"
     again.press("ctrl+q")
     assert again.exit_code() == 0
@@ -145,7 +145,7 @@ def test_a_mouse_that_comes_to_rest_on_a_tool_sees_what_it_is(start, picture):
 def test_closing_the_window_asks_for_unsaved_changes_and_else_ends(start, picture):
     program = start(picture)
     alpha = read_image(picture)[..., 3]
-    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
     pinned = canvas(program.click(np.rint(far_apart(alpha, 1)[0] * zoom + offset).astype(int).tolist()))
     program.close_window()
     program.until(
@@ -174,7 +174,7 @@ def test_unsaved_work_survives_the_end_of_the_program(picture, monkeypatch, tmp_
         (preferences / "preferences.json").write_text(json.dumps({"first steps done": True}))
         program = RunningProgram(display, picture, tmp_path, preferences)
         alpha = read_image(picture)[..., 3]
-        zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+        zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
         (pin,) = np.rint(far_apart(alpha, 1) * zoom + offset).astype(int).tolist()
         program.click(pin)
         if end == "the display is lost":
@@ -191,7 +191,7 @@ def test_after_a_kill_in_a_drag_the_next_start_offers_the_drawing(start, picture
     monkeypatch.setenv("AKAP_EDITOR_STATE", str(state))
     alpha = read_image(picture)[..., 3]
     program = start(picture)
-    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
     pins = np.rint(far_apart(alpha, 10) * zoom + offset).astype(int)
     for pin in pins.tolist():
         program.click(pin)
@@ -219,7 +219,7 @@ def test_after_a_kill_in_a_drag_the_next_start_offers_the_drawing(start, picture
 def test_pins_by_keys_alt_and_the_right_button(start, picture):
     alpha = read_image(picture)[..., 3]
     program = start(picture)
-    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
     pins = np.rint(far_apart(alpha, 2) * zoom + offset).astype(int).tolist()
     bare = canvas(program.grab())
     one = canvas(program.click(pins[0]))
@@ -249,7 +249,7 @@ def test_pins_by_keys_alt_and_the_right_button(start, picture):
 def test_an_alt_drag_of_the_ring_rotates_the_drawing_and_the_pin_stays(start, picture, tmp_path):
     alpha = read_image(picture)[..., 3]
     program = start(picture)
-    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
     pins = np.rint(far_apart(alpha, 2) * zoom + offset).astype(int).tolist()
     for pin in pins:
         program.click(pin)
@@ -277,7 +277,7 @@ def test_a_box_a_drag_of_all_pins_a_pan_and_a_zoom(start, picture):
     """All pins go the same way, so the drawing does, too; then the canvas, then the wheel at a point."""
     alpha = read_image(picture)[..., 3]
     program = start(picture)
-    zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+    zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
     pins = np.rint(far_apart(alpha, 3) * zoom + offset).astype(int)
     for pin in pins.tolist():
         program.click(pin)
@@ -320,7 +320,7 @@ def test_pins_are_set_bent_and_saved_by_keys_alone(start, tmp_path):
     bent = program.until_idle()
     assert (canvas(bent) != canvas(before)).any()
     program.key("shift+j", "the first pin is selected")
-    program.key("Return", "its values are shown")
+    program.key("F2", "its values are shown")
     program.key("Escape", "they are closed")
     program.key("ctrl+Right", "one looks to the right")
     saved = tmp_path / "keys.akap"
@@ -347,13 +347,27 @@ def test_a_file_dropped_on_the_window_is_opened(start, picture, tmp_path):
         client.drop(other, ((LEFT + RIGHT) // 2, (TOP + BOTTOM) // 2))
     shown = program.until(lambda screen: (canvas(screen) != before).any(axis=2).mean() > 0.05, "it is open")
     alpha = read_image(other)[..., 3]
-    program.press("b")
+    program.press("shift+c")
     plain = program.until(lambda screen: (canvas(screen) != canvas(shown)).any(), "the checkerboard is gone")
     zoom, offset = find_camera(plain, alpha)
     assert zoom > 0.1
     for place in far_apart(alpha, 4):
         x, y = np.rint(place * zoom + offset).astype(int)
         assert (plain[y, x] != plain[TOP, LEFT]).any(), "the raptor is where its picture says"
+
+
+def test_f11_covers_the_screen_tab_leaves_only_the_canvas_and_both_come_back(start, picture):
+    program = start(picture)
+    before = program.until_idle()
+    program.key("Tab", "the panels are hidden")
+    program.press("Tab")
+    program.until(lambda screen: (canvas(screen) == canvas(before)).all(), "they are back")
+    program.press("F11")
+    program.until_idle()
+    program.press("F11")
+    program.until(lambda screen: (canvas(screen) == canvas(before)).all(), "the window is as before")
+    program.press("ctrl+q")
+    assert program.exit_code() == 0
 
 
 def test_the_dialog_of_the_system_saves_cancels_and_opens(start, picture, monkeypatch, tmp_path):
@@ -372,6 +386,9 @@ def test_the_dialog_of_the_system_saves_cancels_and_opens(start, picture, monkey
     arguments = ask("ctrl+shift+s")
     assert "--save" in arguments
     assert f"--filename={picture.with_suffix('.akap')}" in arguments
+    program.until(
+        lambda screen: (canvas(screen) < before).any(axis=2).mean() > 0.8, "the canvas says that it waits"
+    )
     dialog.answer(saved.with_suffix(""))
     program.until(lambda _: saved.is_file(), "the file is saved")
 

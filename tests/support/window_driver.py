@@ -310,11 +310,11 @@ class WindowDriver:
         return seen
 
     def walk_to(self, label: str, *chords: int) -> None:
-        """Go through the side panel with Tab to an item, and press keys there."""
+        """Go to the side panel, through it with Tab to an item, and press keys there."""
 
         def act(hand: Any) -> None:
             wanted = hand.item_info(f"//Panel/{label}").id_
-            hand.key_press(imgui.Key.tab)
+            hand.key_press(imgui.Key.f6)
             for _ in range(80):
                 hand.yield_(2)
                 if imgui.get_current_context().nav_id == wanted:

@@ -15,6 +15,7 @@ _DRAWN: dict[Cursor, str] = {
     "rotate": icons.ICON_FA_ROTATE,
     "pan": icons.ICON_FA_HAND,
     "panning": icons.ICON_FA_HAND_BACK_FIST,
+    "zoom": icons.ICON_FA_MAGNIFYING_GLASS,
 }
 _SIZE = 1.2  # times the font size
 _RIM = 1.5  # design points

@@ -65,7 +65,7 @@ def _draw_distortion_scale(view: ViewOptions, measure: Measure, scale: float) ->
     if imgui.invisible_button("##range", size_with_labels, imgui.ButtonFlags_.enable_nav):
         view.use_next_distortion_range()
     if imgui.is_item_hovered(imgui.HoveredFlags_.delay_normal):
-        imgui.set_tooltip("Click, or R, for another range")
+        imgui.set_tooltip("Click, or Shift+R, for another range")
     draw, colors = imgui.get_window_draw_list(), DISTORTION_SCALES[measure]
     edges = np.linspace(corner.x, corner.x + size.x, len(colors) + 1).tolist()
     for low, high, color in zip(edges, edges[1:], colors.tolist(), strict=False):

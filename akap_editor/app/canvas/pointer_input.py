@@ -5,10 +5,13 @@ from imgui_bundle import imgui
 from ...editor.editor import HELD_KEYS
 from ...editor.events import ARROWS, Button, KeyEvent, PointerEvent, ScrollEvent
 from ...editor.tools.base import DRAG_DISTANCE, distance
+from .. import widgets
 from ..app_state import AppState
-from ..panels.pin_popup import PinPopup
+from ..commands.timeline import PLAY
+from ..panels.pin_popup import PinPopup, draw_canvas_menu
 from .cursors import show_cursor
 
+TAP_SECONDS = 0.3  # Space held longer pans only
 _BUTTONS: tuple[Button, ...] = ("left", "right", "middle")  # in ImGui's order
 _ARROW_KEYS = {name: imgui.Key[f"{name}_arrow"] for name in ARROWS}
 _CLICK_KEYS = (imgui.Key.enter, imgui.Key.keypad_enter, imgui.Key.space)  # of the keyboard pointer
@@ -24,6 +27,8 @@ class Canvas:
         self._last_position = (0.0, 0.0)
         self._records_take = False  # whether a take of the timeline ends with the gesture
         self._popup = PinPopup()
+        self._tap_began: float | None = None  # when Space went down, None if it cannot be a tap any more
+        self._panel_had_focus = False  # whether keys moved through a panel in the last frame
         self._last_interruption = -1  # number of the last frame with a dialog or a menu
 
     def read_input(self, state: AppState) -> None:
@@ -32,8 +37,11 @@ class Canvas:
         self._read_movement(state)
         self._read_buttons(state)
         io = imgui.get_io()
-        if io.mouse_wheel and not io.want_capture_mouse:
-            state.editor.handle_event(ScrollEvent(_mouse_position(), io.mouse_wheel))
+        if (io.mouse_wheel or io.mouse_wheel_h) and not io.want_capture_mouse:
+            pans = io.key_shift and state.editor.tool.is_idle
+            amount, sideways = (0.0, io.mouse_wheel) if pans else (io.mouse_wheel, 0.0)
+            scroll = ScrollEvent(_mouse_position(), amount, sideways + io.mouse_wheel_h)
+            state.editor.handle_event(scroll)
 
     def cancel_input(self, state: AppState) -> None:
         """Cancel the gesture and release the held keys: a dialog or another window gets the rest of them."""
@@ -44,8 +52,9 @@ class Canvas:
             state.editor.handle_event(KeyEvent(name, pressed=False))
 
     def draw_popup(self, state: AppState, scale: float) -> None:
-        """Draw the menu or the values of a pin, if the editor requests them."""
+        """Draw the menu or the values of a pin, or the menu of the canvas, if the editor requests them."""
         self._popup.draw(state, scale)
+        draw_canvas_menu(state)
 
     @staticmethod
     def choose_cursor(state: AppState) -> None:
@@ -87,14 +96,17 @@ class Canvas:
         self._read_held_keys(state)
         if io.want_text_input:
             return
+        self._play_on_tap(state)
         clicks = any(imgui.is_key_pressed(key, False) for key in _CLICK_KEYS)
         if clicks and editor.tool.is_keyboard_driven and not io.nav_visible:
             state.notice = ""
             editor.handle_event(KeyEvent("enter"))
         closed_popup = imgui.get_frame_count() <= self._last_interruption + 1
         if imgui.is_key_pressed(imgui.Key.escape, False) and not closed_popup:
-            editor.handle_event(KeyEvent("escape"))
+            if not self._panel_had_focus or editor.is_busy:
+                editor.handle_event(KeyEvent("escape"))
             imgui.set_window_focus(None)  # if the keyboard was in a panel
+        self._panel_had_focus = io.nav_visible
         # A panel that was clicked must not keep the arrows; one that keys walk through does.
         if imgui.is_mouse_released(0) and not io.nav_visible and not imgui.is_any_item_active():
             imgui.set_window_focus(None)
@@ -102,12 +114,30 @@ class Canvas:
             if imgui.is_key_pressed(key) and not io.nav_visible and not io.key_ctrl:
                 editor.handle_event(KeyEvent(name, shift=io.key_shift))
 
+    def _play_on_tap(self, state: AppState) -> None:
+        """Play, or stop, when Space is released soon and no button was pressed meanwhile."""
+        io, editor = imgui.get_io(), state.editor
+        if imgui.is_key_pressed(imgui.Key.space, False):
+            is_free = not (io.nav_visible or io.key_ctrl or editor.tool.is_keyboard_driven)
+            self._tap_began = imgui.get_time() if is_free and editor.tool.is_idle else None
+        if any(imgui.is_mouse_clicked(index) for index in range(len(_BUTTONS))):
+            self._tap_began = None
+        if imgui.is_key_released(imgui.Key.space) and self._tap_began is not None:
+            is_tap = imgui.get_time() - self._tap_began < TAP_SECONDS
+            self._tap_began = None
+            if is_tap and PLAY.enabled(state):
+                widgets.run(state, PLAY)
+            elif is_tap and state.document is not None:
+                state.notice = PLAY.missing
+
     @staticmethod
     def _read_held_keys(state: AppState) -> None:
         """Pass changes of the keys that have a meaning while they are held."""
         io, editor = imgui.get_io(), state.editor
+        is_space_down = imgui.is_key_down(imgui.Key.space) and not editor.tool.is_keyboard_driven
         held = {
-            "space": imgui.is_key_down(imgui.Key.space) and not editor.tool.is_keyboard_driven,
+            "space": is_space_down and not io.key_ctrl,
+            "zoom": is_space_down and io.key_ctrl,
             "h": imgui.is_key_down(imgui.Key.h) and not io.key_ctrl,
             "alt": io.key_alt,
             "shift": io.key_shift,

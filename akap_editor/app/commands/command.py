@@ -28,7 +28,7 @@ _NAVIGATION_KEYS = frozenset(
     for key in (
         *(Key.left_arrow, Key.right_arrow, Key.up_arrow, Key.down_arrow),
         *(Key.page_up, Key.page_down, Key.home, Key.end, Key.enter, Key.keypad_enter),
-        *(Key.f10, Key.menu),
+        *(Key.f10, Key.menu, Key.tab),
     )
 )
 _KEY_NAMES = {
@@ -115,7 +115,7 @@ Menu = tuple[str, tuple[Command | Submenu | None, ...]]  # its name and its line
 def chord_name(chord: int) -> str:
     """The name of a chord, with key names as on a keyboard."""
     parts = []
-    for modifier, name in ((CTRL, "Ctrl"), (SHIFT, "Shift")):
+    for modifier, name in ((CTRL, "Ctrl"), (ALT, "Alt"), (SHIFT, "Shift")):
         if chord & int(modifier):
             parts.append(name)
             chord &= ~int(modifier)

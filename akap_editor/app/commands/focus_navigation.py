@@ -19,8 +19,8 @@ _PANELS = (
 def handle_focus_keys(state: AppState) -> None:
     """Move the focus if one of the keys was pressed; to be called before the panels are drawn.
 
-    Tab: from the canvas to the side panel or the start page; Shift+Tab: to the toolbar; F6 and Shift+F6: to
-    the next and the previous panel, the canvas among them.
+    F6 and Shift+F6: to the next and the previous panel, the canvas among them; Tab: to the start page. Over a
+    drawing, Tab hides the panels.
     """
     context, io = imgui.get_current_context(), imgui.get_io()
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup) or io.key_ctrl or io.key_alt:
@@ -31,8 +31,10 @@ def handle_focus_keys(state: AppState) -> None:
         stops = [_CANVAS, *(name for name in _PANELS if _can_be_focused(name))]
         index = stops.index(focused) if focused in stops else 0
         _focus(stops[(index + (-1 if io.key_shift else 1)) % len(stops)])
-    elif not (io.want_text_input or io.nav_visible) and imgui.is_key_pressed(imgui.Key.tab, False):
-        _focus("Start" if state.document is None else "Tools" if io.key_shift else "Panel")
+    elif state.document is not None or io.want_text_input or io.nav_visible:
+        return
+    elif imgui.is_key_pressed(imgui.Key.tab, False):
+        _focus("Start")
 
 
 def _can_be_focused(name: str) -> bool:

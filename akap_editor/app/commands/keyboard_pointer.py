@@ -34,6 +34,18 @@ def _has_one_selected_pin(state: AppState) -> bool:
     return len(state.editor.selection) == 1 and not _has_crosshair(state)
 
 
+def _finish(state: AppState) -> None:
+    """Keep what the gesture under way has done; without one, deselect the pins."""
+    if state.editor.is_busy:
+        state.editor.finish()
+    else:
+        state.editor.select(())
+
+
+def _can_finish(state: AppState) -> bool:
+    return (state.editor.is_busy or bool(state.editor.selection)) and not _has_crosshair(state)
+
+
 def _open_context_menu(state: AppState) -> None:
     """Open the menu of the selected pin; if there is none, of the selected keyframe."""
     imgui.set_nav_cursor_visible(True)  # lets the arrow keys move through the menu
@@ -67,10 +79,11 @@ PREVIOUS_PIN = Command(
 PIN_VALUES = Command(
     "Pin Values...",
     lambda state: state.editor.request_pin_popup("values", *state.editor.selection),
-    (Key.enter, Key.keypad_enter),
+    (Key.f2,),
     "",
     _has_one_selected_pin,
 )
+FINISH = Command("Finish", _finish, (Key.enter, Key.keypad_enter), "", _can_finish)
 CONTEXT_MENU = Command("Context Menu", _open_context_menu, CONTEXT_MENU_KEYS, "", _has_context_menu)
 PANNING = tuple(
     Command(

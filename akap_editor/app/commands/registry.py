@@ -14,15 +14,31 @@ from ...editor.tools.base import IdleTool
 from ...resources import bundled_drawings
 from .. import file_commands, files
 from ..app_state import AppState
-from ..canvas.view_options import Measure
 from ..dialogs.about import AboutDialog
 from ..dialogs.export.pose import ExportPoseDialog
 from ..panels.method_parameters import with_default_values
-from .command import CTRL, SHIFT, Command, Key, Menu, Submenu, always, has_drawing
-from .keyboard_pointer import CONTEXT_MENU, CROSSHAIR, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
+from .command import ALT, CTRL, SHIFT, Command, Key, Menu, Submenu, always, has_drawing
+from .keyboard_pointer import CONTEXT_MENU, CROSSHAIR, FINISH, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
 from .palette import Palette
 from .shortcuts_page import ShortcutsPage
 from .timeline import ANIMATION, has_selected_keyframes
+from .view import (
+    ACTUAL_SIZE,
+    CHOOSE_REFERENCE,
+    COMPARE_METHODS,
+    FIT,
+    FULL_SCREEN,
+    HIDE_PANELS,
+    NEXT_RANGE,
+    OVERLAYS,
+    SHOW_CHECKERBOARD,
+    SHOW_MESH,
+    SHOW_PINS,
+    SHOW_REFERENCE,
+    SHOW_TIMELINE,
+    ZOOM_IN,
+    ZOOM_OUT,
+)
 
 # -- File ---------------------------------------------------------------------------------------------------
 
@@ -140,7 +156,13 @@ def _has_stiffness(state: AppState) -> bool:
     return state.editor.session is not None and state.editor.session.state.stiffness is not None
 
 
-UNDO = Command("Undo", _on_editor(Editor.undo), (CTRL | Key.z,), icons.ICON_FA_ARROW_ROTATE_LEFT, _can_undo)
+UNDO = Command(
+    "Undo",
+    _on_editor(Editor.undo),
+    (CTRL | Key.z, CTRL | ALT | Key.z),
+    icons.ICON_FA_ARROW_ROTATE_LEFT,
+    _can_undo,
+)
 REDO = Command(
     "Redo",
     _on_editor(Editor.redo),
@@ -205,102 +227,6 @@ CLEAR_STIFFNESS = Command(
     _has_stiffness,
 )
 
-# -- View ---------------------------------------------------------------------------------------------------
-
-
-def _switch(
-    label: str,
-    name: str,
-    keys: tuple[int, ...] = (),
-    icon: str = "",
-    enabled: Callable[[AppState], bool] = always,
-) -> Command:
-    """A command that turns a field of the view options on or off."""
-
-    def toggle(state: AppState) -> None:
-        setattr(state.view, name, not getattr(state.view, name))
-
-    return Command(label, toggle, keys, icon, enabled, lambda state: bool(getattr(state.view, name)))
-
-
-def _distortion(label: str, measure: Measure, key: int) -> Command:
-    """A command that shows a distortion map, or hides it."""
-    return Command(
-        label,
-        lambda state: state.view.toggle_distortion_map(measure),
-        (key,),
-        "",
-        has_drawing,
-        lambda state: state.view.distortion_measure == measure,
-    )
-
-
-def _show_actual_size(state: AppState) -> None:
-    state.editor.zoom(1.0 / state.editor.camera.zoom)
-
-
-def _has_distortion(state: AppState) -> bool:
-    return state.view.distortion_measure is not None
-
-
-def _has_reference(state: AppState) -> bool:
-    return state.view.reference is not None
-
-
-def _toggle_timeline(state: AppState) -> None:
-    state.timeline.is_shown = not state.timeline.is_shown
-
-
-def _shows_timeline(state: AppState) -> bool:
-    return state.timeline.is_shown
-
-
-def _zoom(factor: float) -> Callable[[AppState], None]:
-    return lambda state: state.editor.zoom(factor)
-
-
-FIT = Command(
-    "Fit in Window", _on_editor(Editor.fit), (Key.f, CTRL | Key._0), icons.ICON_FA_EXPAND, has_drawing
-)
-ACTUAL_SIZE = Command("Actual Size", _show_actual_size, (Key._1, CTRL | Key._1), "", has_drawing)
-ZOOM_IN = Command(
-    "Zoom In",
-    _zoom(1.25),
-    (CTRL | Key.equal, CTRL | SHIFT | Key.equal, CTRL | Key.keypad_add, Key.equal),
-    "",
-    has_drawing,
-    typed="+",  # where a keyboard has it: Shift+= on some, a key of its own on others
-    repeats=True,
-)
-ZOOM_OUT = Command(
-    "Zoom Out",
-    _zoom(0.8),
-    (CTRL | Key.minus, CTRL | Key.keypad_subtract, Key.minus, Key.keypad_subtract),
-    "",
-    has_drawing,
-    repeats=True,
-)
-SHOW_MESH = _switch("Show Mesh", "show_mesh", (Key.m,), icons.ICON_FA_DRAW_POLYGON)
-SHOW_PINS = _switch("Show Pins", "show_pins", (SHIFT | Key.p,))
-SHOW_FIELD = _switch("Show Vector Field", "show_vector_fields", (Key.v,), "", has_drawing)
-SHOW_AREA = _distortion("Show Area Distortion", "area", Key.d)
-SHOW_ANGLE = _distortion("Show Angle Distortion", "angle", SHIFT | Key.d)
-SHOW_REST_POSE = _switch("Show Rest Pose", "show_rest_pose", (Key.g,), "", has_drawing)
-SHOW_TRAILS = _switch("Show Pin Trails", "show_pin_trails", (Key.t,), "", has_drawing)
-OVERLAYS = (SHOW_FIELD, SHOW_AREA, SHOW_ANGLE, SHOW_REST_POSE, SHOW_TRAILS)
-NEXT_RANGE = Command(
-    "Next Distortion Range",
-    lambda state: state.view.use_next_distortion_range(),
-    (Key.r,),
-    "",
-    _has_distortion,
-)
-SHOW_CHECKERBOARD = _switch("Show Checkerboard", "show_checkerboard", (Key.b,))
-CHOOSE_REFERENCE = Command("Reference Picture...", file_commands.choose_reference, (), "", has_drawing)
-SHOW_REFERENCE = _switch("Show Reference Picture", "show_reference", (SHIFT | Key.b,), "", _has_reference)
-SHOW_TIMELINE = Command("Show Timeline", _toggle_timeline, (SHIFT | Key.t,), "", has_drawing, _shows_timeline)
-COMPARE_METHODS = _switch("Compare Methods", "is_split", (), icons.ICON_FA_TABLE_COLUMNS, has_drawing)
-
 # -- Help ---------------------------------------------------------------------------------------------------
 
 
@@ -353,7 +279,8 @@ def _resize_brush(larger: bool) -> Callable[[AppState], None]:
 
 PIN_TOOL = _tool("Pin Tool", lambda editor: editor.pins_tool, Key.p, icons.ICON_FA_THUMBTACK)
 HAND_TOOL = _tool("Hand Tool", lambda editor: editor.hand_tool, Key.n, icons.ICON_FA_HAND)
-BRUSH_TOOL = _tool("Stiffness Brush", lambda editor: editor.brush_tool, Key.s, icons.ICON_FA_PAINTBRUSH)
+BRUSH_TOOL = _tool("Stiffness Brush", lambda editor: editor.brush_tool, Key.b, icons.ICON_FA_PAINTBRUSH)
+ZOOM_TOOL = _tool("Zoom Tool", lambda editor: editor.zoom_tool, Key.z, icons.ICON_FA_MAGNIFYING_GLASS)
 ERASE = Command("Erase Stiffness", _toggle_erasing, (Key.e,), "", _has_brush, _is_erasing)
 DECREASE_BRUSH = Command("Decrease Brush Size", _resize_brush(False), (Key.left_bracket,), "", _has_brush)
 INCREASE_BRUSH = Command("Increase Brush Size", _resize_brush(True), (Key.right_bracket,), "", _has_brush)
@@ -376,7 +303,7 @@ MENUS: tuple[Menu, ...] = (
         (
             *(UNDO, REDO, None),
             *(REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT),
-            *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, None),
+            *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, FINISH, None),
             *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE, None),
             *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS, CLEAR_STIFFNESS),
         ),
@@ -387,7 +314,8 @@ MENUS: tuple[Menu, ...] = (
             *(FIT, ACTUAL_SIZE, ZOOM_IN, ZOOM_OUT, None),
             *(SHOW_MESH, SHOW_PINS, *OVERLAYS, NEXT_RANGE, None),
             *(SHOW_CHECKERBOARD, CHOOSE_REFERENCE, SHOW_REFERENCE, None),
-            *(SHOW_TIMELINE, COMPARE_METHODS),
+            *(SHOW_TIMELINE, COMPARE_METHODS, None),
+            *(HIDE_PANELS, FULL_SCREEN),
         ),
     ),
     ("Animation", ANIMATION),
@@ -395,7 +323,7 @@ MENUS: tuple[Menu, ...] = (
 )
 COMMANDS = (
     *(command for _, items in MENUS for command in items if isinstance(command, Command)),
-    *(PIN_TOOL, HAND_TOOL, BRUSH_TOOL, CROSSHAIR),
+    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL, CROSSHAIR),
     *(ERASE, DECREASE_BRUSH, INCREASE_BRUSH),
     *PANNING,
 )

@@ -18,20 +18,23 @@ _MOUSE: tuple[Line, ...] = (
     ("Press and drag", "Add a pin and bend"),
     ("Shift-click, drag a box", "Select several pins"),
     ("Double-click a pin", "Edit its values"),
-    ("Right-click a pin", "Open its menu"),
+    ("Right-click", "Open the menu"),
     ("Alt-click a pin", "Remove it"),
     ("Drag its ring", "Rotate around it"),
+    ("Shift-click, brush", "Paint a straight line"),
     ("Arrows", "Nudge; with Shift by 10"),
     ("C, arrows, Enter", "Point without a mouse"),
     ("Middle-drag, Space-drag", "Pan"),
-    ("Wheel", "Zoom at the pointer"),
+    ("Wheel, Shift+wheel", "Zoom, pan sideways"),
+    ("Ctrl+Space, click, drag", "Zoom; with Alt out"),
+    ("Space, tapped", "Play"),
     ("H", "Hide pins while held"),
-    ("Esc", "Cancel the drag"),
+    ("Esc", "Cancel, then deselect"),
 )
 _FOCUS: tuple[Line, ...] = (
     ("F10, Alt+letter", "Open a menu"),
     ("F6, Shift+F6", "Next, previous panel"),
-    ("Tab, arrows, Enter", "Use a panel"),
+    ("Tab, arrows, Enter", "Use the focused panel"),
 )
 _COLUMN_WIDTH, _KEYS_WIDTH = 302, 158  # design points
 _MAX_COLUMNS = 4

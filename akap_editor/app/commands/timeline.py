@@ -184,7 +184,7 @@ MOVE_LATER = Command(
 ONION_SKIN = Command(
     "Onion Skin",
     _on_keyframes(_toggle_onion_skin),
-    (Key.o,),
+    (SHIFT | Key.o,),
     icons.ICON_FA_LAYER_GROUP,
     has_keyframes,
     lambda state: state.timeline.keyframe_playback.onion_skin.is_shown,

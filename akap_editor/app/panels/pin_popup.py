@@ -1,4 +1,4 @@
-"""The popups of a pin: its menu on a right-click, its values on a double-click."""
+"""The popups of the canvas: the menu of a pin or of the canvas, and the values of a pin."""
 
 import math
 from collections.abc import Callable
@@ -13,13 +13,22 @@ from .. import widgets
 from ..app_state import AppState
 from ..commands.command import Command
 from ..commands.registry import (
+    ACTUAL_SIZE,
+    DESELECT,
+    FIT,
     HOLD_ANGLE,
     LIMB_TO_BACK,
     LIMB_TO_FRONT,
     LOWER_DEPTH,
     RAISE_DEPTH,
+    REDO,
     REMOVE_SELECTED,
+    RESET_POSE,
     SELECT_ALL,
+    SHOW_CHECKERBOARD,
+    SHOW_MESH,
+    SHOW_PINS,
+    UNDO,
 )
 from ..pending_values import PendingValues
 
@@ -32,6 +41,14 @@ _MENU: tuple[Command | None, ...] = (
     *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE),
     None,
     *(REMOVE_SELECTED, SELECT_ALL),
+)
+
+
+_CANVAS_POPUP = "###canvas menu"
+_CANVAS_MENU: tuple[Command | None, ...] = (
+    *(UNDO, REDO, None),
+    *(SELECT_ALL, DESELECT, RESET_POSE, None),
+    *(FIT, ACTUAL_SIZE, SHOW_MESH, SHOW_PINS, SHOW_CHECKERBOARD),
 )
 
 
@@ -132,7 +149,23 @@ def _draw_menu(state: AppState, pin: Pin) -> None:
         state.editor.request_pin_popup("values", pin.id)
     if len(state.editor.selection) > 1 and imgui.menu_item_simple("Select Only This Pin"):
         state.editor.select({pin.id})
-    for command in _MENU:
+    _draw_commands(state, _MENU)
+
+
+def draw_canvas_menu(state: AppState) -> None:
+    """Draw the menu of the canvas beside the pins, if the editor requests it or it is open."""
+    request, state.editor.menu_request = state.editor.menu_request, None
+    if request is not None:
+        imgui.set_next_window_pos(ImVec2(*request))
+        imgui.open_popup(_CANVAS_POPUP)
+    if imgui.begin_popup(_CANVAS_POPUP):
+        _draw_commands(state, _CANVAS_MENU)
+        imgui.end_popup()
+
+
+def _draw_commands(state: AppState, commands: tuple[Command | None, ...]) -> None:
+    """Draw the lines of a menu; None is a separator."""
+    for command in commands:
         if command is None:
             imgui.separator()
         else:

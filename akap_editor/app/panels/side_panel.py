@@ -19,6 +19,7 @@ from ..commands.registry import (
     REMOVE_SELECTED,
     SHOW_MESH,
     UNDO,
+    ZOOM_TOOL,
 )
 from ..dialogs.first_steps import FirstSteps
 from ..theme import ACCENT, SECONDARY, TEXT, packed
@@ -26,7 +27,7 @@ from ..timeline import panel as timeline_panel
 from . import bending, drawing, history, measurements, mesh, pins, poses, stiffness_brush, view
 
 _TOOLBAR: tuple[Command | None, ...] = (
-    *(PIN_TOOL, HAND_TOOL, BRUSH_TOOL),
+    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL),
     None,
     *(UNDO, REDO, REMOVE_SELECTED),
     None,
@@ -71,12 +72,15 @@ def draw(state: AppState, scale: float) -> tuple[float, float, float, float]:
     scale: points per design point.
     """
     menu_bar.draw(state)
-    _draw_status_bar(state, scale)
-    timeline_panel.draw(state, scale)
-    if state.document is not None:
-        _draw_toolbar(state, scale)
-    _draw_side_panel(state, scale)
-    state.part(FirstSteps).draw(state, scale)
+    is_hidden = state.panels_are_hidden and state.document is not None
+    if not is_hidden:
+        _draw_status_bar(state, scale)
+    timeline_panel.draw(state, scale, is_hidden)
+    if not is_hidden:
+        if state.document is not None:
+            _draw_toolbar(state, scale)
+        _draw_side_panel(state, scale)
+        state.part(FirstSteps).draw(state, scale)
     viewport = imgui.get_main_viewport()
     left, top = viewport.work_pos.x, viewport.work_pos.y
     return left, top, left + viewport.work_size.x, top + viewport.work_size.y

@@ -25,5 +25,5 @@ def draw(state: AppState, scale: float) -> None:
         ends = [f"× {limit:g}" for limit in DISTORTION_RANGES]
         _, state.view.distortion_range = imgui.combo("##range", state.view.distortion_range, ends)
         widgets.show_tooltip(
-            "Change of area or shape at the ends of the color scale. R selects the next one."
+            "Change of area or shape at the ends of the color scale. Shift+R selects the next one."
         )

@@ -35,7 +35,7 @@ def draw_buttons(state: AppState, scale: float) -> None:
     if imgui.button(f"{icons.ICON_FA_LAYER_GROUP}##onion", size):
         imgui.open_popup("onion menu")
     imgui.pop_style_color()
-    widgets.show_tooltip("Onion skin (O): earlier poses in blue, later ones in orange")
+    widgets.show_tooltip("Onion skin (Shift+O): earlier poses in blue, later ones in orange")
     if _begin_menu("onion menu", scale):
         _draw_onion_options(playback.onion_skin, scale)
         imgui.end_popup()

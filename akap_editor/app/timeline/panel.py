@@ -23,8 +23,11 @@ _MODES: tuple[tuple[TimelineMode, str, str], ...] = (
 )
 
 
-def draw(state: AppState, scale: float) -> None:
-    """Draw the panel if it is visible and a drawing is open. scale: points per design point."""
+def draw(state: AppState, scale: float, is_hidden: bool = False) -> None:
+    """Draw the panel if it is visible and a drawing is open. scale: points per design point.
+
+    is_hidden: whether playback goes on without the panel, because all panels are hidden.
+    """
     timeline = state.timeline
     if state.document is None or not timeline.is_shown:
         timeline.show_present()
@@ -32,6 +35,8 @@ def draw(state: AppState, scale: float) -> None:
     if timeline.mode == "keyframes":
         timeline.keyframe_playback.update()
     timeline.playback.advance()
+    if is_hidden:
+        return
     if widgets.side_bar("Timeline", imgui.Dir.down, _HEIGHT * scale, ImVec2(10 * scale, 8 * scale)):
         _draw_content(state, scale)
     imgui.end()

@@ -15,7 +15,7 @@ from ..session.session import Session
 
 DRAG_DISTANCE = 3.0  # points of the screen: a shorter movement between press and release is a click
 
-Cursor = Literal["arrow", "hand", "grab", "rotate", "pan", "panning", "hidden"]
+Cursor = Literal["arrow", "hand", "grab", "rotate", "pan", "panning", "zoom", "hidden"]
 
 
 def distance(a: Point, b: Point) -> float:
@@ -83,6 +83,7 @@ class ToolContext(EditContext, Protocol):
     held: frozenset[str]
     trails: Trails
     chosen_tool: "IdleTool"
+    menu_request: Point | None
 
     @property
     def canvas(self) -> tuple[float, float, float, float]:

@@ -2,11 +2,11 @@
 
 from ..events import PointerEvent
 from .base import IdleTool, Markers, Tool, ToolContext
-from .pins import OpeningPinMenu
+from .pins import OpeningMenu
 
 
 class HandIdle(IdleTool):
-    """The hand waits for a press: the left button pans, the right one opens the menu of a pin."""
+    """The hand waits for a press: the left button pans, the right one opens a menu."""
 
     press_hint = "Drag to move the canvas, scroll to zoom"
     cursor = "pan"
@@ -17,11 +17,11 @@ class HandIdle(IdleTool):
         return Markers(hovered_pin=self.hovered_pin)
 
     def press(self, event: PointerEvent) -> None:
-        pin = self.context.pin_at(event.position)
         if event.button == "left":
             self.context.set_tool(Panning(self.context, event))
-        elif event.button == "right" and pin is not None:
-            self.context.set_tool(OpeningPinMenu(self.context, event, pin))
+        elif event.button == "right" and self.context.session is not None:
+            pin = self.context.pin_at(event.position)
+            self.context.set_tool(OpeningMenu(self.context, event, pin))
 
 
 class Panning(Tool):

@@ -93,8 +93,7 @@ class PinsIdle(IdleTool):
         pin = context.pin_at(event.position)
         ring_pin = None if event.shift and not event.alt else ring_at(context, event.position)
         if event.button == "right":
-            if pin is not None:
-                context.set_tool(OpeningPinMenu(context, event, pin))
+            context.set_tool(OpeningMenu(context, event, pin))
         elif ring_pin is not None:
             context.set_tool(PointingRotationRing(context, event, ring_pin))
         elif pin is None:
@@ -233,19 +232,22 @@ class RemovingPin(Pointing):
         remove_pins(self.context, {self.pin})
 
 
-class OpeningPinMenu(Pointing):
-    """A pin is pressed with the right button; a click opens its menu."""
+class OpeningMenu(Pointing):
+    """The right button is pressed; a click opens the menu of a pin, or of the canvas if it is None."""
 
-    hint = "Release to open the menu of this pin"
+    hint = "Release to open the menu"
     cursor = "hand"
 
-    def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
+    def __init__(self, context: ToolContext, event: PointerEvent, pin: int | None) -> None:
         super().__init__(context, event)
         self.pin = pin
 
     def click(self, event: PointerEvent) -> None:
         self.context.return_to_idle()
-        self.context.request_pin_popup("menu", self.pin)
+        if self.pin is None:
+            self.context.menu_request = event.position
+        else:
+            self.context.request_pin_popup("menu", self.pin)
 
 
 class PointingCanvas(Pointing):

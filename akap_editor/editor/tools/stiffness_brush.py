@@ -46,12 +46,17 @@ class BrushIdle(IdleTool):
     def __init__(self, context: ToolContext) -> None:
         super().__init__(context)
         self.brush = Brush()
+        self.last_end: Point | None = (
+            None  # of the last stroke, in the drawing: Shift-click goes on from there
+        )
 
     @property
     def press_hint(self) -> str:
         if self.brush.erasing:
             return "Drag over areas to erase their stiffness, E to paint"
-        return f"Paint areas to stiffen ({self.brush.factor:.3g}×), right-drag or E to erase"
+        return (
+            f"Paint areas to stiffen ({self.brush.factor:.3g}×), Shift-click for a line, right-drag to erase"
+        )
 
     @property
     def keyboard_hint(self) -> str:
@@ -96,6 +101,8 @@ class Painting(Tool):
         erases = brush.erasing or event.button == "right"
         self._idle_tool = idle_tool
         self._button, self._last = event.button, event.position
+        if event.shift and idle_tool.last_end is not None:
+            self._last = context.camera.to_screen(idle_tool.last_end)
         self._factor = MIN_STIFFNESS if erases else brush.factor
         self._radius_on_screen = idle_tool.radius_on_screen
         self._radius = self._radius_on_screen / context.camera.zoom
@@ -144,6 +151,7 @@ class Painting(Tool):
     def release(self, event: PointerEvent) -> None:
         if event.button == self._button:
             if self._dabs:
+                self._idle_tool.last_end = self.context.camera.to_drawing(self._last)
                 self.session.apply(PaintStiffness(self._dabs, self._radius, self._factor))
             self.session.commit()
             self.context.return_to_idle()

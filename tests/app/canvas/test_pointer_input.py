@@ -194,6 +194,102 @@ def test_a_click_on_a_panel_never_reaches_the_canvas(ui, at):
     assert not ui.pins
 
 
+@pytest.mark.parametrize("how", ["Shift", "horizontal"])
+def test_the_wheel_pans_sideways(ui, how):
+    camera, at = ui.editor.camera, ui.to_screen((100.0, 80.0))
+
+    def turn(hand):
+        move(hand, at)
+        if how == "Shift":
+            hand.key_down(Key.mod_shift)
+            hand.mouse_wheel_y(2.0)
+            hand.key_up(Key.mod_shift)
+        else:
+            hand.mouse_wheel_x(2.0)
+
+    ui.do(turn)
+    assert ui.editor.camera.zoom == camera.zoom
+    assert ui.editor.camera.offset[1] == camera.offset[1]
+    assert ui.editor.camera.offset[0] - camera.offset[0] == pytest.approx(120.0)
+
+
+def test_a_right_click_beside_the_pins_opens_the_menu_of_the_canvas(pinned):
+    at = pinned.to_screen((100.0, 60.0))
+
+    def act(hand):
+        move(hand, at)
+        hand.mouse_click(1)
+        hand.yield_(3)
+        hand.item_click("//$FOCUSED/Select All Pins")
+
+    pinned.do(act)
+    assert pinned.editor.selection == {1, 2, 3}
+    assert len(pinned.pins) == 3
+
+
+def keyed(ui):
+    playback = ui.state.timeline.keyframe_playback
+    ui.state.timeline.show_keyframes()
+    ui.settle()
+    playback.set_keyframe(0.0)
+    ui.bend()
+    playback.set_keyframe(60.0)
+    playback.scrub(0.0)
+    ui.settle()
+    return playback
+
+
+def test_space_plays_when_it_is_tapped_and_pans_when_it_is_held(pinned):
+    playback, seen = keyed(pinned), []
+    camera, start = pinned.editor.camera, pinned.to_screen((100.0, 80.0))
+
+    def act(hand):
+        move(hand, start)
+        hand.key_press(Key.space)
+        hand.yield_(2)
+        seen.append(playback.is_playing)
+        hand.key_press(Key.space)
+        hand.yield_(2)
+        seen.append(playback.is_playing)
+        hand.key_down(Key.space)
+        hand.mouse_down(0)
+        move(hand, (start[0] + 30, start[1]))
+        hand.mouse_up(0)
+        hand.key_up(Key.space)
+        hand.yield_(2)
+        seen.append(playback.is_playing)
+        hand.key_down(Key.space)
+        hand.sleep_no_skip(1.0, 1 / 20)
+        hand.key_up(Key.space)
+        hand.yield_(2)
+        seen.append(playback.is_playing)
+
+    pinned.do(act)
+    assert seen == [True, False, False, False]
+    assert pinned.editor.camera != camera
+
+
+def test_a_tap_of_space_without_a_motion_says_why(ui):
+    ui.key(Key.space)
+    assert ui.state.notice.startswith("There is no motion yet")
+
+
+def test_ctrl_space_zooms(ui):
+    camera, at = ui.editor.camera, ui.to_screen((100.0, 80.0))
+
+    def act(hand):
+        move(hand, at)
+        hand.key_down(Key.mod_ctrl)
+        hand.key_down(Key.space)
+        hand.mouse_click(0)
+        hand.key_up(Key.space)
+        hand.key_up(Key.mod_ctrl)
+
+    ui.do(act)
+    assert ui.editor.camera.zoom > camera.zoom
+    assert not ui.pins
+
+
 def test_the_wheel_over_a_panel_does_not_zoom(ui):
     camera = ui.editor.camera
     ui.wheel(PANEL, 2.0)

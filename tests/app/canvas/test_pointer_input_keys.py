@@ -46,8 +46,8 @@ def test_alt_click_cuts_a_pin_off_and_the_keyboard_stays_with_the_canvas(pinned)
     pinned.do(cut)
     assert [pin.id for pin in pinned.pins] == [1, 3]
     assert not pinned.editor.held
-    pinned.key(Key.m)
-    assert pinned.state.view.show_mesh
+    pinned.key(Key.b)
+    assert pinned.editor.chosen_tool is pinned.editor.brush_tool
 
 
 def test_an_alt_drag_of_the_ring_rotates_and_holds(pinned):

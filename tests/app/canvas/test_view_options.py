@@ -74,7 +74,7 @@ def test_an_overlay_is_seen_and_gone_again_and_never_exported(pinned, name):
 
 def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned):
     plain = pinned.screenshot()
-    pinned.key(Key.s)
+    pinned.key(Key.b)
     start, end = pinned.to_screen((120.0, 80.0)), pinned.to_screen((160.0, 80.0))
     pinned.drag(start, end)
     stiffness = pinned.session.state.stiffness
@@ -87,7 +87,7 @@ def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned)
     pinned.key(Key.p)
     assert scene_overlays(pinned.state, 1.0).face_colors is None
     assert (pinned.screenshot()[y, x] == plain[y, x]).all()
-    pinned.key(Key.s)
+    pinned.key(Key.b)
     pinned.drag(start, end, button=1)
     assert pinned.session.state.stiffness is None or pinned.session.state.stiffness.max() < 100.0
     assert pinned.session.history.labels == ["Paint Stiffness", "Erase Stiffness"]

@@ -14,12 +14,12 @@ def nothing_watched(module_window):
 
 
 def test_a_pin_is_set_nudged_and_removed_by_keys_alone(ui):
-    at = ui.keys(Key.c, Key.enter, look=lambda: ui.editor.pointer)[0]
+    keys = Key.c, Key.enter, Key.escape, Key.up_arrow, SHIFT | Key.left_arrow
+    seen = ui.keys(*keys, look=lambda: (ui.editor.pointer, [tuple(pin.target) for pin in ui.pins]))
+    x, y = ui.to_drawing(seen[0][0])
+    assert seen[1][1] == [pytest.approx((x, y), abs=0.01)]
     (pin,) = ui.pins
-    assert ui.pin_position(pin.id) == pytest.approx(ui.to_drawing(at), abs=0.01)
     assert ui.editor.selection == {pin.id}
-    ui.keys(Key.escape, Key.up_arrow, SHIFT | Key.left_arrow)
-    x, y = ui.to_drawing(at)
     assert ui.pins[0].target == pytest.approx((x - 10, y - 1), abs=0.01)
     ui.keys(Key.delete)
     assert not ui.pins
@@ -85,7 +85,7 @@ def test_it_is_seen(ui):
 
 
 def test_the_brush_dabs_where_the_crosshair_is(ui):
-    ui.keys(Key.s, Key.c, Key.right_bracket, Key.enter)
+    ui.keys(Key.b, Key.c, Key.right_bracket, Key.enter)
     assert ui.session.history.undo_label == "Paint Stiffness"
     assert ui.session.state.stiffness.max() > 50
 
@@ -93,7 +93,7 @@ def test_the_brush_dabs_where_the_crosshair_is(ui):
 def test_the_values_of_a_pin_are_changed_by_keys(pinned):
     def act(hand):
         hand.key_press(Key.j)
-        hand.key_press(Key.enter)
+        hand.key_press(Key.f2)
         hand.yield_(3)
         hand.key_chars_replace("61.5")
         hand.key_press(Key.tab)

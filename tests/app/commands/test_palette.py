@@ -3,7 +3,7 @@
 from imgui_bundle import imgui  # isort: skip
 import pytest
 
-from akap_editor.app.commands.command import CTRL, Key
+from akap_editor.app.commands.command import CTRL, SHIFT, Key
 from akap_editor.app.commands.palette import Entry, Palette, entries, match, ranked
 from akap_editor.app.commands.registry import COMMANDS, PALETTE_ITEMS
 
@@ -76,7 +76,7 @@ def test_a_command_is_found_and_run(pinned, chord):
     type_into_palette(pinned, chord, "shmesh", Key.enter)
     assert not pinned.state.part(Palette).is_open
     assert pinned.state.view.show_mesh
-    pinned.key(Key.m)
+    pinned.key(SHIFT | Key.m)
     assert not pinned.state.view.show_mesh, "the keys are the canvas' again"
 
 

@@ -5,7 +5,6 @@ import glfw
 import numpy as np
 import pytest
 
-from akap_editor.app.canvas.scene import scene_overlays
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
@@ -265,6 +264,10 @@ CASES = {
     "About akap-editor": (nothing, lambda ui: ui.state.part(AboutDialog).is_open),
     "Pin Tool": (with_tool("hand_tool"), lambda ui: ui.editor.chosen_tool is ui.editor.pins_tool),
     "Hand Tool": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.hand_tool),
+    "Zoom Tool": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.zoom_tool),
+    "Hide Panels": (nothing, lambda ui: ui.editor.canvas[0] == 0 and ui.editor.canvas[2] == 1280),
+    "Full Screen": (nothing, lambda ui: ui.state.is_full_screen),
+    "Finish": (one_selected, lambda ui: not ui.editor.selection),
     "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.brush_tool),
     "Erase Stiffness": (with_tool("brush_tool"), lambda ui: ui.editor.brush_tool.brush.erasing),
     "Decrease Brush Size": (
@@ -404,17 +407,68 @@ def test_undo_and_redo_restore_bit_for_bit(pinned):
 
 
 def test_a_shortcut_within_one_frame_is_not_its_key_alone(pinned):
-    pinned.editor.select({1})
+    """Ctrl+B is no shortcut, B alone is the brush."""
     io = imgui.get_io()
     io.add_key_event(CTRL, True)
-    io.add_key_event(Key.d, True)
+    io.add_key_event(Key.b, True)
     on_key(None, glfw.KEY_LEFT_CONTROL, 0, glfw.RELEASE, 0)
     io.add_key_event(CTRL, False)
-    io.add_key_event(Key.d, False)
+    io.add_key_event(Key.b, False)
     pinned.settle()
-    assert not pinned.editor.selection
-    assert scene_overlays(pinned.state, 1.0).face_colors is None
+    assert pinned.editor.chosen_tool is pinned.editor.pins_tool
     assert not io.key_ctrl
+
+
+def test_escape_cancels_first_and_then_deselects(pinned):
+    pinned.editor.select({3})
+    start, seen = pinned.to_screen(pinned.pin_position(3)), []
+
+    def act(hand):
+        pinned.begin_drag(hand, start)
+        hand.mouse_move_to_pos(imgui.ImVec2(start[0], start[1] - 50))
+        hand.key_press(Key.escape)
+        hand.mouse_up(0)
+        hand.yield_(2)
+        seen.append((pinned.session.history.labels, pinned.editor.selection))
+        hand.key_press(Key.escape)
+        hand.yield_(2)
+        seen.append((pinned.session.history.labels, pinned.editor.selection))
+
+    pinned.do(act)
+    assert seen == [([], {3}), ([], frozenset())]
+
+
+def test_enter_keeps_what_a_drag_has_done(pinned):
+    start = pinned.to_screen(pinned.pin_position(3))
+
+    def act(hand):
+        pinned.begin_drag(hand, start)
+        hand.mouse_move_to_pos(imgui.ImVec2(start[0], start[1] - 50))
+        hand.key_press(Key.enter)
+        hand.yield_(2)
+        hand.mouse_move_to_pos(imgui.ImVec2(start[0] + 90, start[1]))
+        hand.mouse_up(0)
+
+    pinned.do(act)
+    assert pinned.session.history.labels == ["Drag Pin"]
+    assert pinned.to_screen(pinned.pin_position(3)) == pytest.approx((start[0], start[1] - 50), abs=1.5)
+
+
+def test_no_letter_alone_toggles_an_overlay():
+    view = dict(MENUS)["View"]
+    switches = [item for item in view if isinstance(item, Command) and item.checked is not None]
+    letters = {getattr(Key, letter) for letter in "abcdefghijklmnopqrstuvwxyz"}
+    assert len(switches) > 8
+    assert not [item.label for item in switches if letters & set(map(Key, filter(_is_key, item.chords)))]
+
+
+def _is_key(chord):
+    return chord in set(map(int, Key))
+
+
+def test_all_keys_of_commands_are_different():
+    chords = [int(chord) for command in COMMANDS for chord in command.chords]
+    assert sorted(chords) == sorted(set(chords))
 
 
 def test_space_presses_no_button_that_was_clicked_before(pinned):

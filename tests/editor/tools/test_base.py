@@ -95,10 +95,13 @@ CASES = {
         markers=frozenset({"pin_targets"}),
     ),
     "pin pressed with Alt": Case("RemovingPin", press(NECK, alt=True), "Remove Pin"),
-    "pin pressed right": Case("OpeningPinMenu", press(NECK, "right"), button="right"),
+    "pin pressed right": Case("OpeningMenu", press(NECK, "right"), button="right"),
     "pin pressed right by the hand": Case(
-        "OpeningPinMenu", press(NECK, "right"), button="right", tool="hand_tool"
+        "OpeningMenu", press(NECK, "right"), button="right", tool="hand_tool"
     ),
+    "canvas pressed right": Case("OpeningMenu", press(OUTSIDE, "right"), button="right"),
+    "zoom pressed": Case("PointingZoom", press(NECK), cursor="zoom", tool="zoom_tool"),
+    "zoomed": Case("Zooming", drag(NECK, (70.0, 70.0)), cursor="zoom", tool="zoom_tool"),
     "canvas pressed": Case("PointingCanvas", press(OUTSIDE), cursor="arrow"),
     "box": Case(
         "RubberBand", drag(OUTSIDE, (70.0, 70.0)), cursor="arrow", markers=frozenset({"selection_box"})
@@ -123,7 +126,7 @@ CASES = {
         tool="brush_tool",
     ),
 }
-IDLE = {"pins_tool": "PinsIdle", "hand_tool": "HandIdle", "brush_tool": "BrushIdle"}
+IDLE = {"pins_tool": "PinsIdle", "hand_tool": "HandIdle", "brush_tool": "BrushIdle", "zoom_tool": "ZoomIdle"}
 
 every_state = pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 

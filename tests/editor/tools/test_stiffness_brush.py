@@ -40,6 +40,28 @@ def at(d: Driver, place: tuple[float, float]) -> float:
     return 1.0 if stiffness is None else float(stiffness[found.faces[0]])
 
 
+def test_a_click_with_shift_paints_a_straight_line_from_the_end_of_the_last_stroke(pinned):
+    stroke(pinned, (20.0, 40.0))
+    assert at(pinned, (60.0, 40.0)) == 1.0
+    place = pinned.editor.camera.to_screen((100.0, 40.0))
+    for kind in ("press", "release"):
+        pinned.handle(PointerEvent(kind, place, shift=True))
+    stiff = [at(pinned, (x, 40.0)) for x in (20.0, 40.0, 60.0, 80.0, 100.0)]
+    assert min(stiff) == max(stiff) == 100.0
+    pinned.undo()
+    assert at(pinned, (60.0, 40.0)) == 1.0
+    assert at(pinned, (20.0, 40.0)) == 100.0
+
+
+def test_shift_without_an_earlier_stroke_paints_where_it_is(pinned):
+    pinned.editor.chosen_tool = pinned.editor.brush_tool
+    place = pinned.editor.camera.to_screen((100.0, 40.0))
+    for kind in ("press", "release"):
+        pinned.handle(PointerEvent(kind, place, shift=True))
+    assert at(pinned, (100.0, 40.0)) == 100.0
+    assert at(pinned, (30.0, 40.0)) == 1.0
+
+
 def test_a_stroke_stiffens_what_it_covers_and_is_one_entry(pinned):
     before, pose = bits(pinned.state), pinned.state.positions
     stroke(pinned, (70.0, 40.0), (95.0, 40.0))
