@@ -117,7 +117,7 @@ class Window:
         self._drop_callback = glfw_window.set_drop_callback(self.handle, self.drop)
         glfw.set_window_refresh_callback(self.handle, lambda _: self._on_refresh())
         glfw.set_window_content_scale_callback(self.handle, lambda *_: self._apply_scale())
-        glfw.set_window_close_callback(self.handle, self._on_close)
+        glfw.set_window_close_callback(self.handle, lambda _: self.request_close())
 
     def _start_imgui(self) -> None:
         imgui.create_context()
@@ -390,11 +390,8 @@ class Window:
 
     def request_close(self) -> None:
         """Close the window after the next frame; ask about unsaved changes first."""
-        self.state.run_after_frame(lambda: files.quit_program(self.state))
-
-    def _on_close(self, _: Any) -> None:
         glfw.set_window_should_close(self.handle, False)
-        self.request_close()
+        self.state.run_after_frame(lambda: files.quit_program(self.state))
 
     def _on_refresh(self) -> None:
         """Draw at once: while the user resizes a window, some systems do not return to the loop."""

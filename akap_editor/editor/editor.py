@@ -156,9 +156,8 @@ class Editor:
             if isinstance(event, ScrollEvent):
                 if self.tool.scroll(event):
                     return
-                step = WHEEL_STEP * self.ui_scale
-                self.camera = self.camera.panned(step * event.sideways, 0.0)
-                self.camera = self.camera.zoomed(ZOOM_STEP**event.amount, event.position)
+                panned = self.camera.panned(WHEEL_STEP * self.ui_scale * event.sideways, 0.0)
+                self.camera = panned.zoomed(ZOOM_STEP**event.amount, event.position)
             else:
                 self._handle_pointer(event)
         except Exception:
