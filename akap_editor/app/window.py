@@ -29,7 +29,7 @@ from .canvas.scene import Scene
 from .canvas.waiting import WaitingPlate
 from .commands.focus_navigation import handle_focus_keys
 from .commands.palette import Palette
-from .commands.registry import run_pressed
+from .commands.registry import restore_keys, run_pressed
 from .dialogs import dialogs
 from .dialogs.file_dialog import FileDialog, has_native_dialogs
 from .dialogs.recovery import RecoveryDialog
@@ -78,6 +78,7 @@ class Window:
     ) -> None:
         self._woken, self._open_lock, self._is_open = Event(), Lock(), False
         self.state = AppState.from_preferences(preferences or Preferences(), self.wake)
+        restore_keys(self.state.preferences)
         self.state.autosave = autosave
         if autosave is not None:
             autosave.remove_leftovers()

@@ -7,21 +7,10 @@ from pathlib import Path
 from imgui_bundle import imgui
 
 from ..app_state import AppState
+from .keymap import ALT, CTRL, KEYMAP, SHIFT, Key, chord_name
 
-Key = imgui.Key
+__all__ = ["ALT", "CTRL", "SHIFT", "Command", "Key", "Menu", "Submenu", "chord_name"]
 
-
-class Modifier(int):
-    """A modifier key; ``CTRL | Key.s`` is a chord.
-
-    Python before 3.11.4 cannot combine members of ImGui's enumeration, whose values have several bits.
-    """
-
-    def __or__(self, other: int) -> "Modifier":
-        return Modifier(int(self) | int(other))
-
-
-CTRL, SHIFT, ALT = map(Modifier, (Key.mod_ctrl, Key.mod_shift, Key.mod_alt))
 CONTEXT_MENU_KEYS = (SHIFT | Key.f10, Key.menu)
 _NAVIGATION_KEYS = frozenset(
     int(key)
@@ -31,23 +20,6 @@ _NAVIGATION_KEYS = frozenset(
         *(Key.f10, Key.menu, Key.tab),
     )
 )
-_KEY_NAMES = {
-    "_0": "0",
-    "_1": "1",
-    "delete": "Del",
-    "equal": "+",
-    "minus": "-",
-    "left_bracket": "[",
-    "right_bracket": "]",
-    "comma": ",",
-    "period": ".",
-    "left_arrow": "Left",
-    "right_arrow": "Right",
-    "up_arrow": "Up",
-    "down_arrow": "Down",
-    "page_up": "PgUp",
-    "page_down": "PgDn",
-}
 
 
 def always(_: AppState) -> bool:
@@ -88,7 +60,14 @@ class Command:
     @property
     def key_name(self) -> str:
         """The first key in words, e.g. "Ctrl+Shift+S"; empty if there is none."""
-        return self.typed or (chord_name(self.chords[0]) if self.chords else "")
+        if self.typed and not KEYMAP.is_changed(self.label):
+            return self.typed
+        return chord_name(self.active_chords[0]) if self.active_chords else ""
+
+    @property
+    def active_chords(self) -> tuple[int, ...]:
+        """Its keys: those that the user has chosen, or else ``chords``."""
+        return KEYMAP.chords(self.label, self.chords)
 
     def is_checked(self, state: AppState) -> bool:
         """Whether it is a switch that is on."""
@@ -96,9 +75,10 @@ class Command:
 
     def is_pressed(self) -> bool:
         """Whether one of its keys was pressed in this frame."""
-        if self.typed and ord(self.typed) in imgui.get_io().input_queue_characters:
+        is_typed = self.typed and not KEYMAP.is_changed(self.label)
+        if is_typed and ord(self.typed) in imgui.get_io().input_queue_characters:
             return True
-        return any(_is_chord_pressed(int(chord), self.repeats) for chord in self.chords)
+        return any(_is_chord_pressed(int(chord), self.repeats) for chord in self.active_chords)
 
 
 @dataclass(frozen=True)
@@ -110,17 +90,6 @@ class Submenu:
 
 
 Menu = tuple[str, tuple[Command | Submenu | None, ...]]  # its name and its lines; None: a separator
-
-
-def chord_name(chord: int) -> str:
-    """The name of a chord, with key names as on a keyboard."""
-    parts = []
-    for modifier, name in ((CTRL, "Ctrl"), (ALT, "Alt"), (SHIFT, "Shift")):
-        if chord & int(modifier):
-            parts.append(name)
-            chord &= ~int(modifier)
-    name = str(Key(chord).name)
-    return "+".join([*parts, _KEY_NAMES.get(name, name.upper() if len(name) == 1 else name.capitalize())])
 
 
 def context_menu_pressed() -> bool:

@@ -16,9 +16,12 @@ from .. import file_commands, files
 from ..app_state import AppState
 from ..dialogs.about import AboutDialog
 from ..dialogs.export.pose import ExportPoseDialog
+from ..dialogs.preferences_page import PreferencesPage
 from ..panels.method_parameters import with_default_values
+from ..preferences import Preferences
 from .command import ALT, CTRL, SHIFT, Command, Key, Menu, Submenu, always, has_drawing
 from .keyboard_pointer import CONTEXT_MENU, CROSSHAIR, FINISH, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
+from .keymap import KEYMAP
 from .palette import Palette
 from .shortcuts_page import ShortcutsPage
 from .timeline import ANIMATION, has_selected_keyframes
@@ -234,10 +237,15 @@ def _open_palette(state: AppState) -> None:
     state.part(Palette).open(PALETTE_ITEMS)
 
 
+def _open_preferences(state: AppState) -> None:
+    state.part(PreferencesPage).open(COMMANDS)
+
+
 def _open_shortcuts(state: AppState) -> None:
     state.part(ShortcutsPage).open(MENUS, COMMANDS, SHORTCUTS)
 
 
+PREFERENCES = Command("Preferences...", _open_preferences, (CTRL | Key.comma,))
 PALETTE = Command("Find Command...", _open_palette, (CTRL | Key.k, Key.f3))
 SHORTCUTS = Command("Keyboard Shortcuts", _open_shortcuts, (Key.f1,), typed="?")
 ABOUT = Command("About akap-editor", lambda state: state.part(AboutDialog).open())
@@ -305,7 +313,8 @@ MENUS: tuple[Menu, ...] = (
             *(REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT),
             *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, FINISH, None),
             *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE, None),
-            *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS, CLEAR_STIFFNESS),
+            *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS, CLEAR_STIFFNESS, None),
+            PREFERENCES,
         ),
     ),
     (
@@ -328,6 +337,11 @@ COMMANDS = (
     *PANNING,
 )
 PALETTE_ITEMS = (*(item for _, items in MENUS for item in items if item is not None), *COMMANDS)
+
+
+def restore_keys(preferences: Preferences) -> None:
+    """Give the commands the keys that the user has chosen in an earlier run."""
+    KEYMAP.restore(preferences.get("keys", {}))
 
 
 def run_pressed(state: AppState) -> None:

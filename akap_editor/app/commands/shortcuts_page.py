@@ -47,11 +47,11 @@ def groups(menus: Sequence[Menu], commands: Sequence[Command]) -> list[Group]:
     listed = [("Mouse", list(_MOUSE))]
     in_menus: set[int] = set()
     for name, items in menus:
-        with_keys = [item for item in items if isinstance(item, Command) and item.chords]
+        with_keys = [item for item in items if isinstance(item, Command) and item.active_chords]
         in_menus.update(map(id, with_keys))
         listed.append((name, [(command.key_name, command.name) for command in with_keys]))
     listed[-1][1].extend(_FOCUS)
-    others = [command for command in commands if command.chords and id(command) not in in_menus]
+    others = [command for command in commands if command.active_chords and id(command) not in in_menus]
     listed.insert(_TOOLS_INDEX, ("Tools", [(command.key_name, command.name) for command in others]))
     return [(title, lines) for title, lines in listed if lines]
 

@@ -10,6 +10,7 @@ from .about import AboutDialog
 from .export.animation import ExportAnimationDialog
 from .export.pose import ExportPoseDialog
 from .file_dialog import FileDialog
+from .preferences_page import PreferencesPage
 from .recovery import RecoveryDialog
 from .replace_files import ReplaceFilesDialog
 from .unsaved_changes import UnsavedChangesDialog
@@ -35,6 +36,7 @@ DIALOGS: tuple[type[Dialog], ...] = (
     ExportAnimationDialog,
     ShortcutsPage,
     AboutDialog,
+    PreferencesPage,
 )
 
 

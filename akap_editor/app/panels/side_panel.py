@@ -122,7 +122,7 @@ def _draw_button(state: AppState, command: Command, size: float) -> None:
         widgets.run(state, command)
     imgui.end_disabled()
     imgui.pop_style_color(2)
-    widgets.show_tooltip(command.name + (f"  ({command.key_name})" if command.chords else ""))
+    widgets.show_tooltip(command.name + (f"  ({command.key_name})" if command.active_chords else ""))
 
 
 def _draw_side_panel(state: AppState, scale: float) -> None:

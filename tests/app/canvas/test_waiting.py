@@ -25,9 +25,9 @@ def held_opening(monkeypatch):
     """Lets files open only after `set`."""
     may_open = Event()
 
-    def open_later(path):
+    def open_later(path, **options):
         assert may_open.wait(DEADLINE)
-        return open_document(path)
+        return open_document(path, **options)
 
     monkeypatch.setattr(files, "open_document", open_later)
     yield may_open

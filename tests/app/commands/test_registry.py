@@ -14,6 +14,7 @@ from akap_editor.app.commands.shortcuts_page import ShortcutsPage
 from akap_editor.app.dialogs.about import AboutDialog
 from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
+from akap_editor.app.dialogs.preferences_page import PreferencesPage
 from akap_editor.app.glfw_window import on_key
 from akap_editor.editor import gestures
 from akap_editor.editor.camera import Camera
@@ -261,6 +262,7 @@ CASES = {
     "Show Timeline": (nothing, lambda ui: ui.state.timeline.is_shown),
     "Find Command...": (watch_palette, lambda ui: any(ui.palettes)),
     "Keyboard Shortcuts": (nothing, lambda ui: ui.state.part(ShortcutsPage).is_open),
+    "Preferences...": (nothing, lambda ui: ui.state.part(PreferencesPage).is_open),
     "About akap-editor": (nothing, lambda ui: ui.state.part(AboutDialog).is_open),
     "Pin Tool": (with_tool("hand_tool"), lambda ui: ui.editor.chosen_tool is ui.editor.pins_tool),
     "Hand Tool": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.hand_tool),

@@ -1,0 +1,118 @@
+"""The page of preferences: the keys of all commands, which can be changed."""
+
+from collections.abc import Sequence
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from .. import widgets
+from ..app_state import AppState
+from ..commands.command import Command
+from ..commands.keymap import KEYMAP, chord_name, pressed_chord
+from ..theme import ACCENT, SECONDARY
+
+_WIDTH, _HEIGHT = 520, 380  # of the list, in design points
+_OTHER_HEIGHT = 190  # of everything around the list, in design points
+_NAME_WIDTH = 230  # design points
+_HINT = "Type a few letters of a command"
+
+
+class PreferencesPage:
+    """Lists commands with their keys. A click on a key, or on the plus, waits for the new one."""
+
+    def __init__(self) -> None:
+        self.is_open = False
+        self._commands: Sequence[Command] = ()
+        self._query, self._note = "", ""
+        self._awaited: tuple[Command, int] | None = None  # a command, and the index of the key to replace
+
+    def open(self, commands: Sequence[Command]) -> None:
+        """Show the page. commands: those that it lists."""
+        self.is_open, self._commands = True, sorted(commands, key=lambda command: command.name)
+        self._query = self._note = ""
+        self._awaited = None
+
+    def draw(self, state: AppState, scale: float) -> None:
+        """Draw one frame. scale: points per design point."""
+        if not widgets.begin_dialog("Preferences"):
+            return
+        was_awaiting = self._awaited is not None
+        self._read_key(state)
+        imgui.set_next_item_width(_WIDTH * scale)
+        imgui.begin_disabled(was_awaiting)
+        _, self._query = imgui.input_text_with_hint("##query", _HINT, self._query)
+        imgui.end_disabled()
+        height = min(_HEIGHT * scale, imgui.get_main_viewport().size.y - _OTHER_HEIGHT * scale)
+        imgui.begin_child("##keys", ImVec2(_WIDTH * scale, height), widgets.NAV_FLATTENED)
+        for command in self._commands:
+            if self._query.lower() in command.name.lower():
+                self._draw_command(state, command, scale)
+        imgui.end_child()
+        note = "Press the new key, or Esc to keep the old one" if self._awaited is not None else self._note
+        imgui.text_colored(ImVec4(*ACCENT), widgets.shortened(note, _WIDTH * scale))
+        if widgets.button("Reset All Keys") and not was_awaiting:
+            KEYMAP.reset()
+            self._store(state, "All commands have their first keys again")
+        imgui.same_line()
+        is_closed = widgets.button("Close", primary=True) or widgets.cancel_pressed()
+        if is_closed and not was_awaiting:
+            self.is_open = False
+            widgets.close_popup()
+        imgui.end_popup()
+
+    def _draw_command(self, state: AppState, command: Command, scale: float) -> None:
+        """Draw the name of a command, a button for each of its keys, and one that adds a key."""
+        is_changed = KEYMAP.is_changed(command.label)
+        imgui.align_text_to_frame_padding()
+        name = widgets.shortened(command.name, (_NAME_WIDTH - 10) * scale)
+        imgui.text_colored(ImVec4(*(ACCENT if is_changed else SECONDARY)), name)
+        imgui.same_line(_NAME_WIDTH * scale)
+        chords = command.active_chords
+        for index, chord in enumerate(chords):
+            label = "..." if self._awaited == (command, index) else chord_name(chord)
+            if imgui.button(f"{label}###key {index} of {command.label}"):
+                self._awaited = command, index
+            widgets.show_tooltip("Click for another key, right-click to remove this one")
+            if imgui.is_item_clicked(imgui.MouseButton_.right):
+                self._change(state, command, (*chords[:index], *chords[index + 1 :]))
+            imgui.same_line(0, 4 * scale)
+        label = "..." if self._awaited == (command, len(chords)) else "+"
+        if imgui.button(f"{label}###key {len(chords)} of {command.label}"):
+            self._awaited = command, len(chords)
+        widgets.show_tooltip("Add a key")
+        if is_changed:
+            imgui.same_line(0, 4 * scale)
+            if imgui.button(f"{icons.ICON_FA_ARROW_ROTATE_LEFT}###reset {command.label}"):
+                self._change(state, command, command.chords)
+            widgets.show_tooltip("The first keys of this command")
+
+    def _read_key(self, state: AppState) -> None:
+        """Take the pressed key for the command that waits for one; Esc ends the wait."""
+        if self._awaited is None:
+            return
+        if imgui.is_key_pressed(imgui.Key.escape, False):
+            self._awaited = None
+            return
+        chord = pressed_chord()
+        if chord is None:
+            return
+        (command, index), self._awaited = self._awaited, None
+        chords = list(command.active_chords)
+        chords[index : index + 1] = [chord]
+        self._change(state, command, tuple(dict.fromkeys(map(int, chords))))
+
+    def _change(self, state: AppState, command: Command, chords: tuple[int, ...]) -> None:
+        """Give a command its keys; a command that had one of them loses it, and the page says so."""
+        taken = []
+        for other in self._commands:
+            kept = tuple(chord for chord in other.active_chords if int(chord) not in set(map(int, chords)))
+            if other is not command and len(kept) < len(other.active_chords):
+                KEYMAP.change(other.label, kept, other.chords)
+                taken.append(other.name)
+        KEYMAP.change(command.label, chords, command.chords)
+        self._store(state, f"Taken from {', '.join(taken)}" if taken else "")
+
+    def _store(self, state: AppState, note: str) -> None:
+        self._note = note
+        state.preferences.put("keys", KEYMAP.to_json())
+        state.save_preferences()
