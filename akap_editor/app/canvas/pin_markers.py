@@ -65,7 +65,7 @@ def _draw_pins(
         center = centers[pin.id]
         if pin.id in markers.pin_targets:
             ends = ImVec2(*center), ImVec2(*markers.pin_targets[pin.id])
-            draw.add_line(*ends, packed(ACCENT, 0.8), 1.5 * scale)
+            draw.add_line(*ends, packed(ACCENT, 0.4), 1.0 * scale)
         draw_pin(draw, center, scale, pin.id in editor.selection, pin.id == markers.hovered_pin)
         if pin.is_locked:
             _draw_lock(draw, center)

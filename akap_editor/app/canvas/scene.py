@@ -12,6 +12,7 @@ from ...render.overlays import NO_OVERLAYS, Overlays
 from ...render.renderer import CANVAS, Background, Renderer
 from ...render.shaders import View
 from ..app_state import AppState
+from .checkerboard import board_background
 from .split_view import comparison_camera, right_half
 from .view_options import onion_poses
 
@@ -101,11 +102,13 @@ def scene_content(
     state: AppState, size: tuple[int, int], window: tuple[int, int], scale: float
 ) -> SceneContent:
     """The content of the next frame; arguments as in `Scene.draw`."""
-    background = replace(CANVAS, cell=CANVAS.cell * scale) if state.view.show_checkerboard else PLAIN
     document, density = state.document, size[0] / max(window[0], 1)
     overlays = scene_overlays(state, scale * density)
     if document is None:
-        return SceneContent(size, background)
+        return SceneContent(size, PLAIN)
+    background = PLAIN
+    if state.view.show_checkerboard:
+        background = board_background(document.drawing, state.view.board, CANVAS.cell * scale)
     view = state.editor.camera.view(*window)
     main = PosedDrawing(document.drawing, document.state.positions, document.draw_order, view)
     comparison = _comparison(state, size, window, density)

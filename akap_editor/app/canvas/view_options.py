@@ -16,6 +16,7 @@ from ...geometry.validation import Floats
 from ...io.images import read_image
 from ...render.colormaps import diverging, sequential
 from ...render.overlays import FaceColors, LineSegments, OnionPose, Overlays, Reference, Rgba
+from .checkerboard import BOARD_LABELS, BoardChoice
 from .vector_field_arrows import VectorFieldArrows, outlined
 
 Measure = Literal["area", "angle"]
@@ -41,14 +42,15 @@ STORED_SWITCHES = {  # name in the preferences: field
 class ViewOptions:
     """What is shown besides the drawing.
 
-    is_split: whether a second method is compared; show_vector_fields: while a pin is dragged;
-    distortion_measure: of the distortion map, None if it is off; distortion_range: index in
-    `DISTORTION_RANGES`; reference_path: the file of the reference picture, None if it has none.
+    board: the shade of the checkerboard; is_split: whether a second method is compared; show_vector_fields:
+    while a pin is dragged; distortion_measure: of the distortion map, None if it is off; distortion_range:
+    index in `DISTORTION_RANGES`; reference_path: the file of the reference picture, None if it has none.
     """
 
     show_mesh: bool = False
     show_pins: bool = True
     show_checkerboard: bool = True
+    board: BoardChoice = "automatic"
     is_split: bool = False
     show_vector_fields: bool = False
     show_rest_pose: bool = False
@@ -91,6 +93,7 @@ class ViewOptions:
             **switches,
             "heat": self.distortion_measure or "",
             "range": DISTORTION_RANGES[self.distortion_range],
+            "board": self.board,
             "reference": str(self.reference_path.absolute()) if self.reference_path is not None else "",
         }
 
@@ -104,6 +107,7 @@ class ViewOptions:
                 setattr(self, attribute, value)
         measure = stored.get("heat")
         self.distortion_measure = next((name for name in DISTORTION_SCALES if name == measure), None)
+        self.board = next((name for name in BOARD_LABELS if name == stored.get("board")), "automatic")
         if stored.get("range") in DISTORTION_RANGES:
             self.distortion_range = DISTORTION_RANGES.index(stored["range"])
         if isinstance(path := stored.get("reference"), str) and path:

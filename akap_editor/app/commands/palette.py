@@ -1,5 +1,6 @@
 """The command palette: finds commands and files by a few of their letters."""
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ from .. import files, widgets
 from ..app_state import AppState
 from ..theme import ACCENT, SECONDARY, TEXT, packed
 from .command import Command, Submenu
+from .synonyms import has_synonym
 
 _NAME = "##palette"
 _FLAGS = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
@@ -28,12 +30,16 @@ _MATCH, _WORD_START, _CONSECUTIVE, _LENGTH_COST = 1.0, 1.5, 1.7, 0.02
 
 @dataclass(frozen=True)
 class Entry:
-    """A line of the palette. key: of its command; enabled: whether it can be run now."""
+    """A line of the palette.
+
+    key: of its command; enabled: whether it can be run now; is_file: whether it opens a file.
+    """
 
     label: str
     run: Callable[[AppState], None]
     key: str = ""
     enabled: bool = True
+    is_file: bool = False
 
 
 Match = tuple[Entry, tuple[int, ...]]  # an entry, and the indices of the query's letters in its label
@@ -45,7 +51,7 @@ def entries(state: AppState, items: Iterable[Command | Submenu]) -> list[Entry]:
     for item in items:
         if isinstance(item, Submenu):
             for name, path in item.files(state):
-                listed.append(Entry(f"{item.label}: {name}", _opens(path)))
+                listed.append(Entry(f"{item.label}: {name}", _opens(path), is_file=True))
         else:
             listed.append(Entry(item.name, item.run, item.key_name, item.enabled(state)))
     return list({entry.label: entry for entry in listed}.values())
@@ -84,13 +90,26 @@ def match(query: str, label: str) -> tuple[float, tuple[int, ...]] | None:
 
 
 def ranked(query: str, candidates: list[Entry]) -> list[Match]:
-    """The entries that match, the highest score first, disabled ones last."""
-    matching = [(match(query, entry.label), entry) for entry in candidates]
-    scored = [(result[0], result[1], entry) for result, entry in matching if result is not None]
+    """The entries that match: commands before files, by their labels before by synonyms, disabled ones last.
+
+    A label in which the query is a word or the beginning of one also ranks before a synonym; one in which the
+    letters are only scattered comes after it.
+    """
+    found = []
+    for entry in candidates:
+        result = match(query, entry.label)
+        is_synonym = has_synonym(query, entry.label)
+        if result is None and not is_synonym:
+            continue
+        score, letters = result or (0.0, ())
+        is_together = re.search(rf"\b{re.escape(query.strip())}", entry.label, re.IGNORECASE) is not None
+        kind = 0 if is_together else 1 if is_synonym else 2
+        found.append(((not entry.enabled, entry.is_file, kind, -score), entry, letters))
     if query.strip():
-        scored.sort(key=lambda each: -each[0])
-    scored.sort(key=lambda each: not each[2].enabled)
-    return [(entry, indices) for _, indices, entry in scored]
+        found.sort(key=lambda each: each[0])
+    else:
+        found.sort(key=lambda each: each[0][:2])
+    return [(entry, letters) for _, entry, letters in found]
 
 
 class Palette:
@@ -159,7 +178,7 @@ def _draw_list(matches: list[Match], selected: int, scrolls: bool, scale: float)
     imgui.begin_child("##found", ImVec2(0, height), 0, imgui.WindowFlags_.no_nav)
     imgui.set_cursor_pos_y(imgui.get_style().item_spacing.y / 2)  # room for the highlight of the first line
     if not matches:
-        widgets.secondary_text("No command has these letters in this order.")
+        widgets.secondary_text("No command is called like that.")
     for index, (entry, letters) in enumerate(matches):
         corner, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
         flags = 0 if entry.enabled else imgui.SelectableFlags_.disabled

@@ -65,7 +65,7 @@ FIT = Command(
     "Fit in Window",
     lambda state: state.editor.fit(),
     (Key.f, CTRL | Key._0),
-    icons.ICON_FA_EXPAND,
+    icons.ICON_FA_MAXIMIZE,
     has_drawing,
 )
 ACTUAL_SIZE = Command("Actual Size", _show_actual_size, (Key._1, CTRL | Key._1), "", has_drawing)
@@ -86,7 +86,7 @@ ZOOM_OUT = Command(
     has_drawing,
     repeats=True,
 )
-SHOW_MESH = _switch("Show Mesh", "show_mesh", (SHIFT | Key.m,), icons.ICON_FA_DRAW_POLYGON)
+SHOW_MESH = _switch("Show Mesh", "show_mesh", (SHIFT | Key.m,), icons.ICON_FA_CIRCLE_NODES)
 SHOW_PINS = _switch("Show Pins", "show_pins", (SHIFT | Key.p,))
 SHOW_FIELD = _switch("Show Vector Field", "show_vector_fields", (SHIFT | Key.v,), "", has_drawing)
 SHOW_AREA = _distortion("Show Area Distortion", "area", SHIFT | Key.d)

@@ -12,7 +12,7 @@ from ..pending_values import PendingValues
 from ..theme import SECONDARY, TEXT
 
 _ROWS = 6  # pins that are visible at once
-_ICON_WIDTH, _DEPTH_WIDTH = 1.5, 3.0  # times the font size
+_ICON_WIDTH, _DEPTH_WIDTH = 1.7, 3.0  # times the font size
 
 
 def pin_count(state: AppState) -> str:

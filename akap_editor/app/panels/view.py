@@ -4,6 +4,7 @@ from imgui_bundle import imgui
 
 from .. import widgets
 from ..app_state import AppState
+from ..canvas.checkerboard import BOARD_LABELS
 from ..canvas.view_options import DISTORTION_RANGES
 from ..commands.registry import OVERLAYS, SHOW_CHECKERBOARD, SHOW_MESH, SHOW_PINS, SHOW_REFERENCE
 
@@ -17,6 +18,15 @@ def draw(state: AppState, scale: float) -> None:
             label = command.label.removeprefix("Show ").capitalize()
             if widgets.switch(label, command.is_checked(state), f"Key: {command.key_name}")[0]:
                 widgets.run(state, command)
+    if state.view.show_checkerboard:
+        imgui.align_text_to_frame_padding()
+        imgui.text("Board")
+        imgui.same_line()
+        imgui.set_next_item_width(-1)
+        names = list(BOARD_LABELS)
+        _, index = imgui.combo("##board", names.index(state.view.board), list(BOARD_LABELS.values()))
+        state.view.board = names[index]
+        widgets.show_tooltip("Shade of the checkerboard. Automatic: so that the rim of the drawing is seen.")
     if state.view.distortion_measure is not None:
         imgui.align_text_to_frame_padding()
         imgui.text("Scale ends at")

@@ -16,6 +16,7 @@ from .track import RED
 
 _HEIGHT = 64  # design points, as all sizes here; the same in both modes, so that the canvas stays
 _BUTTON_WIDTH, _BUTTON_HEIGHT = 30, 28
+_MIN_LABELED_WIDTH = 800  # of the panel for names beside the icons of the modes
 _TRACK_RISE = 10  # the top of the keyframe track above that of the buttons
 _MODES: tuple[tuple[TimelineMode, str, str], ...] = (
     ("session", icons.ICON_FA_CLOCK_ROTATE_LEFT, "Session: look back at what was done, and continue there"),
@@ -63,11 +64,13 @@ def _draw_content(state: AppState, scale: float) -> None:
 
 
 def _draw_mode_buttons(state: AppState, scale: float) -> None:
-    """Draw a button for each mode."""
+    """Draw a button for each mode, with its name where there is room."""
+    has_room = imgui.get_window_width() >= _MIN_LABELED_WIDTH * scale
     for number, (mode, icon, tooltip) in enumerate(_MODES):
         if number:
             imgui.same_line(0, 2 * scale)
-        if _icon_button(icon, mode, scale, ACCENT if state.timeline.mode == mode else SECONDARY):
+        label = f"{icon}  {mode.capitalize()}" if has_room else icon
+        if _icon_button(label, mode, scale, ACCENT if state.timeline.mode == mode else SECONDARY):
             state.timeline.set_mode(mode)
         widgets.show_tooltip(tooltip)
 
@@ -102,8 +105,10 @@ def _draw_playback_buttons(state: AppState, scale: float) -> None:
 
 
 def _icon_button(icon: str, name: str, scale: float, color: Rgba) -> bool:
-    """Draw a button with an icon; return whether it was pressed."""
+    """Draw a button with an icon, or with icon and text; return whether it was pressed."""
     imgui.push_style_color(imgui.Col_.text, ImVec4(*color))
-    is_pressed = imgui.button(f"{icon}##{name}", ImVec2(_BUTTON_WIDTH * scale, _BUTTON_HEIGHT * scale))
+    padding = 12 * scale
+    width = max(_BUTTON_WIDTH * scale, imgui.calc_text_size(icon).x + padding)
+    is_pressed = imgui.button(f"{icon}##{name}", ImVec2(width, _BUTTON_HEIGHT * scale))
     imgui.pop_style_color()
     return bool(is_pressed)

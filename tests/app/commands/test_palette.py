@@ -6,6 +6,7 @@ import pytest
 from akap_editor.app.commands.command import CTRL, SHIFT, Key
 from akap_editor.app.commands.palette import Entry, Palette, entries, match, ranked
 from akap_editor.app.commands.registry import COMMANDS, PALETTE_ITEMS
+from akap_editor.app.commands.synonyms import SYNONYMS
 
 
 def order(query, *labels):
@@ -42,11 +43,44 @@ def test_the_places_are_those_of_the_letters():
     assert score > match("rvlpis", label)[0]
 
 
+@pytest.mark.parametrize(
+    ("query", "expected"),
+    [
+        ("smooth", "Remember Rest Shape"),
+        ("puppet", "Pin Tool"),
+        ("warp", "Pin Tool"),
+        ("export gif", "Export Animation"),
+        ("gif", "Export Animation"),
+        ("hotkeys", "Keyboard Shortcuts"),
+        ("wireframe", "Show Mesh"),
+        ("png", "Export"),
+        ("select none", "Deselect"),
+        ("magn", "Zoom Tool"),
+    ],
+)
+def test_words_of_other_programs_find_commands(pinned, query, expected):
+    found = [entry.label for entry, _ in ranked(query, entries(pinned.state, PALETTE_ITEMS))]
+    assert expected in found[:3]
+
+
+def test_every_synonym_is_that_of_a_command():
+    assert set(SYNONYMS) <= {command.name for command in COMMANDS}
+
+
+@pytest.mark.parametrize("query", ["", "o", "cat", "op", "show", "a"])
+def test_commands_come_before_drawings(pinned, query):
+    listed = [entry for entry, _ in ranked(query, entries(pinned.state, PALETTE_ITEMS)) if entry.enabled]
+    kinds = [entry.is_file for entry in listed]
+    assert kinds == sorted(kinds)
+    assert listed
+
+
 def test_without_a_query_all_is_listed_in_the_order_of_the_menus(pinned):
     found = entries(pinned.state, PALETTE_ITEMS)
     listed = [entry for entry, _ in ranked(" ", found)]
     assert len(listed) == len(found)
-    assert [e for e in listed if e.enabled] == [e for e in found if e.enabled]
+    commands = [entry for entry in found if entry.enabled and not entry.is_file]
+    assert [entry for entry in listed if entry.enabled][: len(commands)] == commands
     states = [entry.enabled for entry in listed]
     assert states == sorted(states, reverse=True), "what makes no sense now comes last"
 
