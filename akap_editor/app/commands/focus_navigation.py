@@ -9,6 +9,7 @@ _PANELS = (
     "Start",
     "Panel",
     "Tools",
+    "Brush",
     "Timeline",
     "Comparison",
     "##legend",

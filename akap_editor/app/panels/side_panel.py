@@ -54,7 +54,6 @@ class Section:
 
 # From top to bottom; each section is a module of this folder.
 SECTIONS = (
-    Section("Stiffness brush", stiffness_brush.draw, shown=stiffness_brush.is_shown),
     Section("Drawing", drawing.draw),
     Section("Pins", pins.draw, note=pins.pin_count),
     Section("Bending", bending.draw),
@@ -83,7 +82,9 @@ def draw(state: AppState, scale: float) -> tuple[float, float, float, float]:
         state.part(FirstSteps).draw(state, scale)
     viewport = imgui.get_main_viewport()
     left, top = viewport.work_pos.x, viewport.work_pos.y
-    return left, top, left + viewport.work_size.x, top + viewport.work_size.y
+    canvas = left, top, left + viewport.work_size.x, top + viewport.work_size.y
+    stiffness_brush.draw(state, canvas, scale)
+    return canvas
 
 
 def _draw_toolbar(state: AppState, scale: float) -> None:

@@ -1,4 +1,4 @@
-"""The Stiffness Brush section: the options of the brush, while it is the current tool."""
+"""The options of the stiffness brush: a bar over the top of the canvas, while it is the current tool."""
 
 from dataclasses import replace
 
@@ -12,7 +12,16 @@ from ..app_state import AppState
 from ..commands.registry import CLEAR_STIFFNESS, ERASE
 from ..theme import SECONDARY
 
-_LABEL_WIDTH = 6.0  # times the font size
+WINDOW = "Brush"  # name of ImGui's window
+_SLIDER_WIDTH, _LABEL_WIDTH = 13.0, 4.6  # times the font size
+_MARGIN = 10  # design points between the canvas and the bar
+_FLAGS = (
+    imgui.WindowFlags_.no_decoration
+    | imgui.WindowFlags_.no_move
+    | imgui.WindowFlags_.no_saved_settings
+    | imgui.WindowFlags_.always_auto_resize
+    | imgui.WindowFlags_.no_focus_on_appearing
+)
 
 
 def is_shown(state: AppState) -> bool:
@@ -20,31 +29,63 @@ def is_shown(state: AppState) -> bool:
     return state.document is not None and state.editor.chosen_tool is state.editor.brush_tool
 
 
-def draw(state: AppState, scale: float) -> None:
-    """Draw the section. scale: points per design point."""
-    assert state.document is not None
+def draw(state: AppState, canvas: tuple[float, float, float, float], scale: float) -> None:
+    """Draw the bar in one line, or in several on a narrow canvas, which stays where it is.
+
+    canvas: (left, top, right, bottom) in points; scale: points per design point.
+    """
+    if not is_shown(state) or state.document is None:
+        return
+    left, top, right, _ = canvas
+    imgui.set_next_window_pos(ImVec2(left + _MARGIN * scale, top + _MARGIN * scale))
+    imgui.set_next_window_bg_alpha(0.92)
+    if imgui.begin(WINDOW, None, _FLAGS)[0]:
+        is_wide = right - left > 48 * imgui.get_font_size()
+        _draw_options(state, is_wide, scale)
+        if not get_method(state.document.state.settings.method).deformer.takes_stiffness:
+            imgui.text_colored(ImVec4(*SECONDARY), "The current method ignores stiffness.")
+            widgets.show_tooltip("It is kept for other methods.")
+    imgui.end()
+
+
+def _draw_options(state: AppState, is_wide: bool, scale: float) -> None:
     brush = state.editor.brush_tool.brush
+    gap = 16 * scale
     limits = MIN_STIFFNESS, MAX_STIFFNESS
     factor = _slider("Strength", brush.factor, limits, "%.0f ×", "How many times stiffer painted areas are.")
+    if is_wide:
+        imgui.same_line(0, gap)
     limits = MIN_RADIUS, MAX_RADIUS
     radius = _slider("Size", brush.radius, limits, "%.0f px", "Radius on the screen. Keys: [ and ]")
     state.editor.brush_tool.brush = replace(brush, factor=factor, radius=radius)
-    if widgets.switch("Erase", brush.erasing, "Key: E, or drag with the right button")[0]:
+    if is_wide:
+        imgui.same_line(0, gap)
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
+    if widgets.switch("Erase", brush.erasing, f"Key: {ERASE.key_name}, or drag with the right button")[0]:
         widgets.run(state, ERASE)
-    if not get_method(state.document.state.settings.method).deformer.takes_stiffness:
-        widgets.secondary_text("The current method ignores stiffness; it is kept for other methods.")
+    imgui.same_line(0, gap)
     imgui.begin_disabled(not CLEAR_STIFFNESS.enabled(state))
-    if imgui.button(CLEAR_STIFFNESS.label, ImVec2(widgets.FULL, 0)):
+    if is_wide:
+        imgui.set_cursor_pos_y(imgui.get_style().window_padding.y)
+    if imgui.button(CLEAR_STIFFNESS.label):
         widgets.run(state, CLEAR_STIFFNESS)
     imgui.end_disabled()
 
 
 def _slider(label: str, value: float, limits: tuple[float, float], text_format: str, tooltip: str) -> float:
-    """Draw a label and a logarithmic slider; return its value."""
+    """Draw a label and a logarithmic slider of a fixed width; return its value."""
+    imgui.begin_group()
     imgui.align_text_to_frame_padding()
+    start = imgui.get_cursor_pos_x()
     imgui.text_colored(ImVec4(*SECONDARY), label)
     widgets.show_tooltip(tooltip)
-    imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
-    return widgets.slider(f"##{label}", value, limits, text_format, imgui.SliderFlags_.logarithmic, tooltip)[
-        1
-    ]
+    imgui.same_line()
+    imgui.set_cursor_pos_x(start + _LABEL_WIDTH * imgui.get_font_size())
+    clamp = imgui.SliderFlags_.always_clamp | imgui.SliderFlags_.logarithmic
+    imgui.set_next_item_width((_SLIDER_WIDTH - _LABEL_WIDTH) * imgui.get_font_size())
+    imgui.push_style_color(imgui.Col_.slider_grab, ImVec4(1.0, 0.706, 0.227, 0.45))  # the number is over it
+    _, value = imgui.slider_float(f"##{label}", value, *limits, text_format, clamp)
+    imgui.pop_style_color()
+    widgets.show_tooltip(tooltip)
+    imgui.end_group()
+    return float(value)

@@ -1,4 +1,4 @@
-"""The options of the stiffness brush in the side panel."""
+"""The options of the stiffness brush in the bar over the canvas."""
 
 import numpy as np
 import pytest
@@ -9,16 +9,35 @@ from akap_editor.editor.session.edits import PaintStiffness
 
 def test_the_options_of_the_brush(pinned):
     pinned.tool_button(commands.BRUSH_TOOL)
-    pinned.panel("Erase")
+    pinned.do(lambda hand: hand.item_click("//Brush/Erase"))
     assert pinned.editor.brush_tool.brush.erasing
     pinned.editor.apply("Paint Stiffness", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
-    pinned.panel(commands.CLEAR_STIFFNESS.label)
+    pinned.do(lambda hand: hand.item_click(f"//Brush/{commands.CLEAR_STIFFNESS.label}"))
     assert pinned.session.state.stiffness is None
 
     def slide(hand):
-        hand.item_input("//Panel/##Strength")
+        hand.item_input("//Brush/##Strength")
         hand.key_chars_replace_enter("1000")
 
     pinned.do(slide)
     assert pinned.editor.brush_tool.brush.factor == pytest.approx(1000.0)
     assert np.isfinite(pinned.editor.brush_tool.brush.radius)
+
+
+def test_the_bar_leaves_the_canvas_where_it_is_and_is_never_out_of_sight(pinned):
+    canvas, camera = pinned.editor.canvas, pinned.editor.camera
+    pinned.tool_button(commands.BRUSH_TOOL)
+    assert (pinned.editor.canvas, pinned.editor.camera) == (canvas, camera)
+    boxes = []
+
+    def look(hand):
+        for item in ("##Strength", "##Size", "Erase", commands.CLEAR_STIFFNESS.label):
+            boxes.append(hand.item_info(f"//Brush/{item}").rect_full)
+
+    pinned.do(look)
+    left, top, right, bottom = canvas
+    for box in boxes:
+        assert left <= box.min.x < box.max.x <= right
+        assert top <= box.min.y < box.max.y <= bottom
+    pinned.tool_button(commands.PIN_TOOL)
+    assert not pinned.editor.brush_tool.brush.erasing
