@@ -19,6 +19,7 @@ from ..dialogs.export.pose import ExportPoseDialog
 from ..dialogs.preferences_page import PreferencesPage
 from ..panels.method_parameters import with_default_values
 from ..preferences import Preferences
+from .clipboard import COPY_PICTURE, COPY_POSE, PASTE
 from .command import ALT, CTRL, SHIFT, Command, Key, Menu, Submenu, always, has_drawing
 from .keyboard_pointer import CONTEXT_MENU, CROSSHAIR, FINISH, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
 from .keymap import KEYMAP
@@ -310,6 +311,7 @@ MENUS: tuple[Menu, ...] = (
         "Edit",
         (
             *(UNDO, REDO, None),
+            *(COPY_PICTURE, COPY_POSE, PASTE, None),
             *(REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT),
             *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, FINISH, None),
             *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE, None),

@@ -11,6 +11,7 @@ from ...editor.document.pin import Pin
 from ...editor.events import PinRequest
 from .. import widgets
 from ..app_state import AppState
+from ..commands.clipboard import COPY_PICTURE, COPY_POSE, PASTE
 from ..commands.command import Command
 from ..commands.registry import (
     ACTUAL_SIZE,
@@ -47,6 +48,7 @@ _MENU: tuple[Command | None, ...] = (
 _CANVAS_POPUP = "###canvas menu"
 _CANVAS_MENU: tuple[Command | None, ...] = (
     *(UNDO, REDO, None),
+    *(COPY_PICTURE, COPY_POSE, PASTE, None),
     *(SELECT_ALL, DESELECT, RESET_POSE, None),
     *(FIT, ACTUAL_SIZE, SHOW_MESH, SHOW_PINS, SHOW_CHECKERBOARD),
 )

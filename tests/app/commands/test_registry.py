@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES
+from akap_editor.app.commands import clipboard
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
 from akap_editor.app.commands.palette import Palette
@@ -21,8 +22,14 @@ from akap_editor.editor.camera import Camera
 from akap_editor.editor.events import PinRequest
 from akap_editor.editor.session.edits import PaintStiffness, SetTargets
 from akap_editor.editor.tools.stiffness_brush import Brush
+from tests.support.clipboards import FakeClipboard
 
 ITEMS = [(menu, command) for menu, group in MENUS for command in group if isinstance(command, Command)]
+
+
+@pytest.fixture(autouse=True)
+def fake_clipboard(monkeypatch):
+    monkeypatch.setattr(clipboard, "copykitten", FakeClipboard())
 
 
 # -- what each command does: prepare, and a law that holds after it -----------------------------------------
@@ -216,6 +223,9 @@ CASES = {
     "Quit": (nothing, lambda ui: ui.state.is_closing),
     "Undo": (bent, is_rest),
     "Redo": (undone, lambda ui: ui.session.is_posed),
+    "Copy as Picture": (nothing, lambda ui: ui.state.notice.startswith("Copied the pose as a picture")),
+    "Copy Pose": (nothing, lambda ui: ui.state.notice.startswith("Copied the pose; paste")),
+    "Paste Picture or Pose": (nothing, lambda ui: ui.state.notice.startswith("The clipboard holds neither")),
     "Remove Selected Pins": (one_selected, lambda ui: [pin.id for pin in ui.pins] == [1, 3]),
     "Raise Depth": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, 1, 0]),
     "Lower Depth": (one_selected, lambda ui: [pin.depth for pin in ui.pins] == [0, -1, 0]),
