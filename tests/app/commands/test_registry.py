@@ -387,7 +387,7 @@ def test_no_key_means_two_things():
         (CTRL | SHIFT | Key.z, "Ctrl+Shift+Z"),
         (Key.delete, "Del"),
         (Key._1, "1"),
-        (CTRL | Key.equal, "Ctrl++"),
+        (CTRL | Key.equal, "Ctrl+="),
         (Key.f1, "F1"),
     ],
 )
