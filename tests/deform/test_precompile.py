@@ -8,6 +8,7 @@ import sys
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 import akap_editor as akap
+import akap_editor.library
 from akap_editor.deform.precompile import precompile
 from akap_editor.resources import resource
 
