@@ -8,8 +8,8 @@ from ...editor.tools.base import DRAG_DISTANCE, distance
 from .. import widgets
 from ..app_state import AppState
 from ..commands.timeline import PLAY
-from ..panels.pin_popup import PinPopup, draw_canvas_menu
 from .cursors import show_cursor
+from .pin_popup import PinPopup, draw_canvas_menu
 
 TAP_SECONDS = 0.3  # Space held longer pans only
 _BUTTONS: tuple[Button, ...] = ("left", "right", "middle")  # in ImGui's order
