@@ -12,14 +12,15 @@ from ..errors import AkapError
 
 # The first lines of the commands' help: a list of them needs nothing of what the commands do.
 ABOUT = {
-    "edit": "Open FILE in a window: a picture, a flat OBJ or OFF mesh, a drawing saved as .akap, or a "
-    "recording, which is then on the timeline.",
+    "edit": "Open FILE in a window: a picture, also in layers (PSD, ORA, a folder of PNG pictures), a flat "
+    "OBJ or OFF mesh, a drawing saved as .akap, or a recording, which is then on the timeline.",
     "render": "Write the pose of FILE, a saved drawing or a picture, as a PNG picture.",
     "replay": "Replay a recording, or the keyframes of a drawing saved as .akap, as an animation or a "
     "picture.",
     "compare": "Replay recordings with several methods and write a report: index.html and comparison.json.",
     "export": "Export FILE, a saved drawing or a picture, for other programs.",
-    "info": "Tell what FILE contains, a picture, drawing, pose, recording or mesh, and whether it is sound.",
+    "info": "Tell what FILE contains, a picture (also in layers), drawing, pose, recording or mesh, and "
+    "whether it is sound.",
     "bench": "Measure deformation methods on this computer: the bundled elephant lifts its trunk, one step "
     "per frame.",
     "mesh": "Make a mesh of each PICTURE, or of all pictures in a folder, and report its quality.",

@@ -71,7 +71,7 @@ def bad_files(folder, image):
         ("transparent.png", "transparent"),
         ("pixel.png", "expected"),
         ("corrupt.akap", "damaged or not an .akap file"),
-        ("folder.png", "a folder"),
+        ("folder.png", "contains no PNG pictures"),
     ],
 )
 @pytest.mark.parametrize("command", ["edit", "render"])
