@@ -77,6 +77,15 @@ def export_file(
     return ExportResult(chosen.label, files, size)
 
 
+def print_results(results: list[ExportResult], as_json: bool) -> None:
+    """Print what was written: a line a file, or as JSON an object for one file and a list for several."""
+    if as_json:
+        facts = [result.facts for result in results]
+        click.echo(json.dumps(facts if len(facts) > 1 else facts[0], indent=2))
+    else:
+        click.echo("\n".join(result.text for result in results))
+
+
 @click.command(
     "export",
     epilog="Example: akap-editor export posed.akap -o cat.glb\n\n"
@@ -132,11 +141,7 @@ def export_command(
         export_file(file, target, options, threshold, overwrite, mesher)
         for file, target in zip(files, outputs, strict=True)
     ]
-    if as_json:
-        facts = [result.facts for result in results]
-        click.echo(json.dumps(facts if len(facts) > 1 else facts[0], indent=2))
-    else:
-        click.echo("\n".join(result.text for result in results))
+    print_results(results, as_json)
 
 
 append_formats(export_command, [(each.suffix, each.label) for each in EXPORT_FORMATS])

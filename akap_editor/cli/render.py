@@ -1,6 +1,5 @@
 """Writes the pose of a drawing as a picture."""
 
-import json
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -9,7 +8,7 @@ import click
 
 from ..errors import InputError
 from ..io.export import ExportOptions
-from .export import export_file
+from .export import export_file, print_results
 from .options import (
     FILE,
     check_png,
@@ -62,11 +61,7 @@ def render(
         export_file(file, target, options, threshold, overwrite)
         for file, target in zip(files, outputs, strict=True)
     ]
-    if as_json:
-        facts = [result.facts for result in results]
-        click.echo(json.dumps(facts if len(facts) > 1 else facts[0], indent=2))
-    else:
-        click.echo("\n".join(result.text for result in results))
+    print_results(results, as_json)
 
 
 def _write_to_stdout(files: tuple[Path, ...], options: ExportOptions, threshold: float | None) -> None:
