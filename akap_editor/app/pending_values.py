@@ -3,7 +3,7 @@
 from collections.abc import Callable, Hashable
 from typing import TypeVar
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 T = TypeVar("T")
 
@@ -31,3 +31,37 @@ class PendingValues:
         if not imgui.is_item_active():
             self._values.pop(key, None)
         return None
+
+
+class NameField:
+    """A field in place of one name in a list, while that is changed.
+
+    key: of the entry whose name is changed, None if there is none.
+    """
+
+    def __init__(self) -> None:
+        self.key: Hashable | None = None
+        self._typed: str | None = None  # None until the field has the keyboard
+
+    def begin(self, key: Hashable) -> None:
+        """Change the name of an entry."""
+        self.key, self._typed = key, None
+
+    def draw(self, label: str, name: str, width: float) -> str | None:
+        """Draw the field; return the new name in the frame in which Enter or a click elsewhere accepts it.
+
+        Escape keeps ``name``. label: ImGui's; width: in points.
+        """
+        if self._typed is None:  # in every frame: a mouse button that is still down takes the focus away
+            imgui.set_keyboard_focus_here()
+        imgui.set_next_item_width(width)
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
+        typed = name if self._typed is None else self._typed
+        _, typed = imgui.input_text(label, typed, imgui.InputTextFlags_.auto_select_all)
+        imgui.pop_style_var()
+        if imgui.is_item_active():
+            self._typed = typed
+        if not imgui.is_item_deactivated():
+            return None
+        new_name, self.key = (name if self._typed is None else self._typed).strip(), None
+        return None if new_name == name or imgui.is_key_pressed(imgui.Key.escape, False) else new_name

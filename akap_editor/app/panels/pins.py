@@ -8,7 +8,7 @@ from ...editor.document.pin import MAX_DEPTH, Pin
 from .. import widgets
 from ..app_state import AppState
 from ..commands.registry import REMOVE_SELECTED
-from ..pending_values import PendingValues
+from ..pending_values import NameField, PendingValues
 from ..theme import SECONDARY, TEXT
 
 _ROWS = 6  # pins that are visible at once
@@ -27,14 +27,10 @@ def draw(state: AppState, scale: float) -> None:
 
 
 class PinList:
-    """The list; a double click on a name, or F2, renames the pin there.
-
-    renamed: the pin whose name is being typed, None if there is none.
-    """
+    """The list; a double click on a name, or F2, renames the pin there."""
 
     def __init__(self) -> None:
-        self.renamed: int | None = None
-        self._new_name: str | None = None  # None until the field has the keyboard
+        self._name_field = NameField()
 
     def draw(self, state: AppState) -> None:
         """Draw the list, which has the same height for any number of pins, and its button."""
@@ -63,8 +59,10 @@ class PinList:
             state.run_reporting_errors(lambda: gestures.set_pin_locked(editor, pin.id, not pin.is_locked))
         imgui.same_line(left + 2 * _ICON_WIDTH * font_size)
         name_width = room - (2 * _ICON_WIDTH + _DEPTH_WIDTH + 0.4) * font_size
-        if self.renamed == pin.id:
-            self._draw_name_field(state, pin, name_width)
+        if self._name_field.key == pin.id:
+            name = self._name_field.draw("##new name", pin.label, name_width)
+            if name is not None:
+                state.run_reporting_errors(lambda: gestures.rename_pin(editor, pin.id, name))
         else:
             self._draw_name(state, pin, name_width)
         if editor.selection == {pin.id}:
@@ -80,30 +78,14 @@ class PinList:
             0
         ]:
             if imgui.is_mouse_double_clicked(0):
-                self.renamed, self._new_name = pin.id, None
+                self._name_field.begin(pin.id)
             extends = imgui.get_io().key_shift
             editor.select(editor.selection ^ {pin.id} if extends else {pin.id})
         is_at = imgui.is_item_hovered() or imgui.is_item_focused()
         if is_at and imgui.is_key_pressed(imgui.Key.f2, False):
-            self.renamed, self._new_name = pin.id, None
+            self._name_field.begin(pin.id)
         target = f"{pin.target[0]:.0f}, {pin.target[1]:.0f}"
         widgets.show_tooltip(f"{pin.label} at {target}. Double-click or F2 to rename.")
-
-    def _draw_name_field(self, state: AppState, pin: Pin, width: float) -> None:
-        """Draw a field in place of the name. Enter or a click elsewhere renames, Escape does not."""
-        if self._new_name is None:  # in every frame: a mouse button that is still down takes the focus away
-            imgui.set_keyboard_focus_here()
-        imgui.set_next_item_width(width)
-        imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
-        typed = pin.label if self._new_name is None else self._new_name
-        _, typed = imgui.input_text("##new name", typed, imgui.InputTextFlags_.auto_select_all)
-        imgui.pop_style_var()
-        if imgui.is_item_active():
-            self._new_name = typed
-        if imgui.is_item_deactivated():
-            name, self.renamed = (self._new_name or "").strip(), None
-            if name != pin.label and not imgui.is_key_pressed(imgui.Key.escape, False):
-                state.run_reporting_errors(lambda: gestures.rename_pin(state.editor, pin.id, name))
 
 
 def _icon(icon: str, name: str, is_on: bool, tooltip: str) -> bool:

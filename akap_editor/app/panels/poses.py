@@ -14,6 +14,7 @@ from ...io.images import Picture
 from .. import widgets
 from ..app_state import AppState
 from ..commands.command import context_menu_pressed
+from ..pending_values import NameField
 from ..theme import ACCENT, FRAME, HOVER, SECONDARY, packed
 from ..timeline.keyframe_track import POSE_PAYLOAD
 
@@ -36,12 +37,11 @@ def draw(state: AppState, scale: float) -> None:
 class PosesSection:
     """Knows which pose is being renamed and which two are blended.
 
-    renamed: name of the pose whose name is edited, None if there is none.
+    name_field: its key is the name of the pose that is being renamed.
     """
 
     def __init__(self) -> None:
-        self.renamed: str | None = None
-        self._new_name: str | None = None  # what is typed, None until the field has the keyboard focus
+        self.name_field = NameField()
         self._blend = PoseBlend()
 
     def draw(self, state: AppState, scale: float) -> None:
@@ -86,7 +86,7 @@ class PosesSection:
             f"{pose.name}: click to apply, drag to the timeline or to reorder, right-click for more"
         )
         if (is_hovered or is_focused) and imgui.is_key_pressed(imgui.Key.f2, False):
-            self._begin_renaming(pose)
+            self.name_field.begin(pose.name)
         _drag_and_drop(state, pose)
         if is_focused and context_menu_pressed():
             imgui.open_popup(f"menu {pose.name}")
@@ -95,8 +95,11 @@ class PosesSection:
             imgui.end_popup()
         _draw_thumbnail(state, pose, corner, side, is_hovered or is_focused, scale)
         imgui.push_font(None, imgui.get_style().font_size_base * _NAME_SIZE)
-        if self.renamed == pose.name:
-            self._draw_name_field(state, pose, side)
+        if self.name_field.key == pose.name:
+            name = self.name_field.draw("##name of pose", pose.name, side)
+            if name:
+                rename = RenamePose(pose.name, name)
+                state.run_reporting_errors(lambda: state.editor.apply(f"Rename {pose.name}", rename))
         else:
             self._draw_name(pose, side)
         imgui.pop_font()
@@ -105,7 +108,7 @@ class PosesSection:
     def _draw_name(self, pose: NamedPose, width: float) -> None:
         imgui.text_colored(ImVec4(*SECONDARY), widgets.shortened(pose.name, width))
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
-            self._begin_renaming(pose)
+            self.name_field.begin(pose.name)
         widgets.show_tooltip(f"{pose.name}: double-click or F2 to rename")
 
     def _draw_menu(self, state: AppState, pose: NamedPose) -> None:
@@ -114,7 +117,7 @@ class PosesSection:
         poses = state.document.state.poses
         index = poses.index(pose)
         if imgui.menu_item("Rename", "F2", False)[0]:
-            self._begin_renaming(pose)
+            self.name_field.begin(pose.name)
         if imgui.menu_item_simple("Update from Current Pose"):
             state.run_reporting_errors(lambda: gestures.add_pose(state.editor, pose.name))
         if imgui.menu_item_simple("Add as Keyframe"):
@@ -126,26 +129,6 @@ class PosesSection:
         imgui.separator()
         if imgui.menu_item_simple("Delete Pose"):
             gestures.delete_pose(state.editor, pose.name)
-
-    def _begin_renaming(self, pose: NamedPose) -> None:
-        self.renamed, self._new_name = pose.name, None
-
-    def _draw_name_field(self, state: AppState, pose: NamedPose, width: float) -> None:
-        """Draw a field in place of the name. Enter or a click elsewhere renames, Escape does not."""
-        if self._new_name is None:  # in every frame: a mouse button that is still down takes the focus away
-            imgui.set_keyboard_focus_here()
-        imgui.set_next_item_width(width)
-        imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.2 * imgui.get_font_size(), 0))
-        typed = pose.name if self._new_name is None else self._new_name
-        _, typed = imgui.input_text("##name of pose", typed, imgui.InputTextFlags_.auto_select_all)
-        imgui.pop_style_var()
-        if imgui.is_item_active():
-            self._new_name = typed
-        if imgui.is_item_deactivated():
-            name, self.renamed = (self._new_name or "").strip(), None
-            if name and name != pose.name and not imgui.is_key_pressed(imgui.Key.escape, False):
-                rename = RenamePose(pose.name, name)
-                state.run_reporting_errors(lambda: state.editor.apply(f"Rename {pose.name}", rename))
 
     def _draw_blend(self, state: AppState, scale: float) -> None:
         """Draw two lists of poses and a slider that previews their blend; its release applies the blend."""

@@ -45,4 +45,4 @@ def test_a_pose_is_renamed_with_a_double_click(pinned):
 
     pinned.do(rename)
     assert [pose.name for pose in pinned.session.present.poses] == ["Wave"]
-    assert pinned.state.part(PosesSection).renamed is None
+    assert pinned.state.part(PosesSection).name_field.key is None
