@@ -35,11 +35,8 @@ def document(drawing: Drawing) -> Document:
 def new_window() -> Iterator[Callable[..., WindowDriver]]:
     """Makes the module's window."""
     made: list[WindowDriver] = []
-    painter = DeferredPainter()
-    with pytest.MonkeyPatch.context() as patch:
+    with DeferredPainter().deferring(), pytest.MonkeyPatch.context() as patch:
         patch.setattr("akap_editor.app.glfw_window.render_imgui", render_unlocked)
-        patch.setattr("akap_editor.app.glfw_window.draw_imgui", painter.defer)
-        patch.setattr(Window, "screenshot", lambda window: painter.screenshot(window))
 
         def make(**options: object) -> WindowDriver:
             made.append(WindowDriver(Window(null=True, **options)))

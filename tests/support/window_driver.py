@@ -5,18 +5,20 @@ from imgui_bundle import imgui  # isort: skip
 import ctypes
 import math
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import glfw
 import imgui_bundle._imgui_bundle as native
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from akap_editor.app import files
 from akap_editor.app.app_state import AppState
+from akap_editor.app.canvas.scene import Scene, SceneContent
 from akap_editor.app.commands.command import Command
 from akap_editor.app.dialogs.file_dialog import FileDialog, FileRequest
 from akap_editor.app.glfw_window import draw_imgui
@@ -39,27 +41,37 @@ DEADLINE = 60.0  # seconds; a slow machine takes a few
 render_unlocked = ctypes.CDLL(native.__file__)._ZN5ImGui6RenderEv
 render_unlocked.restype, render_unlocked.argtypes = None, []
 
-_take_screenshot = Window.screenshot
+_take_screenshot, _paint_scene = Window.screenshot, Scene.paint
 
 
 class DeferredPainter:
-    """Draws ImGui's part of a frame only if a picture of the frame is taken.
+    """Draws a frame with OpenGL only if a picture of the frame is taken; what it shows is always computed.
 
-    With software OpenGL the drawing is half the cost of a test, and most tests look at no picture.
+    With software OpenGL the drawing is the larger part of the cost of a test, and most tests look at no picture.
     """
 
     def __init__(self) -> None:
-        self._is_due = False
+        self._due: list[Callable[[], None]] = []
 
-    def defer(self) -> None:
-        """Stands in for `draw_imgui`."""
-        self._is_due = True
+    @contextmanager
+    def deferring(self) -> Iterator[None]:
+        """While this lasts, the windows of the tests draw with this painter."""
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(Scene, "paint", lambda scene, content: self._defer_scene(scene, content))
+            patch.setattr("akap_editor.app.glfw_window.draw_imgui", self._defer_imgui)
+            patch.setattr(Window, "screenshot", lambda window: self._screenshot(window))
+            yield
 
-    def screenshot(self, window: Window) -> NDArray[np.uint8]:
-        """Stands in for `Window.screenshot`."""
-        if self._is_due:
-            draw_imgui()
-            self._is_due = False
+    def _defer_scene(self, scene: Scene, content: SceneContent) -> None:
+        self._due = [lambda: _paint_scene(scene, content)]
+
+    def _defer_imgui(self) -> None:
+        self._due.append(draw_imgui)
+
+    def _screenshot(self, window: Window) -> NDArray[np.uint8]:
+        for draw in self._due:
+            draw()
+        self._due = []
         return _take_screenshot(window)
 
 

@@ -66,11 +66,16 @@ class Scene:
         """Fill the screen. size, window: of it, in framebuffer pixels and in points; scale: points per design
         point.
         """
-        content = scene_content(state, size, window, scale)
+        self.paint(scene_content(state, size, window, scale))
+
+    def paint(self, content: SceneContent) -> None:
+        """Fill the screen with this content."""
         if content.main is None or len(content.main.drawing.mesh.faces) < MIN_CACHED_FACES:
             self._draw(content, self._ctx.screen)
         else:
-            self._cache.show(self._ctx.screen, size, content, lambda target: self._draw(content, target))
+            self._cache.show(
+                self._ctx.screen, content.size, content, lambda target: self._draw(content, target)
+            )
 
     def release(self) -> None:
         """Free every OpenGL object."""
