@@ -47,7 +47,7 @@ _take_screenshot, _paint_scene = Window.screenshot, Scene.paint
 class DeferredPainter:
     """Draws a frame with OpenGL only if a picture of the frame is taken; what it shows is always computed.
 
-    With software OpenGL the drawing is the larger part of the cost of a test, and most tests look at no picture.
+    With software OpenGL the drawing is the larger part of a test's cost, and most tests look at no picture.
     """
 
     def __init__(self) -> None:
