@@ -115,6 +115,9 @@ if TYPE_CHECKING:
         outlines as outlines,
     )
     from .library import (
+        precompile as precompile,
+    )
+    from .library import (
         read_image as read_image,
     )
     from .library import (
@@ -164,6 +167,7 @@ __all__ = [
     "open_document",
     "open_layers",
     "outlines",
+    "precompile",
     "read_image",
     "save",
     "triangulate",

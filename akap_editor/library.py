@@ -2,6 +2,7 @@
 
 from .deform.deformer import Deformer, StepReport, StepResult
 from .deform.methods import make_deformer, method_names
+from .deform.precompile import precompile
 from .editor.document.document import Document, EditState, new_document
 from .editor.document.drawing import Drawing, make_drawing
 from .editor.document.pin import Pin
@@ -54,6 +55,7 @@ __all__ = [
     "open_document",
     "open_layers",
     "outlines",
+    "precompile",
     "read_image",
     "save",
     "triangulate",

@@ -24,11 +24,12 @@ from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.akap.killing_field import KillingSystem
 from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
 from akap_editor.deform.akap.rest_memory import RestMemory
-from akap_editor.deform.cholesky import SparseCholesky
+from akap_editor.deform.cholesky import CholeskyFactors
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.killing_matrix import KillingMatrix
 from akap_editor.geometry.mesh import MeshPoints, TriMesh
+from akap_editor.geometry.validation import Floats
 from akap_editor.io.images import read_image
 from akap_editor.meshing.outline import Outline
 from akap_editor.meshing.triangulate import triangulate
@@ -105,12 +106,15 @@ def quality_of(drag: Drag, pose: np.ndarray, drift: float) -> str:
     return f"{measure.area:8.4f} {measure.angle:8.4f} {measure.flipped:5d} {drift:7.3f}"
 
 
-def run_libigl(drag: Drag, iterations: int) -> None:
-    """Print a row for libigl's ARAP, which pins vertices only: those nearest to our pins."""
+def igl_frames(drag: Drag, iterations: int) -> tuple[Floats, list[float]] | None:
+    """The last pose and the milliseconds of each frame of libigl's ARAP; None if it is not installed.
+
+    It pins vertices only: those nearest to our pins.
+    """
     try:
         import igl
     except ImportError:
-        return
+        return None
     mesh = drag.mesh
     start = drag.mesh.evaluate(drag.points, mesh.vertices)
     nearest = np.array([np.argmin(((mesh.vertices - p) ** 2).sum(axis=1)) for p in start], dtype=np.int32)
@@ -124,6 +128,15 @@ def run_libigl(drag: Drag, iterations: int) -> None:
         started = time.perf_counter()
         pose = np.asarray(igl.arap_solve(goals, data, pose))
         frames.append(1000 * (time.perf_counter() - started))
+    return pose, frames
+
+
+def run_libigl(drag: Drag, iterations: int) -> None:
+    """Print a row for libigl's ARAP, if it is installed."""
+    result = igl_frames(drag, iterations)
+    if result is None:
+        return
+    pose, frames = result
     blank = "  ".join("      –" for _ in PARTS)
     name = f"libigl ARAP, {iterations} it."
     print(
@@ -136,7 +149,7 @@ def instrument() -> FunctionTimer:
     """Measure the engine's time by part."""
     timer = FunctionTimer(PARTS)
     timer.wrap(KillingMatrix, "nonzeros", "assemble")
-    timer.wrap(SparseCholesky, "factorize", "factor")
+    timer.wrap(CholeskyFactors, "factorize", "factor")
     timer.wrap(PreconditionedCholesky, "solve", "solve")
     timer.wrap(KillingSystem, "field", "solve")
     timer.wrap(AkapDeformer, "_follow_field", "spirals")

@@ -99,7 +99,6 @@ def test_package_keeps_its_import_contracts(package_copy: PackageCopy) -> None:
         ("triangle", "meshing/triangulate.py", "import triangle"),
         ("triangle", "meshing/triangulate.py", "import pythoncdt"),
         ("triangle", "app/window.py", "import triangle"),
-        ("cvxopt", "deform/islands.py", "from cvxopt import cholmod"),
         ("numba", "deform/islands.py", "from numba import njit"),
         ("psd-tools", "io/images.py", "import psd_tools"),
     ],
@@ -125,6 +124,7 @@ MAX_LINES, MAX_MODULES = 400, 13
 LONGER = {  # modules with more lines, and why
     "deform/akap/deformer.py": "one step of the paper's method",
     "deform/methods.py": "the one table of methods",
+    "deform/multifrontal.py": "compiled functions that call one another, see `geometry/jit.py`",
 }
 
 

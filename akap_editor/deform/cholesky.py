@@ -1,17 +1,12 @@
-"""Sparse Cholesky factorization by CHOLMOD, symbolic and numeric phase apart (paper, section 3.1)."""
-
-from functools import cached_property
-from threading import Lock
-from typing import Any
+"""Sparse Cholesky factorization, symbolic and numeric phase apart (paper, section 3.1)."""
 
 import numpy as np
-from cvxopt import cholmod, matrix, spmatrix
 
 from ..errors import SolverError
-from ..geometry.validation import Floats, Ints
-
-_SIMPLICIAL, _SUPERNODAL = 0, 2  # values of CHOLMOD's option "supernodal"
-_options_lock = Lock()  # CHOLMOD's options are global
+from ..geometry.validation import Complexes, Floats, Ints
+from . import multifrontal
+from .dissection import Dissection
+from .fronts import SymbolicCholesky
 
 
 class SymmetricPattern:
@@ -28,12 +23,6 @@ class SymmetricPattern:
     def count(self) -> int:
         """The number of nonzeros."""
         return len(self.rows)
-
-    @cached_property
-    def matrix(self) -> Any:
-        """A CHOLMOD matrix of this pattern; each factorization overwrites its values."""
-        indices = (matrix(index.astype(np.int64)) for index in (self.rows, self.columns))
-        return spmatrix(1.0, *indices, (self.size, self.size))
 
     def restrict(self, indices: Ints) -> tuple["SymmetricPattern", Ints]:
         """The pattern of the submatrix of some rows and columns, ascending ``indices``.
@@ -59,39 +48,78 @@ class SummedPattern(SymmetricPattern):
         return np.bincount(self._slots, weights=entries, minlength=self.count).astype(np.float64, copy=False)
 
 
+Precision = type[np.float32] | type[np.float64]
+
+
+class CholeskyFactors:
+    """The factors of matrices with one symbolic factorization: factorize often, solve more often.
+
+    precision: of the factors, float32 or float64.
+    """
+
+    def __init__(self, symbolic: SymbolicCholesky, precision: Precision = np.float64) -> None:
+        self.fronts = symbolic.fronts
+        self.values = np.empty(symbolic.factor_size, dtype=precision)
+        self._front = np.empty(symbolic.largest_front**2, dtype=precision)
+        self._stack = np.empty(symbolic.stack_size, dtype=precision)
+        self._x = np.empty(int(self.fronts.starts[-1]), dtype=precision)
+
+    def factorize(self, nonzeros: Floats) -> None:
+        """Compute the factors of the matrix with these nonzeros (count,).
+
+        Raises SolverError if the matrix is not finite or, in the precision of the factors, not positive
+        definite.
+        """
+        if not np.isfinite(nonzeros).all():
+            raise SolverError("the linear system has entries that are not finite")
+        if not multifrontal.factorize(self.fronts, nonzeros, self.values, self._front, self._stack):
+            raise SolverError("the linear system is singular: a face has collapsed or a part is free")
+
+    def solve(self, right: Floats) -> Floats:
+        """The solution (size,) for a right-hand side (size,), as exact as the precision allows.
+
+        Raises SolverError if it is not finite.
+        """
+        solution = right.astype(self.values.dtype)
+        multifrontal.solve(self.fronts, self.values, solution, self._front)
+        if not np.isfinite(solution).all():
+            raise SolverError("the linear system has no finite solution")
+        return solution.astype(np.float64, copy=False)
+
+    def preconditioner(self, rotation: Complexes) -> multifrontal.Preconditioner:
+        """R A⁻¹ Rᵀ for unit complex numbers R, (n,), in place of the two unknowns of each vertex."""
+        return multifrontal.Preconditioner(self.fronts, self.values, rotation, self._x, self._front)
+
+
 class SparseCholesky:
     """Factorizes symmetric positive definite matrices of one pattern, and solves with the last factors.
 
-    Supernodal factors are smaller, and several times faster to compute on large meshes; simplicial ones
-    (``supernodal`` off) solve up to twice as fast while they fit into the caches.
+    dissection: of the n vertices; a vertex has size / n consecutive unknowns.
     """
 
-    def __init__(self, pattern: SymmetricPattern, supernodal: bool = True) -> None:
-        self._pattern = pattern
-        with _options_lock:
-            cholmod.options["supernodal"] = _SUPERNODAL if supernodal else _SIMPLICIAL
-            self._factor: Any = cholmod.symbolic(pattern.matrix, uplo="L")
+    def __init__(self, pattern: SymmetricPattern, dissection: Dissection) -> None:
+        order, starts = dissection
+        width = pattern.size // len(order)
+        self._order = (width * order[:, None].astype(np.int64) + np.arange(width)).ravel()
+        number = np.empty(pattern.size, dtype=np.int64)
+        number[self._order] = np.arange(pattern.size)
+        ends = number[np.stack([pattern.rows, pattern.columns])]
+        rows, columns = ends.max(axis=0), ends.min(axis=0)
+        self._nonzeros = np.lexsort((rows, columns))
+        symbolic = SymbolicCholesky(
+            rows[self._nonzeros].astype(np.int32), columns[self._nonzeros].astype(np.int32), width, starts
+        )
+        self._factors = CholeskyFactors(symbolic)
 
     def factorize(self, nonzeros: Floats) -> None:
         """Compute the factors of the matrix with these nonzeros (count,).
 
         Raises SolverError if the matrix is not finite or not positive definite.
         """
-        if not np.isfinite(nonzeros).all():
-            raise SolverError("the linear system has entries that are not finite")
-        self._pattern.matrix.V = matrix(nonzeros)
-        try:
-            cholmod.numeric(self._pattern.matrix, self._factor)
-        except ArithmeticError as error:
-            raise SolverError(
-                "the linear system is singular: a face has collapsed or a part is free"
-            ) from error
+        self._factors.factorize(nonzeros[self._nonzeros])
 
     def solve(self, right: Floats) -> Floats:
         """The solution (size,) for a right-hand side (size,). Raises SolverError if it is not finite."""
-        solution = matrix(right)
-        cholmod.solve(self._factor, solution)
-        result = np.asarray(memoryview(solution))[:, 0]
-        if not np.isfinite(result).all():
-            raise SolverError("the linear system has no finite solution")
+        result = np.empty(len(right))
+        result[self._order] = self._factors.solve(right[self._order])
         return result

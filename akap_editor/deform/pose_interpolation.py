@@ -12,6 +12,7 @@ from ..geometry.mesh import TriMesh
 from ..geometry.operators import to_complex, to_points
 from ..geometry.validation import Complexes, Floats, Ints, as_number, as_points
 from .cholesky import SparseCholesky, SummedPattern
+from .dissection import dissect
 
 _STATIONARY = 1e-3  # share of √area: vertices that move less count as stationary, all with the same weight
 _NO_CENTER = 1e-6  # |1 − eˢ| below which s is a translation, up to full turns: no center to rotate about
@@ -36,7 +37,7 @@ class PoseInterpolation:
         pattern = SummedPattern(np.concatenate([i, j, i, anchors]), np.concatenate([i, j, j, anchors]), n)
         anchor_weights = np.full(len(anchors), self._weights.mean())
         entries = np.concatenate([self._weights, self._weights, -self._weights, anchor_weights])
-        self._laplacian = SparseCholesky(pattern)
+        self._laplacian = SparseCholesky(pattern, dissect(mesh.vertices, mesh.edges))
         self._laplacian.factorize(pattern.sum_entries(entries))
         e, ends = len(i), np.concatenate([i, j])  # number of edges, and the vertices they end at
         edge, signs = np.tile(np.arange(e), 2), np.repeat([1.0, -1.0], e)

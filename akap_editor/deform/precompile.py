@@ -4,19 +4,32 @@ import numpy as np
 
 from ..geometry.mesh import TriMesh
 from .akap.deformer import AkapDeformer
+from .akap.preconditioned_cholesky import MIN_SINGLE_VERTICES
 
-_SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0], [50.0, 50.0]])
-_FACES = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+_SIDE = int(np.sqrt(MIN_SINGLE_VERTICES)) + 1  # vertices on a side of the larger square
 
 
 def precompile() -> None:
-    """Deform a square and let it settle, which calls every compiled function (see `geometry.jit`).
+    """Compile the solver's loops, or load them from the cache on disk, before the first step needs them.
 
-    Takes seconds on a machine's first run, and a fifth of a second later; may run in a thread of its own.
+    Takes seconds on a machine's first run, and a fraction of a second later; may run in a thread of its own.
+    Without it, the first steps take that time.
     """
-    mesh = TriMesh(_SQUARE, _FACES)
-    deformer = AkapDeformer(mesh, memory=1.0)
-    deformer.set_pins(mesh.locate([[10.0, 5.0], [60.0, 70.0]]))
-    targets = [[10.0, 5.0], [62.0, 71.0]]
-    moved = deformer.step(mesh.vertices, targets).positions
-    deformer.step(moved, targets)
+    for side in (3, _SIDE):  # factors in double and in single precision
+        mesh = _square(side)
+        deformer = AkapDeformer(mesh, memory=1.0)
+        deformer.set_pins(mesh.locate([[10.0, 5.0], [60.0, 70.0]]))
+        targets = [[10.0, 5.0], [62.0, 71.0]]
+        moved = deformer.step(mesh.vertices, targets).positions
+        deformer.step(moved, targets)
+
+
+def _square(side: int) -> TriMesh:
+    """A square of 100 pixels with ``side``² vertices."""
+    x, y = np.meshgrid(np.linspace(0, 100, side), np.linspace(0, 100, side))
+    corner = np.arange(side * side).reshape(side, side)
+    a, b, c, d = (
+        part.ravel() for part in (corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1])
+    )
+    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    return TriMesh(np.stack([x.ravel(), y.ravel()], axis=1), faces)

@@ -10,20 +10,20 @@ import numpy as np
 
 from .jit import compiled
 from .mesh import TriMesh
-from .validation import Complexes, Floats, Ints
+from .validation import Complexes, Floats, Indices
 
 
 class Slots(NamedTuple):  # numba's caches on disk refer to this name: renamed, they fail to load
-    """Indices into the nonzeros at which a loop over faces adds to the blocks, all int32.
+    """Indices into the nonzeros at which a loop over faces adds to the blocks, all uint32.
 
     vertices: (n, 2) first nonzero of each column of a vertex's block; edges: (e, 2) the same for the block of
     an edge; face_edges: (m, 3) the edge from each corner of a face to the next, as 2 e, or as 2 e + 1 if the
     next corner has the lower number.
     """
 
-    vertices: Ints
-    edges: Ints
-    face_edges: Ints
+    vertices: Indices
+    edges: Indices
+    face_edges: Indices
 
 
 class VertexBlocks:
@@ -58,7 +58,7 @@ class VertexBlocks:
         start, end = mesh.faces.astype(np.int64), mesh.faces[:, [1, 2, 0]].astype(np.int64)
         edge = np.searchsorted(low * n + high, np.minimum(start, end) * n + np.maximum(start, end))
         face_edges = 2 * edge + (start > end)
-        self.slots = Slots(*(indices.astype(np.int32) for indices in (vertices, edges, face_edges)))
+        self.slots = Slots(*(indices.astype(np.uint32) for indices in (vertices, edges, face_edges)))
 
 
 class KillingMatrix:
@@ -73,7 +73,7 @@ class KillingMatrix:
 
     def __init__(self, mesh: TriMesh) -> None:
         self.blocks = VertexBlocks(mesh)
-        self._faces = mesh.faces.copy()
+        self._faces = mesh.faces.astype(np.uint32)
         self._ones, self._zeros = np.ones(len(mesh.faces)), np.zeros(len(mesh.faces))
 
     def nonzeros(
@@ -98,7 +98,7 @@ class KillingMatrix:
 @compiled
 def _add_faces(
     positions: Complexes,
-    faces: Ints,
+    faces: Indices,
     stiffness: Floats,
     rotation_weights: Floats,
     slots: Slots,
@@ -131,7 +131,7 @@ def _add_faces(
 
 
 @compiled
-def add_face(result: Floats, f: int, corners: Ints, matrix: Floats, slots: Slots) -> None:
+def add_face(result: Floats, f: int, corners: Indices, matrix: Floats, slots: Slots) -> None:
     """Add the matrix of face ``f`` to the nonzeros (z,).
 
     corners: (3,) vertices of the face; matrix: (6, 6) symmetric, over x0 y0 x1 y1 x2 y2 of the corners.

@@ -19,6 +19,7 @@ T = TypeVar("T")
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.signedinteger[Any]]  # int32 in public arrays, int64 where numpy made them
+Indices = NDArray[np.uint32]  # in compiled loops, see `geometry.jit`
 Complexes = NDArray[np.complex128]
 
 

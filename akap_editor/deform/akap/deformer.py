@@ -15,7 +15,7 @@ from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import (
     Complexes,
     Floats,
-    Ints,
+    Indices,
     as_choice,
     as_indices,
     as_number,
@@ -24,6 +24,7 @@ from ...geometry.validation import (
     as_switch,
 )
 from ..deformer import Deformer, StepReport, StepResult, as_targets
+from .elimination_order import EliminationOrder
 from .killing_field import KillingSystem
 from .log_spiral import LogSpirals, linear_flow, spiral_factor
 from .pin_rotation import PinRotationConstraints
@@ -111,7 +112,10 @@ class AkapDeformer(Deformer):
         if stiffness is not None:
             count = len(mesh.faces)
             self._stiffness = as_numbers(stiffness, "stiffness", count, _MIN_STIFFNESS, _MAX_STIFFNESS)
-        self._mesh = mesh
+        self._order = EliminationOrder(mesh)
+        if self._stiffness is not None:
+            self._stiffness = self._order.face_values(self._stiffness)
+        mesh = self._mesh = self._order.mesh
         self._dirichlet = as_switch(dirichlet, "dirichlet")
         self._max_step = max_step * mesh.length
         # Soft pins give way a little to the rest memory. With memory, they are not moved back from within the
@@ -121,12 +125,15 @@ class AkapDeformer(Deformer):
         self._pin_weight = pin_weight
         self._hard = constraints == "hard"
         tolerance = mesh.length * (_TOLERANCE_WITH_MEMORY if memory else _TOLERANCE)
-        self._system = KillingSystem(mesh, pin_weight, exact, self._hard, tolerance, self._stiffness)
+        confirm = not memory  # without memory errors accumulate along the path
+        self._system = KillingSystem(
+            mesh, pin_weight, exact, self._hard, tolerance, self._stiffness, self._order.starts, confirm
+        )
         self._exact_system: KillingSystem | None = None
         self._has_spirals = trajectory == "spiral"
         self._flow = LogSpirals(mesh).flow if self._has_spirals else linear_flow
         self._memory = RestMemory(mesh, self._system, self._stiffness)
-        self._faces, self._min_areas = mesh.faces.copy(), _MIN_AREA_SHARE * mesh.rest_areas
+        self._faces, self._min_areas = mesh.faces.astype(np.uint32), _MIN_AREA_SHARE * mesh.rest_areas
         self.set_pins(NO_POINTS)
 
     def set_pins(self, points: MeshPoints) -> None:
@@ -135,7 +142,7 @@ class AkapDeformer(Deformer):
         Raises InputError for points with faces that the mesh does not have.
         """
         as_indices(points.faces, "points.faces", None, len(self._mesh.faces))
-        self._points = points
+        self._points = self._order.points(points)
         self._set_angle_pins(np.zeros(len(points), dtype=bool))
 
     def _set_angle_pins(self, has_angle: NDArray[np.bool_]) -> None:
@@ -150,7 +157,7 @@ class AkapDeformer(Deformer):
 
     def angles(self, positions: ArrayLike) -> Floats:
         """The rotation from rest around each pin, (k,) radians in (−π, π], at a pose (n, 2)."""
-        pose = to_complex(as_points(positions, "positions", len(self._mesh.vertices)))
+        pose = self._order.pose(as_points(positions, "positions", len(self._mesh.vertices)))
         all_pins = np.ones(len(self._points), dtype=bool)
         return PinRotationConstraints(self._mesh, self._points, all_pins).angles(pose)
 
@@ -163,16 +170,16 @@ class AkapDeformer(Deformer):
 
     def vector_fields(self, positions: ArrayLike, velocities: ArrayLike) -> tuple[Floats, Floats]:
         """U_opt of eq. 4 and U° of eq. 3, (n, 2) each, as in Fig. 4; otherwise like `vector_field`."""
-        pose = as_points(positions, "positions", len(self._mesh.vertices))
+        pose = self._order.pose(as_points(positions, "positions", len(self._mesh.vertices)))
         pin_velocities = to_complex(as_points(velocities, "velocities", len(self._points)))
         if self._exact_system is None:
             self._exact_system = KillingSystem(
-                self._mesh, self._pin_weight, True, self._hard, stiffness=self._stiffness
+                self._mesh, self._pin_weight, True, self._hard, 0.0, self._stiffness, self._order.starts
             )
             self._exact_system.set_pins(self._points)
-        self._exact_system.prepare(pose)
+        self._exact_system.prepare(to_points(pose))
         optimal, smooth = self._exact_system.field(pin_velocities, self._dirichlet)
-        return to_points(optimal), to_points(smooth)
+        return self._order.positions(optimal), self._order.positions(smooth)
 
     # -- steps ---------------------------------------------------------------------------------------------
 
@@ -183,7 +190,7 @@ class AkapDeformer(Deformer):
         round; NaN for pins that let them rotate freely. Raises InputError and SolverError.
         """
         started = time.perf_counter()
-        pose = to_complex(as_points(positions, "positions", len(self._mesh.vertices)))
+        pose = self._order.pose(as_points(positions, "positions", len(self._mesh.vertices)))
         goal_positions = as_targets(targets, len(self._points), self._mesh, pose)
         goal_angles = np.full(len(self._points), np.nan)
         if angles is not None:
@@ -197,21 +204,21 @@ class AkapDeformer(Deformer):
             substeps, unfinished = self._substeps(pose, goals)
         last = replace(substeps[-1], end=self._correct_pins(substeps[-1], pose, goals.positions))
         substeps[-1] = last
-        result = to_points(last.end.copy())
+        result = self._order.positions(last.end)
         pin_offsets = goals.positions - self._system.at_pins(last.end)
         return StepResult(
             result,
-            to_points(last.field),
+            self._order.positions(last.field),
             StepReport(
                 seconds=time.perf_counter() - started,
                 substeps=len(substeps) if len(self._points) else 0,
                 energy=self._system.energy(last.field) if last.field.any() else 0.0,
-                flipped=int((signed_areas(result, self._mesh.faces) <= 0).sum()),
+                flipped=int((signed_areas(to_points(last.end), self._mesh.faces) <= 0).sum()),
                 pin_error=float(np.abs(pin_offsets).max(initial=0.0)),
                 blocked=last.share < 1,
                 unfinished=unfinished,
             ),
-            flow=lambda t: to_points(self._pose_at(substeps, t)),
+            flow=lambda t: self._order.positions(self._pose_at(substeps, t)),
         )
 
     def _substeps(self, pose: Complexes, goals: PinGoals) -> tuple[list[Substep], bool]:
@@ -351,7 +358,7 @@ class AkapDeformer(Deformer):
 
 
 @compiled
-def _keeps_faces(before: Complexes, after: Complexes, faces: Ints, min_areas: Floats) -> bool:
+def _keeps_faces(before: Complexes, after: Complexes, faces: Indices, min_areas: Floats) -> bool:
     """Whether no face shrinks below its minimum area (m,) or, if that is smaller, 0.9 times its area before.
 
     Faces that are flipped before do not count.

@@ -7,11 +7,14 @@ from ...geometry.jit import compiled
 from ...geometry.killing_matrix import KillingMatrix
 from ...geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
-from ...geometry.validation import Complexes, Floats, Ints
+from ...geometry.validation import Complexes, Floats, Indices, Ints
 from ..cholesky import SymmetricPattern
 from ..deformer import SAME_PLACE
+from ..fronts import SymbolicCholesky
 from .pin_rotation import PinRotationConstraints
 from .preconditioned_cholesky import PreconditionedCholesky
+
+_DEFAULT_GROUP = 8  # vertices eliminated together in a mesh that is not in elimination order
 
 
 class KillingSystem:
@@ -24,6 +27,9 @@ class KillingSystem:
     many solves.
     tolerance: error of fields that were not factorized for, in pixels.
     stiffness: (m,) factors of the faces' energies.
+    elimination: (f + 1,) the groups of vertices of a mesh in elimination order, see `Dissection.starts`; by
+    default a few vertices each, which is right for any mesh, but slow for a large one.
+    confirm: see `PreconditionedCholesky`.
 
     Both sparsity patterns depend on the mesh alone, because a pin couples only the vertices of one face. So
     the symbolic factorizations are computed once.
@@ -41,8 +47,13 @@ class KillingSystem:
         hard: bool = False,
         tolerance: float = 0.0,
         stiffness: Floats | None = None,
+        elimination: Ints | None = None,
+        confirm: bool = True,
     ) -> None:
         self._mesh = mesh
+        n = len(mesh.vertices)
+        if elimination is None:
+            elimination = np.append(np.arange(0, n, _DEFAULT_GROUP), n)
         self._hard = hard
         self._weight = pin_weight**2
         size = 2 * len(mesh.vertices)
@@ -51,19 +62,26 @@ class KillingSystem:
         self._killing = KillingMatrix(mesh)
         self.blocks = self._killing.blocks
         self.pattern = SymmetricPattern(self.blocks.rows, self.blocks.columns, size)
-        self._pinned_system = PreconditionedCholesky(self.pattern, exact or hard)
+        self._pinned_system = PreconditionedCholesky(self.pattern, exact or hard, elimination, confirm)
         on_boundary = np.zeros(len(mesh.vertices), dtype=bool)
         on_boundary[mesh.boundary_vertices] = True
-        self._interior = np.flatnonzero(~on_boundary).astype(np.int32)
+        self._interior = np.flatnonzero(~on_boundary)
         self._interior_system: PreconditionedCholesky | None = None
         if len(self._interior):
             unknowns = (2 * self._interior[:, None] + np.arange(2)).ravel()
-            inner, self._inner_nonzeros = self.pattern.restrict(unknowns)
-            self._interior_system = PreconditionedCholesky(inner, exact)
+            inner, chosen = self.pattern.restrict(unknowns)
+            self._inner_nonzeros = chosen.astype(np.intp)
+            groups = np.unique(np.searchsorted(self._interior, elimination))
+            self._interior_system = PreconditionedCholesky(inner, exact, groups, confirm)
         self._first_faces = np.unique(mesh.component[mesh.faces[:, 0]], return_index=True)[1]
         self._same_place = SAME_PLACE * mesh.length
         self._frames = _VertexFrames(mesh)
         self.set_pins(NO_POINTS)
+
+    @property
+    def symbolic(self) -> SymbolicCholesky:
+        """The symbolic factorization of (7)."""
+        return self._pinned_system.symbolic
 
     def set_pins(self, points: MeshPoints, rotation: PinRotationConstraints | None = None) -> None:
         """Choose the constraints C of eq. 3, k points, and the faces that rotate with pins."""
@@ -123,7 +141,7 @@ class KillingSystem:
         nonzeros = self._killing.nonzeros(pose, self._stiffness, rotation_weights)
         frames = self._frames(pose)
         if self._interior_system is not None and self._needs_interior:
-            self._interior_system.prepare(nonzeros[self._inner_nonzeros], frames[self._interior])
+            self._interior_system.prepare(nonzeros.take(self._inner_nonzeros), frames[self._interior])
         np.add.at(nonzeros, self._pin_slots, self._pin_entries)
         self._pinned_system.prepare(nonzeros, frames)
 
@@ -237,7 +255,7 @@ class _VertexFrames:
 
     def __init__(self, mesh: TriMesh) -> None:
         rest = to_complex(mesh.vertices)
-        self._edges = mesh.edges.copy()
+        self._edges = mesh.edges.astype(np.uint32)
         self._rest = (rest[mesh.edges[:, 0]] - rest[mesh.edges[:, 1]]).conj()
 
     def __call__(self, positions: Complexes) -> Complexes:
@@ -246,7 +264,7 @@ class _VertexFrames:
 
 
 @compiled
-def _edge_rotations(edges: Ints, rest: Complexes, positions: Complexes) -> Complexes:
+def _edge_rotations(edges: Indices, rest: Complexes, positions: Complexes) -> Complexes:
     """Σ (pᵢ − pⱼ) conj(rᵢ − rⱼ) over the edges of each vertex i, normalized; 1 if the sum vanishes."""
     result = np.zeros_like(positions)
     for e in range(len(edges)):
@@ -255,6 +273,6 @@ def _edge_rotations(edges: Ints, rest: Complexes, positions: Complexes) -> Compl
         result[i] += product
         result[j] += product
     for i in range(len(result)):
-        size = abs(result[i])
+        size = np.sqrt(result[i].real ** 2 + result[i].imag ** 2)
         result[i] = result[i] / size if size > 0 else 1.0 + 0.0j
     return result

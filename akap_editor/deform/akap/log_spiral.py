@@ -4,10 +4,11 @@ import numpy as np
 
 from ...geometry.jit import compiled
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import Complexes, Ints
+from ...geometry.validation import Complexes, Indices
 
 _SERIES_BELOW = 0.25  # |s| below which φ(s) is computed by its series
 _ROUNDING = 1e-17  # terms of the series below this are left out
+_BLOCK = 1024  # rates whose series are summed together, so that they stay in the fastest cache
 
 
 @compiled
@@ -16,31 +17,43 @@ def spiral_factor(s: Complexes) -> Complexes:
 
     Small rates, the usual ones in a substep, use as many terms of Σ sᵏ / (k + 1)! as the largest one needs.
     """
-    largest = 0.0
+    largest, has_large = 0.0, False
     for rate in s:
         size = rate.real * rate.real + rate.imag * rate.imag
-        if largest < size < _SERIES_BELOW**2:
-            largest = size
+        if size < _SERIES_BELOW**2:
+            largest = max(largest, size)
+        else:
+            has_large = True
     largest = np.sqrt(largest)
     terms, term = 1, largest / 2
     while term > _ROUNDING:
         terms += 1
         term *= largest / (terms + 1)
-    inverses = 1.0 / np.arange(1.0, terms + 1.0)
     result = np.empty_like(s)
-    for e in range(len(s)):
-        x, y = s[e].real, s[e].imag
-        if x * x + y * y < _SERIES_BELOW**2:
-            real, imaginary = 1.0, 0.0
-            for k in range(terms - 1, 0, -1):  # Horner's rule
-                real, imaginary = (
-                    (real * x - imaginary * y) * inverses[k] + 1.0,
-                    (real * y + imaginary * x) * inverses[k],
-                )
-            result[e] = complex(real, imaginary)
-        else:
-            result[e] = (np.exp(s[e]) - 1.0) / s[e]
+    for begin in range(0, len(s), _BLOCK):
+        _sum_series(s[begin : begin + _BLOCK], terms, result[begin : begin + _BLOCK])
+    if has_large:
+        for e in range(len(s)):
+            if not s[e].real * s[e].real + s[e].imag * s[e].imag < _SERIES_BELOW**2:
+                result[e] = (np.exp(s[e]) - 1.0) / s[e]
     return result
+
+
+@compiled
+def _sum_series(s: Complexes, terms: int, result: Complexes) -> None:
+    """The first ``terms`` of Σ sᵏ / (k + 1)! by Horner's rule; vectorized, since all s advance together."""
+    count = len(s)
+    x, y, real, imaginary = np.empty(count), np.empty(count), np.ones(count), np.zeros(count)
+    for e in range(count):
+        x[e], y[e] = s[e].real, s[e].imag
+    for k in range(terms, 1, -1):
+        inverse = 1.0 / k
+        for e in range(count):
+            a, b = real[e], imaginary[e]
+            real[e] = (a * x[e] - b * y[e]) * inverse + 1.0
+            imaginary[e] = (a * y[e] + b * x[e]) * inverse
+    for e in range(count):
+        result[e] = complex(real[e], imaginary[e])
 
 
 class LogSpirals:
@@ -52,7 +65,7 @@ class LogSpirals:
     """
 
     def __init__(self, mesh: TriMesh) -> None:
-        self._edges = mesh.edges.copy()
+        self._edges = mesh.edges.astype(np.uint32)
         self._inverse_degree = 1.0 / np.bincount(mesh.edges.ravel(), minlength=len(mesh.vertices))
 
     def flow(self, positions: Complexes, field: Complexes, t: float = 1.0) -> Complexes:
@@ -64,7 +77,7 @@ class LogSpirals:
 
 
 @compiled
-def _rates(edges: Ints, positions: Complexes, displacements: Complexes) -> Complexes:
+def _rates(edges: Indices, positions: Complexes, displacements: Complexes) -> Complexes:
     """The rate s of each edge, (e,)."""
     result = np.empty(len(edges), dtype=np.complex128)
     for e in range(len(edges)):
@@ -76,7 +89,7 @@ def _rates(edges: Ints, positions: Complexes, displacements: Complexes) -> Compl
 
 
 @compiled
-def _sum_at_ends(edges: Ints, values: Complexes, count: int) -> Complexes:
+def _sum_at_ends(edges: Indices, values: Complexes, count: int) -> Complexes:
     """The sum at each of ``count`` vertices of the values (e,) of its edges."""
     result = np.zeros(count, dtype=np.complex128)
     for e in range(len(edges)):

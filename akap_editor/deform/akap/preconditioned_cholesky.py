@@ -4,23 +4,32 @@ A deformation is nearly isometric: the matrix at a pose is close to that of an e
 vertex by the rotation R since then. So R A₀⁻¹ Rᵀ is an excellent preconditioner, and one factorization serves
 many poses. Which earlier pose was factorized changes the cost of a solution, and the solution within its
 tolerance.
+
+Factors of large meshes have single precision, which halves the memory that a solve reads. Residuals and
+solutions have double precision.
 """
+
+from threading import Thread
 
 import numpy as np
 
-from ...geometry.jit import compiled
+from ...errors import SolverError
 from ...geometry.validation import Complexes, Floats, Ints
-from ..cholesky import SparseCholesky, SymmetricPattern
+from ..cholesky import CholeskyFactors, Precision, SymmetricPattern
+from ..fronts import SymbolicCholesky
+from ..multifrontal import Matrix, dot, iterate, multiply
 
-# A factorization costs as much as five to eight iterations. With fresh factors, each iteration gains a digit;
+# A factorization costs as much as ten iterations. With fresh factors, each iteration gains a digit or more;
 # refactorize once the iterations beyond that cost as much as a factorization.
-MAX_WASTED_ITERATIONS = 8
+MAX_WASTED_ITERATIONS = 2
+MAX_WASTED_ITERATIONS_OF_SMALL = 8  # small meshes factorize at once: a thread would cost more than it saves
+_FACTORIZATION_DELAY = 1  # poses for which the old factors serve while new ones are made beside
 _MAX_ITERATIONS = 12  # of one solution; without convergence the current matrix is factorized
-# Unknowns below which factors are simplicial: they take twice as long to compute, but solves, which are more
-# frequent, take half the time. Larger factors do not fit into the caches.
-_SIMPLICIAL_BELOW = 8_000
+MIN_SINGLE_VERTICES = 1500  # factors of fewer vertices fit into the caches in double precision, too
+_EXACT_ITERATIONS = 4  # that reach double precision from the factors of the very matrix
 _WARM_STARTS = 2  # earlier solutions from which the next one starts
-_DEPENDENT = 1e-11  # share of its energy below which what a further solution adds is rounding
+# The contraction is 1 to 2 % after a factorization, and then grows from pose to pose.
+_CONTRACTION_GROWTH, _CONTRACTION_SAFETY = 1.3, 3.0
 
 
 class PreconditionedCholesky:
@@ -28,23 +37,37 @@ class PreconditionedCholesky:
 
     Unknowns are complex, one for each vertex; the matrix is real, with interleaved x and y, and its pattern
     has all four entries of two coupled vertices.
-    exact: factorize every matrix. Otherwise solutions are iterated to the tolerance asked for, and the matrix
-    is factorized when iterations become too expensive or do not converge.
+    exact: factorize every matrix, in double precision. Otherwise solutions are iterated to the tolerance
+    asked for, and the matrix is factorized when iterations become too expensive or do not converge.
+    starts: (f + 1,) the groups of vertices that are eliminated together, see `Dissection`.
+    confirm: end iterations only with a correction that is itself within the tolerance, so that the error is a
+    small share of it. Otherwise the last, merely confirming iteration is left out where the contraction last
+    seen leaves an error within the tolerance.
 
-    iterations, factorizations: numbers so far.
+    While iterations converge, new factors of large meshes are made in a thread beside, and taken over a fixed
+    number of poses later: so solutions do not depend on how fast that was.
+
+    symbolic: the symbolic factorization; iterations, factorizations: numbers so far.
     """
 
-    def __init__(self, pattern: SymmetricPattern, exact: bool) -> None:
-        size = pattern.size
-        self._cholesky = SparseCholesky(pattern, supernodal=exact or pattern.size > _SIMPLICIAL_BELOW)
-        self._starts = np.searchsorted(pattern.columns, np.arange(size + 1)).astype(np.int32)
-        self._vertices = (pattern.rows // 2).astype(np.int32)
-        self._exact = exact
-        self._frame = self._rotation = np.ones(size // 2, dtype=np.complex128)
-        self._factorized_frame = self._frame
-        self._solutions: dict[str, list[Complexes]] = {}  # rotated back to rest, the last one first
+    def __init__(self, pattern: SymmetricPattern, exact: bool, starts: Ints, confirm: bool = True) -> None:
+        n = pattern.size // 2
+        self.symbolic = SymbolicCholesky(pattern.rows, pattern.columns, 2, starts)
+        column_starts = np.searchsorted(pattern.columns, np.arange(pattern.size + 1)).astype(np.uint32)
+        self._matrix = Matrix(column_starts, (pattern.rows // 2).astype(np.uint32), np.empty(0))
+        self._exact, self._confirm = exact, confirm
+        self._is_small = n < MIN_SINGLE_VERTICES
+        self._precision: Precision = np.float64 if exact or self._is_small else np.float32
+        self._factors = CholeskyFactors(self.symbolic, self._precision)
+        self._spare: CholeskyFactors | None = None  # made beside, or used before
+        self._job: _FactorizationThread | None = None
+        self._frame = self._rotation = self._factorized_frame = np.ones(n, np.complex128)
+        self._poses_to_wait = 0
+        self._earlier_solutions: dict[
+            str, tuple[Complexes, int]
+        ] = {}  # and how many, as `iterate` takes them
         self._has_factors = self._is_exact = False  # of some pose; of the current one
-        self._wasted_iterations = 0.0
+        self._wasted_iterations, self._contraction = 0.0, 1.0
         self.iterations = self.factorizations = 0
 
     def invalidate(self) -> None:
@@ -52,34 +75,48 @@ class PreconditionedCholesky:
         self._has_factors = False
 
     def prepare(self, nonzeros: Floats, frame: Complexes) -> None:
-        """Set the matrix by its nonzeros (z,).
+        """Set the matrix by its nonzeros (z,), which must not change later.
 
         frame: (n,) unit complex numbers, the rotation of each vertex from rest. Raises SolverError if the
         matrix is factorized and singular.
         """
-        self._nonzeros, self._frame, self._is_exact = nonzeros, frame, False
-        if self._exact or not self._has_factors or self._wasted_iterations >= MAX_WASTED_ITERATIONS:
+        self._matrix = self._matrix._replace(nonzeros=nonzeros)
+        self._frame, self._is_exact = frame, False
+        if self._exact or not self._has_factors:
             self.factorize()
-        else:
-            self._rotation = frame * self._factorized_frame.conj()
+            return
+        if self._job is not None:
+            self._poses_to_wait -= 1
+            if self._poses_to_wait == 0:
+                self._take_over()
+        elif self._is_small and self._wasted_iterations >= MAX_WASTED_ITERATIONS_OF_SMALL:
+            self.factorize()
+            return
+        elif not self._is_small and self._wasted_iterations >= MAX_WASTED_ITERATIONS:
+            self._factorize_beside()
+        self._rotation = frame * self._factorized_frame.conj()
+        self._contraction = min(_CONTRACTION_GROWTH * self._contraction, 1.0)
 
     def solve(self, right: Complexes, tolerance: float, warm_start_key: str = "") -> Complexes:
-        """A⁻¹ b for a right-hand side b (n,), exact if the current matrix is factorized.
+        """A⁻¹ b for a right-hand side b (n,), exact if every matrix is factorized.
 
         tolerance: largest error of a value otherwise. The error is estimated as the preconditioned residual,
-        which is also subtracted from the result.
+        which is also added to the result.
         warm_start_key: names a series of solutions that are similar from pose to pose; each starts from the
         last ones. Raises SolverError.
         """
-        earlier = self._solutions.get(warm_start_key, [])
-        solution = None if self._is_exact else self._iterate(right, tolerance, earlier)
+        if self._exact:
+            return self._solve_directly(right)
+        solution = self._iterate(right, tolerance, warm_start_key)
+        if solution is None and not self._is_exact:  # too far from an isometry
+            self.factorize()
+            solution = self._iterate(right, tolerance, warm_start_key)
+        if solution is None and self._precision is np.float32:  # too ill-conditioned for it
+            self._use_double_precision()
+            self.factorize()
+            solution = self._iterate(right, tolerance, warm_start_key)
         if solution is None:
-            if not self._is_exact:  # no convergence: too far from an isometry
-                self.factorize()
-            solution = self._precondition(right)
-        if warm_start_key and not self._exact:
-            at_rest = self._frame.conj() * solution
-            self._solutions[warm_start_key] = [at_rest, *earlier][:_WARM_STARTS]
+            solution = self._solve_directly(right)
         return solution
 
     def energy(self, values: Complexes) -> float:
@@ -88,99 +125,105 @@ class PreconditionedCholesky:
 
     def multiply(self, values: Complexes) -> Complexes:
         """A x, (n,), for values x (n,) and the matrix last set."""
-        return _product(self._starts, self._vertices, self._nonzeros, values)
+        result = np.empty_like(values)
+        multiply(self._matrix, values, result)
+        return result
 
     def factorize(self) -> None:
         """Factorize the current matrix. Raises SolverError."""
+        self._finish_job()
         self._has_factors = False
-        self._cholesky.factorize(self._nonzeros)
-        self._has_factors = self._is_exact = True
-        self._factorized_frame, self._rotation = self._frame, np.ones_like(self._frame)
-        self._wasted_iterations = 0.0
+        nonzeros = self._matrix.nonzeros
+        try:
+            self._factors.factorize(nonzeros)
+        except SolverError:
+            if self._precision is np.float64 or not np.isfinite(nonzeros).all():
+                raise
+            self._use_double_precision()
+            self._factors.factorize(nonzeros)
+        self._is_exact = True
+        self._use_factors_of(self._frame)
+
+    def _use_double_precision(self) -> None:
+        """Make all further factors in double precision."""
+        self._finish_job()
+        self._precision = np.float64
+        self._factors, self._spare = CholeskyFactors(self.symbolic, self._precision), None
+
+    def _use_factors_of(self, frame: Complexes) -> None:
+        """Begin to use new factors of a matrix at a pose with the rotations ``frame`` (n,)."""
+        self._has_factors = True
+        self._factorized_frame, self._rotation = frame, self._frame * frame.conj()
+        self._wasted_iterations, self._contraction = 0.0, 1.0
         self.factorizations += 1
 
-    def _precondition(self, right: Complexes) -> Complexes:
-        """R A₀⁻¹ Rᵀ b, (n,)."""
-        rotated = self._rotation.conj() * right
-        return self._rotation * self._cholesky.solve(rotated.view(np.float64)).view(np.complex128)
+    def _factorize_beside(self) -> None:
+        """Begin to factorize the current matrix in another thread."""
+        if self._spare is None:
+            self._spare = CholeskyFactors(self.symbolic, self._precision)
+        self._job = _FactorizationThread(self._spare, self._matrix.nonzeros, self._frame)
+        self._job.start()
+        self._poses_to_wait = _FACTORIZATION_DELAY
 
-    def _iterate(self, right: Complexes, tolerance: float, earlier: list[Complexes]) -> Complexes | None:
+    def _finish_job(self) -> "_FactorizationThread | None":
+        """Wait until nothing is factorized beside; returns the thread if there was one."""
+        job, self._job = self._job, None
+        if job is not None:
+            job.join()
+        return job
+
+    def _take_over(self) -> None:
+        """Use the factors that were made beside. If they could not be made, the old ones go on serving."""
+        job = self._finish_job()
+        if job is not None and job.has_factors:
+            self._factors, self._spare = job.factors, self._factors
+            self._use_factors_of(job.frame)
+        else:
+            self._wasted_iterations = 0.0
+
+    def _solve_directly(self, right: Complexes) -> Complexes:
+        """A⁻¹ b, (n,), with factors of the current matrix in double precision. Raises SolverError."""
+        return self._factors.solve(right.view(np.float64)).view(np.complex128)
+
+    def _iterate(self, right: Complexes, tolerance: float, warm_start_key: str) -> Complexes | None:
         """The solution (n,) by preconditioned conjugate gradients; None if they do not converge soon."""
-        solution, residual = self._project_on_earlier(right, earlier)
-        direction = np.zeros_like(residual)
-        previous, first_error = np.inf, 0.0
-        for count in range(_MAX_ITERATIONS):
-            correction = self._precondition(residual)
-            square = dot(residual, correction)
-            error = float(np.abs(correction).max())
-            first_error = first_error or error
-            if error <= tolerance:
-                self.iterations += count + 1
-                digits = float(np.log10(max(first_error / tolerance, 1.0)))
-                self._wasted_iterations += max(count - digits, 0.0)
-                return solution + correction
-            direction = correction + (square / previous) * direction
-            image = self.multiply(direction)
-            step_length = square / dot(direction, image)
-            solution = solution + step_length * direction
-            residual = residual - step_length * image
-            previous = square
-        return None
-
-    def _project_on_earlier(self, right: Complexes, earlier: list[Complexes]) -> tuple[Complexes, Complexes]:
-        """The combination of earlier solutions with the least error in the energy norm, and its residual.
-
-        earlier: (n,) each, rotated back to rest; they are rotated with the vertices first. Method: Fischer
-        1998, "Projection techniques for iterative solution of Ax = b with successive right-hand sides".
-        """
-        solution, residual = np.zeros_like(right), right
-        previous: tuple[Complexes, Complexes, float] | None = None
-        for at_rest in earlier:
-            basis = self._frame * at_rest
-            image = self.multiply(basis)
-            energy_before = dot(basis, image)
-            if previous is not None:  # make the second one orthogonal to the first
-                first, first_image, energy = previous
-                share = dot(first_image, basis) / energy
-                basis = basis - share * first
-                image = image - share * first_image
-            energy = dot(basis, image)
-            if energy <= _DEPENDENT * energy_before:
-                continue
-            share = dot(basis, residual) / energy
-            solution = solution + share * basis
-            residual = residual - share * image
-            previous = basis, image, energy
-        return solution, residual
+        earlier, known = np.empty((_WARM_STARTS, len(right)), np.complex128), 0
+        if warm_start_key:
+            earlier, known = self._earlier_solutions.get(warm_start_key, (earlier, 0))
+        solution, preconditioner = np.empty_like(right), self._factors.preconditioner(self._rotation)
+        trusted = 1.0 if self._confirm else min(_CONTRACTION_SAFETY * self._contraction, 1.0)
+        count, first, last = iterate(
+            preconditioner, self._matrix, right, self._frame, earlier, known, tolerance, trusted,
+            _EXACT_ITERATIONS if self._is_exact else 1, _MAX_ITERATIONS, solution,
+        )  # fmt: skip
+        if not count:
+            return None
+        self._earlier_solutions[warm_start_key] = earlier, min(known + 1, _WARM_STARTS)
+        if count > 1 and first > 0:
+            seen = (last / first) ** (1 / (count - 1))
+            self._contraction = max(seen, 0.5 * (seen + self._contraction))
+        self.iterations += count
+        digits = float(np.log10(max(first / tolerance, 1.0))) if tolerance else np.inf
+        self._wasted_iterations += max(count - 1 - digits, 0.0)
+        return solution
 
 
-@compiled
-def _product(starts: Ints, vertices: Ints, nonzeros: Floats, values: Complexes) -> Complexes:
-    """A x, (n,), for a symmetric matrix A given by the columns of its lower triangle.
+class _FactorizationThread(Thread):
+    """Factorizes one matrix beside a drag.
 
-    starts: (2n,) index of each column's first nonzero; vertices: (z,) vertex of each nonzero's row.
+    frame: (n,) the rotations of the vertices at its pose; has_factors: whether it succeeded. A thread and not
+    an executor: in a process that was forked meanwhile it counts as ended without success, and nothing waits.
     """
-    result = np.zeros_like(values)
-    for j in range(len(values)):
-        first, second, x = starts[2 * j], starts[2 * j + 1], values[j]  # columns of x and y
-        real = nonzeros[first] * x.real + nonzeros[first + 1] * x.imag
-        imaginary = nonzeros[first + 1] * x.real + nonzeros[second] * x.imag
-        shift = second - first - 1  # from an entry to the entry of the same row in the second column
-        for k in range(first + 2, second, 2):
-            i = vertices[k]
-            a, b, c, d = nonzeros[k], nonzeros[k + 1], nonzeros[k + shift], nonzeros[k + shift + 1]
-            y = values[i]
-            real += a * y.real + b * y.imag
-            imaginary += c * y.real + d * y.imag
-            result[i] += complex(a * x.real + c * x.imag, b * x.real + d * x.imag)
-        result[j] += complex(real, imaginary)
-    return result
 
+    def __init__(self, factors: CholeskyFactors, nonzeros: Floats, frame: Complexes) -> None:
+        super().__init__(name="factorization")
+        self.factors, self.frame, self.has_factors = factors, frame, False
+        self._nonzeros = nonzeros
 
-@compiled
-def dot(a: Complexes, b: Complexes) -> float:
-    """Re aᴴ b of two vectors (n,). BLAS would use threads, which wait for one another on a busy machine."""
-    total = 0.0
-    for k in range(len(a)):
-        total += a[k].real * b[k].real + a[k].imag * b[k].imag
-    return total
+    def run(self) -> None:
+        """Factorize; a matrix that cannot be factorized leaves no factors."""
+        try:
+            self.factors.factorize(self._nonzeros)
+        except SolverError:
+            return
+        self.has_factors = True

@@ -13,7 +13,7 @@ from ...geometry.jit import compiled
 from ...geometry.killing_matrix import Slots, VertexBlocks, add_face
 from ...geometry.mesh import TriMesh
 from ...geometry.operators import hat_gradients
-from ...geometry.validation import Complexes, Floats, Ints
+from ...geometry.validation import Complexes, Floats, Indices
 
 _SUFFICIENT_DECREASE = 1e-4  # share of the decrease that the slope predicts (Armijo's condition)
 _MAX_TRIES = 12  # of a line search
@@ -30,7 +30,7 @@ class SymmetricDirichlet:
 
     def __init__(self, mesh: TriMesh, stiffness: Floats | None = None) -> None:
         dx, dy, areas = hat_gradients(mesh.vertices, mesh.faces)
-        self._faces, self._count = mesh.faces.copy(), len(mesh.vertices)
+        self._faces, self._count = mesh.faces.astype(np.uint32), len(mesh.vertices)
         self._hats = dx + 1j * dy  # gradients of the hat functions, (m, 3)
         self._weights = areas if stiffness is None else areas * stiffness
         self._areas = areas
@@ -86,7 +86,7 @@ def _square(a: complex) -> float:
 
 
 @compiled
-def _columns(positions: Complexes, faces: Ints, hats: Complexes) -> Complexes:
+def _columns(positions: Complexes, faces: Indices, hats: Complexes) -> Complexes:
     result = np.empty((len(faces), 2), dtype=np.complex128)
     for f in range(len(faces)):
         jx = jy = 0.0j
@@ -111,7 +111,7 @@ def _value(columns: Complexes, weights: Floats) -> float:
 
 
 @compiled
-def _gradient(columns: Complexes, weights: Floats, faces: Ints, hats: Complexes, count: int) -> Complexes:
+def _gradient(columns: Complexes, weights: Floats, faces: Indices, hats: Complexes, count: int) -> Complexes:
     """The gradient (count,), by ∂det/∂jx = −i jy and ∂det/∂jy = i jx."""
     result = np.zeros(count, dtype=np.complex128)
     for f in range(len(faces)):
@@ -149,7 +149,7 @@ def _add_half_hessians(
     weights: Floats,
     rotations: Floats,
     convex: bool,
-    faces: Ints,
+    faces: Indices,
     hats: Complexes,
     slots: Slots,
     result: Floats,

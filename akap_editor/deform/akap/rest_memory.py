@@ -8,13 +8,13 @@ from ...errors import SolverError
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats
-from ..cholesky import SparseCholesky
+from ..cholesky import CholeskyFactors
 from .killing_field import KillingSystem
 from .pin_rotation import PinRotationConstraints
 from .preconditioned_cholesky import dot
 from .rest_energy import SymmetricDirichlet, line_search
 
-_TOLERANCE = 1e-5  # of a descent direction at every vertex, as a share of √area
+_TOLERANCE = 3e-6  # of a descent direction at every vertex, as a share of √area
 _FLIP_MARGIN = 0.9  # share of the step to the first flip that the line search may take
 _MIN_SHARE = 0.05  # if the line search accepts less than this share, retry with Newton's direction
 
@@ -37,7 +37,7 @@ class RestMemory:
     def __init__(self, mesh: TriMesh, system: KillingSystem, stiffness: Floats | None) -> None:
         self._mesh, self._system = mesh, system
         self._energy = SymmetricDirichlet(mesh, stiffness)
-        self._hessian: SparseCholesky | None = None
+        self._hessian: CholeskyFactors | None = None
 
     def set_pins(self, points: MeshPoints, rotation: PinRotationConstraints | None) -> None:
         """Choose the pins, k points of the mesh, and the faces that rotate with them."""
@@ -91,7 +91,7 @@ class RestMemory:
         if not gradient.any():
             return gradient
         if self._hessian is None:
-            self._hessian = SparseCholesky(self._system.pattern)
+            self._hessian = CholeskyFactors(self._system.symbolic)
         rotation_weights = None if self._rotation is None else self._rotation.rotation_weights
         for convex in (False, True):  # far from a minimum the Hessian has negative eigenvalues
             nonzeros = self._energy.half_hessian(columns, convex, self._system.blocks, rotation_weights)

@@ -26,6 +26,7 @@ from ...geometry.mesh import TriMesh
 from ...geometry.operators import gradient_matrices, to_complex, to_points
 from ...geometry.validation import Complexes, as_choice, as_number, as_points, as_switch
 from ..cholesky import SparseCholesky, SummedPattern
+from ..dissection import dissect
 from .rest_based import RestBasedDeformer, product
 
 Rotations = Literal["faces", "spokes-and-rims"]
@@ -55,6 +56,7 @@ class ArapDeformer(RestBasedDeformer):
         converge: bool = False,
         rotations: Rotations = "faces",
     ) -> None:
+        self._dissection = dissect(mesh.vertices, mesh.edges)
         limit = int(as_number(iterations, "iterations", 1, _MAX_ITERATIONS))
         self._iterations = _MAX_ITERATIONS_TO_CONVERGE if as_switch(converge, "converge") else limit
         as_choice(rotations, "rotations", ("faces", "spokes-and-rims"))
@@ -92,7 +94,7 @@ class ArapDeformer(RestBasedDeformer):
         matrix = (self._laplacian + pinned + diags_array(self._is_unpinned.astype(np.float64))).tocoo()
         lower = matrix.row >= matrix.col
         pattern = SummedPattern(matrix.row[lower], matrix.col[lower], matrix.shape[0])
-        self._cholesky = SparseCholesky(pattern, supernodal=False)
+        self._cholesky = SparseCholesky(pattern, self._dissection)
         self._cholesky.factorize(pattern.sum_entries(matrix.data[lower]))
         rows = self._weights.toarray()
         responses = np.array([self._cholesky.solve(row) for row in rows]).reshape(rows.shape).T

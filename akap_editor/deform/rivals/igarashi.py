@@ -23,6 +23,7 @@ from ...geometry.mesh import TriMesh
 from ...geometry.operators import NEXT, PREVIOUS, to_complex, to_points
 from ...geometry.validation import Complexes, Floats, as_number
 from ..cholesky import SparseCholesky, SummedPattern
+from ..dissection import Dissection, dissect
 from .rest_based import RestBasedDeformer, product
 
 
@@ -38,6 +39,7 @@ class IgarashiDeformer(RestBasedDeformer):
     """
 
     def __init__(self, mesh: TriMesh, pin_weight: float = 1000.0) -> None:
+        self._dissection = dissect(mesh.vertices, mesh.edges)
         self._pin_weight = as_number(pin_weight, "pin_weight", 1.0, 1e5) ** 2
         n, faces = len(mesh.vertices), mesh.faces
         corners = to_complex(mesh.vertices)[faces]
@@ -70,8 +72,8 @@ class IgarashiDeformer(RestBasedDeformer):
                 self._is_solved[own] = True
         identity = diags_array((~self._is_solved).astype(np.float64))
         pinned = self._pin_weight * (self._weights.T @ self._weights)
-        self._first = _factorize(_interleave(self._similar + pinned + identity))
-        self._second = _factorize(self._edges.T @ self._edges + pinned + identity)
+        self._first = _factorize(_interleave(self._similar + pinned + identity), self._dissection)
+        self._second = _factorize(self._edges.T @ self._edges + pinned + identity, self._dissection)
 
     def _deform(self, pose: Complexes, goals: Complexes) -> Complexes:
         # The unknowns are displacements from rest: exact zeros at rest, and full precision near it.
@@ -103,12 +105,12 @@ def _interleave(matrix: csr_array) -> coo_array:
     )
 
 
-def _factorize(matrix: csr_array | coo_array) -> SparseCholesky:
+def _factorize(matrix: csr_array | coo_array, dissection: Dissection) -> SparseCholesky:
     """Factorize a real symmetric matrix."""
     entries = matrix.tocoo()
     lower = entries.row >= entries.col
     pattern = SummedPattern(entries.row[lower], entries.col[lower], matrix.shape[0])
-    cholesky = SparseCholesky(pattern, supernodal=False)
+    cholesky = SparseCholesky(pattern, dissection)
     values: Floats = entries.data[lower]
     cholesky.factorize(pattern.sum_entries(values))
     return cholesky

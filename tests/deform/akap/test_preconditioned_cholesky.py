@@ -1,5 +1,7 @@
 """Conjugate gradients preconditioned by earlier factors: exact results, few factorizations."""
 
+import time
+
 import numpy as np
 import pytest
 from scipy.sparse import coo_array
@@ -7,7 +9,7 @@ from scipy.sparse import coo_array
 from akap_editor.deform.akap import preconditioned_cholesky
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.akap.preconditioned_cholesky import PreconditionedCholesky
-from akap_editor.deform.cholesky import SymmetricPattern
+from akap_editor.deform.cholesky import CholeskyFactors, SymmetricPattern
 from akap_editor.geometry.distortion import distortion
 from akap_editor.geometry.killing_matrix import KillingMatrix
 from akap_editor.geometry.operators import to_complex, to_points
@@ -22,6 +24,7 @@ class System:
     def __init__(self, mesh):
         self.mesh, self.size = mesh, 2 * len(mesh.vertices)
         self.killing = KillingMatrix(mesh)
+        self.groups = np.append(np.arange(0, len(mesh.vertices), 7), len(mesh.vertices))
         self.pattern = SymmetricPattern(self.killing.blocks.rows, self.killing.blocks.columns, self.size)
 
     def nonzeros(self, positions):
@@ -59,7 +62,7 @@ def solved(system, positions, right):
 
 def prepared(system, exact=False):
     """A solver with the factorization of the rest pose."""
-    solver = PreconditionedCholesky(system.pattern, exact)
+    solver = PreconditionedCholesky(system.pattern, exact, system.groups)
     ones = np.ones(system.size // 2, dtype=complex)
     solver.prepare(system.nonzeros(system.mesh.vertices), ones)
     return solver
@@ -90,7 +93,7 @@ def test_a_turned_drawing_costs_one_iteration(system):
 
 def test_solutions_like_earlier_ones_cost_fewer_iterations(system, monkeypatch):
     """A force that rotates with the drawing and changes its size; only the first pose is factorized."""
-    monkeypatch.setattr(preconditioned_cholesky, "MAX_WASTED_ITERATIONS", 1000)
+    monkeypatch.setattr(preconditioned_cholesky, "MAX_WASTED_ITERATIONS_OF_SMALL", 1000)
     counts = []
     for key in ("", "force"):
         solver = prepared(system)
@@ -172,3 +175,85 @@ def test_a_bend_is_the_same_with_few_factorizations_as_with_many(memory):
     ours, theirs = distortion(mesh, pose), distortion(mesh, other)
     assert ours.area == pytest.approx(theirs.area, abs=5e-5)
     assert ours.angle == pytest.approx(theirs.angle, abs=5e-5)
+
+
+@pytest.fixture
+def single_precision(monkeypatch):
+    """Also for the factors of a small mesh."""
+    monkeypatch.setattr(preconditioned_cholesky, "MIN_SINGLE_VERTICES", 0)
+
+
+def drag_of_bar(memory=1.0, stiffness=None, exact=False):
+    """The poses of a drag that is long enough for several factorizations."""
+    mesh = shapes.SHAPES["bar"]
+    deformer = AkapDeformer(mesh, memory=memory, stiffness=stiffness, exact=exact)
+    points = shapes.random_pins(mesh, 4, 3)
+    deformer.set_pins(points)
+    goal, pose, poses = mesh.evaluate(points, mesh.vertices), mesh.vertices, []
+    for _ in range(40):
+        goal[-1] += [-1.0, 1.5]
+        pose = deformer.step(pose, goal).positions
+        poses.append(pose)
+    return poses
+
+
+@pytest.mark.usefixtures("single_precision")
+def test_solutions_with_single_precision_are_as_near_as_asked_for(system):
+    solver = prepared(system)
+    for seed, angle in enumerate([0.05, 0.1, 0.2, 0.4, 0.8]):
+        positions, frame = bent(system.mesh, angle)
+        solver.prepare(system.nonzeros(positions), frame)
+        right = right_side(system, seed)
+        found = solver.solve(right, 1e-9, "a name")
+        assert np.abs(found - solved(system, positions, right)).max() < 1e-9
+
+
+@pytest.mark.usefixtures("single_precision")
+def test_factors_of_the_very_matrix_give_double_precision(system):
+    right = right_side(system, 7)
+    found, expected = prepared(system).solve(right, 1e-3), solved(system, system.mesh.vertices, right)
+    assert np.abs(found - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+@pytest.mark.usefixtures("single_precision")
+@pytest.mark.parametrize("slow_calls", [range(0), range(2, 100), range(2, 100, 3)])
+def test_poses_do_not_depend_on_how_fast_factors_are_made_beside(monkeypatch, slow_calls):
+    expected = drag_of_bar()
+    factorize, calls = CholeskyFactors.factorize, []
+
+    def slow(factors, nonzeros):
+        calls.append(1)
+        if len(calls) in slow_calls:
+            time.sleep(0.02)
+        factorize(factors, nonzeros)
+
+    monkeypatch.setattr(CholeskyFactors, "factorize", slow)
+    assert all((a == b).all() for a, b in zip(drag_of_bar(), expected, strict=True))
+    assert len(calls) > 4
+
+
+@pytest.mark.usefixtures("single_precision")
+@pytest.mark.parametrize("memory", [0.0, 1.0])
+def test_stiffness_beyond_single_precision_is_solved_in_double(memory):
+    """A stiff half and a soft rest, a factor of 10⁹ apart."""
+    mesh = shapes.SHAPES["bar"]
+    is_left = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] < mesh.vertices[:, 0].mean()
+    stiffness = np.where(is_left, 1e6, 1e-3)
+    ours, exact = (drag_of_bar(memory, stiffness, on)[:5] for on in (False, True))
+    visible = 0.01 * mesh.length / 1000
+    assert np.abs(ours[0] - exact[0]).max() < visible
+    assert all(np.isfinite(pose).all() for pose in ours)
+
+
+@pytest.mark.usefixtures("single_precision")
+def test_pins_that_change_during_a_factorization_beside_do_no_harm(system):
+    """`invalidate` discards factors that are being made for the matrix with the old pins."""
+    solver = prepared(system)
+    stretched, frame = system.mesh.vertices * [1.3, 0.8], np.ones(system.size // 2, dtype=complex)
+    for seed in range(30):
+        solver.prepare(system.nonzeros(stretched), frame)
+        right = right_side(system, seed)
+        found = solver.solve(right, TOLERANCE)
+        assert np.abs(found - solved(system, stretched, right)).max() < TOLERANCE
+        if seed % 3 == 2:
+            solver.invalidate()
