@@ -18,6 +18,7 @@ _ESCAPED_CATEGORIES = (
     "Zp",
 )  # controls, marks without a shape, surrogates, separators
 _SURROGATE_OF_BYTE = range(0xDC80, 0xDD00)  # in which Python puts the bytes that are not UTF-8
+_CUT = " ... "  # in the middle of a long text
 _MAX_STEM_BYTES = 200  # a name has 255, and gets an ending
 _RESERVED = re.compile(r'[/\\:*?"<>|]')  # in names of files, on one of the systems
 
@@ -38,6 +39,12 @@ def display_text(value: object, keeps_lines: bool = False) -> str:
 def display_name(path: Path) -> str:
     """The last part of a path, as people can read it."""
     return display_text(path.name)
+
+
+def shortened(text: str, most: int) -> str:
+    """A text of up to ``most`` characters for a message: its beginning and its end, if it is longer."""
+    half = (most - len(_CUT)) // 2
+    return text if len(text) <= most else f"{text[:half]}{_CUT}{text[-half:]}"
 
 
 def file_stem(name: str) -> str:

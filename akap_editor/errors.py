@@ -4,7 +4,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from .display_text import display_text
+from .display_text import display_text, shortened
+
+_MAX_PATH = 300  # characters of a path in a message
 
 
 class AkapError(Exception):
@@ -22,7 +24,8 @@ class FileError(InputError):
     """
 
     def __init__(self, verb: str, path: str | Path, reason: str) -> None:
-        super().__init__(f"Couldn't {verb} “{display_text(path)}”. {_as_sentence(reason)}")
+        shown = shortened(display_text(path), _MAX_PATH)
+        super().__init__(f"Couldn't {verb} “{shown}”. {_as_sentence(reason)}")
 
 
 class SolverError(AkapError, ArithmeticError):

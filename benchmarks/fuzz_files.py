@@ -3,8 +3,9 @@
 Run from the project's root: python benchmarks/fuzz_files.py [--cases N] [--seed S]
 Makes .akap, .pose.json, .akaprec, mesh, picture, .psd and .ora files with damage on the outside (bytes,
 length, zip directory) or, with correct checksums, on the inside (numbers, JSON, XML, PNG, sizes, names,
-bombs), and opens them in memory, with all Python warnings as errors. A file that opens is saved and opened
-again, and must be the same.
+bombs), and opens them, with all Python warnings as errors. A file that opens is saved as a document, opened
+and saved again, and must be the same; of pictures, layers and recordings, which are meshed or replayed for
+this, only a share.
 Prints the numbers of opened and refused files, the slowest case and the peak memory. The exit code is 1 after
 any other exception, a case of over 20 seconds, or more than a gigabyte of memory. A failing case prints its
 seed; --seed S --cases 1 runs it alone.
@@ -29,6 +30,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -36,29 +39,32 @@ from PIL import Image
 from psd_tools import PSDImage
 
 from akap_editor.editor import gestures
-from akap_editor.editor.document.document import Document, EditState
-from akap_editor.editor.document.drawing import Drawing
+from akap_editor.editor.document.document import Document, EditState, new_document
+from akap_editor.editor.document.drawing import Drawing, make_drawing
 from akap_editor.editor.document.named_poses import NamedPose
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.session.edits import SetTargets
-from akap_editor.editor.session.replay import replay
+from akap_editor.editor.session.replay import Replay
 from akap_editor.errors import AkapError, InputError
 from akap_editor.geometry.mesh import TriMesh
 from akap_editor.io.akap.pose import decode_pose, encode_pose
 from akap_editor.io.akap.project import decode_document, encode_document
 from akap_editor.io.akap.recording import decode_recording
 from akap_editor.io.export.gltf import encode_glb
-from akap_editor.io.images import decode_image, encode_png
+from akap_editor.io.images import Picture, decode_image, encode_png
 from akap_editor.io.layers.open_layers import decode_layers
-from akap_editor.io.mesh_files.obj_off import PARSERS, decode_text
-from akap_editor.io.mesh_files.polygons import triangulate_polygons
+from akap_editor.io.mesh_files.obj_off import PARSERS
 from akap_editor.io.mesh_files.soundness import decode_mesh, mesh_defects
+from akap_editor.io.open_document import open_document
 from akap_editor.layers.composite import composite
 
 MAX_CASE_SECONDS = 20.0  # of processor time; the largest allowed pictures take several
 MAX_MEMORY_BYTES = 2**30
 BOMB_SHARE = 1 / 8000  # of all .akap files
+MESHED_SHARE = 0.1  # of the pictures and layers that open; meshing takes much longer than reading
+REPLAYED_SHARE = 0.02  # of the recordings that open
+SMALL_SIDE = 64  # pixels, of a picture that is meshed
 
 Rng = np.random.Generator
 Entries = list[tuple[str, bytes]]
@@ -380,6 +386,21 @@ def damaged_text(rng: Rng, data: bytes) -> bytes:
     return b" ".join(words)
 
 
+MATERIAL = b"newmtl m\nKd 1 1 1\nmap_Kd -s 1 1 1 a.png\n"
+PICTURE_KINDS = {"JPEG": "RGB", "WEBP": "RGBA", "BMP": "RGB", "TIFF": "RGBA", "GIF": "P"}
+
+
+def seed_pictures() -> list[bytes]:
+    """Small pictures in the formats of `PICTURE_KINDS`."""
+    rgba = np.random.default_rng(3).integers(0, 256, (6, 8, 4), dtype=np.uint8)
+    files = []
+    for kind, mode in PICTURE_KINDS.items():
+        buffer = BytesIO()
+        Image.fromarray(rgba).convert(mode).save(buffer, kind)
+        files.append(buffer.getvalue())
+    return files
+
+
 def damaged_glb(rng: Rng, data: bytes) -> bytes:
     """A glTF binary with another JSON, in a chunk of the right length, or with other bytes."""
     if rng.random() < 0.2:
@@ -471,7 +492,7 @@ class Fuzzer:
             with zipfile.ZipFile(BytesIO(encode_document(document))) as archive:
                 self.files.append([(name, archive.read(name)) for name in archive.namelist()])
         self.poses = [encode_pose(document) for document in self.documents]
-        self.psd, self.ora = seed_psd(), seed_ora()
+        self.psd, self.ora, self.pictures = seed_psd(), seed_ora(), seed_pictures()
         self.recordings = [seed_recording(document) for document in self.documents]
         self.glbs = [encode_glb(document.drawing, document.state.positions) for document in self.documents]
 
@@ -493,49 +514,79 @@ class Fuzzer:
         self.slowest = max(self.slowest, (time.process_time() - started, kind, seed))
 
     def _open_akap(self, rng: Rng) -> None:
-        document = decode_document(damaged_drawing(rng, self.files))
-        data = encode_document(document)
-        assert encode_document(decode_document(data)) == data
+        check_saving(decode_document(damaged_drawing(rng, self.files)))
 
     def _open_mesh(self, rng: Rng) -> None:
         name, data = pick(rng, MESH_SEEDS)
         data = damaged_text(rng, data)
-        mesh_defects(decode_mesh(data))
-        if name in PARSERS:
-            mesh = PARSERS[name](decode_text(data))
-            with np.errstate(all="ignore"):
-                triangulate_polygons(np.array(mesh.vertices).reshape(-1, 3), mesh.faces)
+        if rng.random() < 0.5:
+            mesh_defects(decode_mesh(data))
+        if name not in PARSERS:
+            return
+        with TemporaryDirectory() as folder:
+            path = Path(folder, f"a{name}")
+            path.write_bytes(data)
+            path.with_suffix(".mtl").write_bytes(
+                pick(rng, [MATERIAL, damaged_text(rng, MATERIAL), change_bytes(rng, MATERIAL)])
+            )
+            if rng.random() < 0.7:
+                picture = encode_png(self.documents[0].drawing.image)
+                path.with_suffix(".png").write_bytes(pick(rng, [picture, change_png(rng, picture)]))
+            check_saving(open_document(path))
 
     def _open_glb(self, rng: Rng) -> None:
         mesh_defects(decode_mesh(damaged_glb(rng, pick(rng, self.glbs))))
 
     def _open_picture(self, rng: Rng) -> None:
-        document = pick(rng, self.documents)
-        data = change_png(rng, encode_png(document.drawing.image))
-        image = decode_image(data, ("PNG",), document.drawing.size)
-        assert (decode_image(encode_png(image)) == image).all()
+        if rng.random() < 0.5:
+            image = decode_image(pick(rng, [change_bytes, cut])(rng, pick(rng, self.pictures)))
+        else:
+            document = pick(rng, self.documents)
+            data = change_png(rng, encode_png(document.drawing.image))
+            image = decode_image(data, ("PNG",), document.drawing.size)
+        self._mesh_some(rng, image)
+        if max(image.shape) <= SMALL_SIDE:
+            assert (decode_image(encode_png(image)) == image).all()
 
     def _open_layers(self, rng: Rng) -> None:
         layered = decode_layers(damaged_layers(rng, self.psd, self.ora))
         if layered.size[0] * layered.size[1] < 2**20:
             picture = composite(layered)
             assert picture.shape[1::-1] == layered.size
+            self._mesh_some(rng, picture)
+
+    def _mesh_some(self, rng: Rng, image: Picture) -> None:
+        """Make a drawing of a share of the pictures."""
+        if rng.random() < MESHED_SHARE and max(image.shape) <= SMALL_SIDE:
+            check_saving(new_document(make_drawing(image, vertices=50)))
 
     def _open_pose(self, rng: Rng) -> None:
         document = pick(rng, self.documents)
         pose = decode_pose(damaged_pose(rng, self.poses), document.drawing)
-        data = encode_pose(document.with_state(EditState(pose.pins, pose.positions)))
-        assert decode_pose(data, document.drawing).positions.tobytes() == pose.positions.tobytes()
+        posed = document.with_state(EditState(pose.pins, pose.positions))
+        assert (
+            decode_pose(encode_pose(posed), document.drawing).positions.tobytes() == pose.positions.tobytes()
+        )
+        check_saving(posed)
 
     def _open_akaprec(self, rng: Rng) -> None:
         recording = decode_recording(damaged_recording(rng, self.recordings))
         assert decode_recording(recording.to_text().encode()).events == recording.events
-        if rng.random() < 0.02 and len(recording.events) < 100:  # takes much longer than reading
+        if rng.random() < REPLAYED_SHARE and len(recording.events) < 100:
             try:
-                for _ in replay(recording, pick(rng, self.documents).drawing):
+                replayed = Replay(recording, pick(rng, self.documents).drawing)
+                for _ in replayed.events():
                     pass
             except AkapError as error:
                 raise InputError(str(error)) from error
+            if replayed.session is not None:
+                check_saving(replayed.end().document)
+
+
+def check_saving(document: Document) -> None:
+    """Assert that a document can be saved, and that opening and saving it again gives the same bytes."""
+    data = encode_document(document)
+    assert encode_document(decode_document(data)) == data
 
 
 def stop_case(*_: object) -> None:

@@ -11,13 +11,10 @@ the exit code is 1 if anything was broken.
 import argparse
 import json
 import os
-import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -27,28 +24,12 @@ from akap_editor.io.akap.autosave import FIRST_COPY_SECONDS
 from akap_editor.io.akap.project import load
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
-from tests.support.running_program import SIZE, RunningProgram, far_apart, find_camera
+from tests.support.running_program import RunningProgram, far_apart, find_camera
+from tests.support.x_server import x_server
 
 GRACE_SECONDS = 5.0  # beyond `FIRST_COPY_SECONDS`: a frame and the writing of a copy on a busy machine
 LONGEST_SECONDS = 12.0  # from the first change to a kill
 PINS = 4
-
-
-@contextmanager
-def x_server() -> Iterator[str]:
-    """The display of an X server of our own."""
-    read, write = os.pipe()
-    screen = "{}x{}x24".format(*SIZE)
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", screen, "-nolisten", "tcp", "-noreset"]
-    server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
-    os.close(write)
-    with os.fdopen(read) as pipe:
-        number = pipe.readline().strip()
-    try:
-        yield f":{number}"
-    finally:
-        server.terminate()
-        server.wait()
 
 
 class Rounds:
@@ -72,7 +53,7 @@ class Rounds:
         """Save a drawing with pins."""
         program = self._start(self._picture)
         alpha = read_image(self._picture)[..., 3]
-        zoom, offset = find_camera(program.key("b", "the checkerboard is gone"), alpha)
+        zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
         self._pins = np.rint(far_apart(alpha, PINS) * zoom + offset).astype(int)
         for pin in self._pins.tolist():
             program.click(pin)
@@ -143,8 +124,8 @@ def main() -> int:
     parser.add_argument("--kills", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
-    with x_server() as display, tempfile.TemporaryDirectory() as folder:
-        rounds = Rounds(display, Path(folder), arguments.seed)
+    with x_server() as server, tempfile.TemporaryDirectory() as folder:
+        rounds = Rounds(server.display, Path(folder), arguments.seed)
         rounds.prepare()
         for number in range(1, arguments.kills + 1):
             rounds.run(number)

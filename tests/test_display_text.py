@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from akap_editor.display_text import display_name, display_text, file_stem
+from akap_editor.display_text import display_name, display_text, file_stem, shortened
 from tests.support.names import assert_readable, strange_names
 
 CASES = {
@@ -51,6 +51,16 @@ def test_the_name_of_a_path():
 )
 def test_stems_of_files(name, stem):
     assert file_stem(name) == stem
+
+
+@pytest.mark.parametrize("length", [0, 1, 29, 30, 31, 5000])
+def test_a_long_text_keeps_its_beginning_and_its_end(length):
+    text = ("abc" * length)[:length]
+    short = shortened(text, 30)
+    assert len(short) <= 30
+    assert (short == text) == (length <= 30)
+    assert text.startswith(short[:10])
+    assert text.endswith(short[-10:])
 
 
 @pytest.mark.parametrize("name", strange_names())

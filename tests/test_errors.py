@@ -30,3 +30,11 @@ def test_contexts_put_entry_and_file_before_the_message():
 def test_contexts_change_no_other_errors():
     with pytest.raises(KeyError, match="x"), file_errors("open", "cat.akap"), error_context("poses.json"):
         raise KeyError("x")
+
+
+@pytest.mark.parametrize("character", ["a", "\n", "\udcff", "猫"])
+def test_a_message_about_a_file_with_a_long_name_is_of_bounded_length(character):
+    message = str(FileError("open", f"/folder/{character * 5000}.png", "there is no such file"))
+    assert len(message) < 400
+    assert message.startswith("Couldn't open “/folder/")
+    assert message.endswith(".png”. There is no such file.")

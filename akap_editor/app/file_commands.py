@@ -61,7 +61,8 @@ def cut_out(document: Document, mask: Path) -> Document:
         image = apply_mask(picture, visible)
         threshold = fitting_threshold(image[..., 3], drawing.meshing.threshold)  # the mask may be faint
         meshing = replace(drawing.meshing, background=None, threshold=threshold)
-        return new_document(remove_background_and_mesh(image, meshing, drawing.name))
+        masked = new_document(remove_background_and_mesh(image, meshing, drawing.name))
+    return replace(masked, sources=(*document.sources, mask))
 
 
 # -- poses --------------------------------------------------------------------------------------------------

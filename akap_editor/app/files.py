@@ -46,7 +46,7 @@ def show_document(state: AppState, document: Document) -> None:
     if document.state.animation.keyframes:
         state.timeline.mode, state.timeline.is_shown = "keyframes", True
     opaque = document.path is None and not has_transparency(document.drawing.image)
-    notes = opening_notes(document)
+    notes = opening_notes(document, "in the Mesh section")
     if opaque:
         notes.append(
             "This picture has no transparency, so the whole rectangle bends. "

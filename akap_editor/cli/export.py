@@ -22,6 +22,7 @@ from .options import (
     mesher_option,
     output_files,
     overwrite_option,
+    refuse_unnamed,
     threshold_option,
 )
 
@@ -63,8 +64,8 @@ def export_file(
     from ..render.offscreen import OffscreenRenderer
 
     chosen = format_of(output)
-    refuse_source(output, [file], overwrite)
     document = open_document(file, threshold=check_threshold(threshold), mesher=mesher)
+    refuse_source(output, document.sources, overwrite)  # before anything is printed
     for note in opening_notes(document):
         click.echo(f"akap-editor: {note}", err=True)
     make_folder_of(output)
@@ -98,7 +99,8 @@ def print_results(results: list[ExportResult], as_json: bool) -> None:
     "--output",
     type=FILE,
     required=True,
-    help="File to write; its ending sets the format. With --format, a folder for one file of each FILE.",
+    help="File to write, or to replace; its ending sets the format. With --format, a folder for one file of "
+    "each FILE.",
 )
 @click.option(
     "--format",
@@ -137,6 +139,7 @@ def export_command(
         if value is not None and not chosen.uses_framing:
             raise InputError(f"{name}: expected a picture or an outline as output, got {chosen.suffix}")
     options = export_options(scale, background, crop, rest)
+    refuse_unnamed(outputs, output, files, overwrite)
     results = [
         export_file(file, target, options, threshold, overwrite, mesher)
         for file, target in zip(files, outputs, strict=True)

@@ -15,20 +15,38 @@ from ..display_text import display_text
 from ..editor.document.drawing import Meshing, apply_mask
 from ..errors import FileError, InputError, file_errors
 from ..geometry.validation import as_number
+from ..io.atomic import noted_reads
 from ..io.images import has_transparency, read_mask
 from ..io.layers.open_layers import LAYER_SUFFIXES
 from ..io.mesh_files.obj_off import write_obj
 from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note, read_picture
-from ..io.outputs import refuse_replacing
-from ..meshing.faint import DEFAULT_THRESHOLD, faint_share, fitting_threshold
+from ..io.outputs import refuse_replacing, refuse_source
+from ..meshing.faint import faint_share, fitting_threshold
 from ..meshing.mesher_process import MESHER_PROCESS
 from ..meshing.meshers import check_mesher
 from ..meshing.picture_mesh import mesh_picture
 from ..meshing.quality import mesh_quality
 from ..meshing.triangulate import MAX_VERTICES, MIN_VERTICES
-from .options import FILE, make_folder_of, mesher_option, overwrite_option
+from .options import (
+    FILE,
+    check_threshold,
+    make_folder_of,
+    mesher_option,
+    overwrite_option,
+    threshold_option,
+)
 
 MAX_EXPANSION = 1000.0  # pixels
+
+
+@dataclass(frozen=True)
+class MeshOptions:
+    """The options of a mesh, see `Meshing`; threshold: None for one that suits the picture."""
+
+    vertices: int
+    expand: float
+    threshold: float | None
+    mesher: str
 
 
 @dataclass(frozen=True)
@@ -61,7 +79,9 @@ class MeshRow:
 
 @click.command(epilog="Example: akap-editor mesh drawings/*.png -o meshes --vertices 3000")
 @click.argument("pictures", type=FILE, nargs=-1, required=True, metavar="PICTURE...")
-@click.option("-o", "--output", type=FILE, help="OBJ file to write; for several pictures, a folder.")
+@click.option(
+    "-o", "--output", type=FILE, help="OBJ file to write, or to replace; for several pictures, a folder."
+)
 @click.option("--vertices", default=Meshing.vertices, show_default=True, help="Number of vertices.")
 @click.option(
     "--expand",
@@ -70,13 +90,7 @@ class MeshRow:
     metavar="PX",
     help="Margin in pixels by which the outline moves outwards.",
 )
-@click.option(
-    "--threshold",
-    default=Meshing.threshold,
-    show_default=True,
-    metavar="SHARE",
-    help="Alpha threshold: share of full opacity at which the drawing ends.",
-)
+@threshold_option
 @click.option("--mask", type=FILE, help="Picture that is bright, or opaque, where PICTURE is to be visible.")
 @mesher_option
 @overwrite_option
@@ -88,7 +102,7 @@ def mesh(
     output: Path | None,
     vertices: int,
     expand: float,
-    threshold: float,
+    threshold: float | None,
     mask: Path | None,
     mesher: str | None,
     overwrite: bool,
@@ -98,10 +112,12 @@ def mesh(
 
     Of several pictures, those that fail are reported and skipped; the exit code is then 1.
     """
-    meshing = _meshing(vertices, expand, threshold, mesher)
+    as_number(vertices, "--vertices", MIN_VERTICES, MAX_VERTICES)
+    as_number(expand, "--expand", 0, MAX_EXPANSION)
+    options = MeshOptions(vertices, expand, check_threshold(threshold), check_mesher(mesher))
     if len(pictures) == 1 and not pictures[0].is_dir():
         MESHER_PROCESS.start()
-        row = measure(pictures[0], output, meshing, mask)
+        row = measure(pictures[0], output, options, mask, overwrite)
         click.echo(json.dumps([asdict(row)], indent=2) if as_json else _describe(row))
         return
     if mask is not None:
@@ -110,7 +126,7 @@ def mesh(
     outputs = _outputs(paths, output)
     if output is not None:
         refuse_replacing(output, filter(None, outputs), overwrite)
-    rows, errors = _measure_all(paths, outputs, meshing)
+    rows, errors = _measure_all(paths, outputs, options)
     if as_json:
         click.echo(json.dumps([asdict(row) for row in rows] + errors, indent=2))
     else:
@@ -121,21 +137,28 @@ def mesh(
         raise SystemExit(1)
 
 
-def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | None = None) -> MeshRow:
+def measure(
+    picture: Path,
+    output: Path | None,
+    options: MeshOptions,
+    mask: Path | None = None,
+    overwrite: bool = False,
+) -> MeshRow:
     """Make and measure the mesh of one picture; write it if ``output`` is given. Raises InputError."""
     if output is not None and output.suffix.lower() != ".obj":
         raise FileError("save", output, f"expected a name that ends in .obj, got {output.suffix or 'none'}")
     started = time.perf_counter()
-    image, notes = read_picture(picture)
-    shown = read_mask(mask) if mask is not None else None
+    with noted_reads() as read:
+        image, notes = read_picture(picture)
+        shown = read_mask(mask) if mask is not None else None
+    if output is not None:
+        refuse_source(output, read, overwrite)
     with file_errors("mesh", picture):
         if shown is not None:
             image = apply_mask(image, shown)
         alpha = np.ascontiguousarray(image[..., 3])
-        threshold = meshing.threshold
-        if threshold == DEFAULT_THRESHOLD:
-            threshold = fitting_threshold(alpha)
-        meshed = mesh_picture(alpha, meshing.vertices, meshing.expand, threshold, meshing.mesher)
+        threshold = fitting_threshold(alpha) if options.threshold is None else options.threshold
+        meshed = mesh_picture(alpha, options.vertices, options.expand, threshold, options.mesher)
     seconds = time.perf_counter() - started
     if output is not None:
         make_folder_of(output)
@@ -154,14 +177,6 @@ def measure(picture: Path, output: Path | None, meshing: Meshing, mask: Path | N
         faint=faint,
         **{**asdict(quality), "covered": quality.covered * (1 - faint)},
     )
-
-
-def _meshing(vertices: int, expand: float, threshold: float, mesher: str | None) -> Meshing:
-    as_number(vertices, "--vertices", MIN_VERTICES, MAX_VERTICES)
-    as_number(expand, "--expand", 0, MAX_EXPANSION)
-    if not 0 < threshold < 1:
-        raise InputError(f"--threshold: expected a share between 0 and 1, got {threshold:g}")
-    return Meshing(vertices, expand, threshold, mesher=check_mesher(mesher))
 
 
 def _expand_folders(pictures: tuple[Path, ...]) -> list[Path]:
@@ -198,14 +213,14 @@ def _outputs(paths: list[Path], folder: Path | None) -> list[Path | None]:
 
 
 def _measure_all(
-    paths: list[Path], outputs: list[Path | None], meshing: Meshing
+    paths: list[Path], outputs: list[Path | None], options: MeshOptions
 ) -> tuple[list[MeshRow], list[dict[str, Any]]]:
     MESHER_PROCESS.start()
     rows, errors = [], []
     with click.progressbar(zip(paths, outputs, strict=True), len(paths), "Meshing", file=sys.stderr) as bar:
         for path, output in bar:
             try:
-                rows.append(measure(path, output, meshing))
+                rows.append(measure(path, output, options))
             except InputError as error:
                 errors.append({"picture": str(path), "error": str(error)})
     return rows, errors

@@ -16,6 +16,7 @@ from ..errors import FileError, InputError
 from ..io.atomic import os_error_reason
 from ..io.export import ExportOptions
 from ..io.images import write_png
+from ..io.outputs import refuse_replacing, refuse_source
 from ..meshing.meshers import MESHERS
 from ..resources import bundled_drawings
 
@@ -41,7 +42,8 @@ _FRAMING = (
 overwrite_option = click.option(
     "--overwrite",
     is_flag=True,
-    help="Replace the file that is read, and files that are written besides the output.",
+    help="Replace also files that are read, and existing files that --output does not name: materials, "
+    "textures, indices, files in a folder.",
 )
 
 threshold_option = click.option(
@@ -167,6 +169,16 @@ def output_files(files: Sequence[Path], output: Path, suffix: str) -> list[Path]
             f"expected files of different names, got {count} that would become {display_text(name)}{suffix}"
         )
     return [output / f"{file.stem}{suffix}" for file in files]
+
+
+def refuse_unnamed(outputs: Sequence[Path], output: Path, sources: Sequence[Path], overwrite: bool) -> None:
+    """Raise FileError if ``outputs`` replace files of a folder, or ``sources``, unless ``overwrite``.
+
+    output: the value of --output, the only file that may be replaced.
+    """
+    for path in outputs:
+        refuse_source(path, sources, overwrite)
+    refuse_replacing(output, (path for path in outputs if path != output), overwrite)
 
 
 def write_picture(path: Path, picture: Any) -> None:

@@ -17,6 +17,7 @@ from .options import (
     json_option,
     output_files,
     overwrite_option,
+    refuse_unnamed,
     threshold_option,
 )
 
@@ -33,7 +34,7 @@ STDOUT = Path("-")
     "--output",
     type=FILE,
     required=True,
-    help="PNG file to write, or a folder for one picture of each FILE; - for stdout.",
+    help="PNG file to write, or to replace, or a folder for one picture of each FILE; - for stdout.",
 )
 @framing_options
 @threshold_option
@@ -57,6 +58,7 @@ def render(
     outputs = output_files(files, output, ".png")
     if outputs == [output]:
         check_png(output)
+    refuse_unnamed(outputs, output, files, overwrite)
     results = [
         export_file(file, target, options, threshold, overwrite)
         for file, target in zip(files, outputs, strict=True)

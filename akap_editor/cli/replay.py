@@ -25,8 +25,9 @@ from ..io.animation.formats import (
     replaced_files,
     write_animation,
 )
+from ..io.atomic import noted_reads
 from ..io.open_document import open_document
-from ..io.outputs import refuse_replacing, refuse_source
+from ..io.outputs import refuse_replacing, refuse_source, same_file
 from ..io.painter import paint_frames
 from .options import (
     FILE,
@@ -63,7 +64,11 @@ _FORMATS = [
 )
 @click.argument("recording", type=FILE)
 @click.option(
-    "-o", "--output", type=FILE, required=True, help="File or folder/ to write; its ending sets the format."
+    "-o",
+    "--output",
+    type=FILE,
+    required=True,
+    help="File to write, or to replace, or folder/ for the frames; its ending sets the format.",
 )
 @click.option("--drawing", type=FILE, help="Replay on this drawing instead of the recorded one.")
 @click.option(
@@ -159,10 +164,13 @@ def replay_recording(
         _check_number("--quality", quality, 1, 100)
     if pose is not None:
         check_png(pose)
-    for written_path in filter(None, [output, pose]):
-        refuse_source(written_path, [path, drawing_path], overwrite)
+        if pose.absolute() == output.absolute() or same_file(pose, output):
+            raise InputError(f"--pose: expected another file than --output, got {pose}")
     refuse_replacing(output, replaced_files(output, sheet), overwrite)
-    source = _open_source(path, drawing_path, method, variant, pause)
+    with noted_reads() as read:
+        source = _open_source(path, drawing_path, method, variant, pause)
+    for written_path in filter(None, [output, pose]):
+        refuse_source(written_path, read, overwrite)
     plays = source.plays if plays is None else plays
     first, last = _range(source.duration, start, end)
     times = [last] if chosen.is_still else frame_times(first, last, fps, speed, ease)

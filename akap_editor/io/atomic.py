@@ -6,8 +6,9 @@ import reprlib
 import secrets
 import shutil
 import stat
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -15,6 +16,8 @@ from ..errors import FileError, InputError
 
 MAX_FILE_BYTES = 2**30
 TEMPORARY_PREFIX, TEMPORARY_SUFFIX = ".akap-", ".tmp"  # of a file that is being written
+
+_noted: ContextVar[list[Path] | None] = ContextVar("noted", default=None)
 
 Write = Callable[[str | Path, bytes], None]  # writes a file, as `write_atomic` does
 
@@ -26,6 +29,23 @@ def as_path(value: Any) -> Path:
     return Path(value)
 
 
+@contextmanager
+def noted_reads() -> Iterator[list[Path]]:
+    """Collect the files that `read_file` reads in the block: what was named, and all that this refers to.
+
+    Blocks may be nested.
+    """
+    files: list[Path] = []
+    outer = _noted.get()
+    token = _noted.set(files)
+    try:
+        yield files
+    finally:
+        _noted.reset(token)
+        if outer is not None:
+            outer += files
+
+
 def read_file(path: str | Path, expected: str) -> bytes:
     """All bytes of a regular file; ``expected`` says in messages what it should be, e.g. "a picture".
 
@@ -35,6 +55,9 @@ def read_file(path: str | Path, expected: str) -> bytes:
     try:
         status = path.stat()
         if stat.S_ISREG(status.st_mode) and status.st_size <= MAX_FILE_BYTES:
+            noted = _noted.get()
+            if noted is not None:
+                noted.append(path)
             return path.read_bytes()
     except FileNotFoundError:
         raise FileError("open", path, "there is no such file") from None

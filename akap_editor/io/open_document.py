@@ -9,11 +9,11 @@ from ..editor.document.drawing import apply_mask, make_drawing
 from ..editor.session.replay import Replay
 from ..errors import FileError, InputError, file_errors
 from ..layers.composite import composite
-from ..meshing.faint import DEFAULT_THRESHOLD, faint_share, fitting_threshold
+from ..meshing.faint import DEFAULT_THRESHOLD, faint_share
 from ..progress import announce, part
 from .akap.project import PROJECT_SUFFIX, load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
-from .atomic import as_path
+from .atomic import as_path, noted_reads
 from .images import Picture, read_image, read_mask
 from .layers.open_layers import is_layered, merging_notes, open_layers
 from .mesh_files.mesh_drawing import read_mesh
@@ -21,6 +21,7 @@ from .mesh_files.obj_off import PARSERS
 
 PICTURE_SUFFIXES = (".png", ".webp", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff")
 MESH_SUFFIXES = tuple(PARSERS)
+THRESHOLD_OPTION = "--threshold"  # of the commands
 MIN_REPORTED_SHARE = 0.01  # of the visible pixels
 
 
@@ -36,11 +37,16 @@ def open_document(
     see `read_mesh`; any other: a picture, which is cut out along its alpha and meshed. The visible layers of
     a picture in layers (.psd, .psb, .ora, a folder of PNG pictures, see `open_layers`) are merged.
     mask: a picture that is bright, or opaque, where the picture is to be visible; threshold: share of full
-    opacity at which the picture ends, None for one that suits it, see `fitting_threshold`; mesher: of a
-    picture, see `make_drawing`.
+    opacity at which the picture ends, None for one that suits it; mesher: of a picture; for both see
+    `make_drawing`.
     Raises InputError, which names the file, or SolverError if a recording cannot be replayed.
     """
-    path = as_path(path)
+    with noted_reads() as files:
+        document = _open(as_path(path), mask, threshold, mesher)
+    return replace(document, sources=tuple(files))
+
+
+def _open(path: Path, mask: str | Path | None, threshold: float | None, mesher: str | None) -> Document:
     announce(0.0, "Reading the file")
     suffix = path.suffix.lower()
     if mask is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
@@ -58,8 +64,6 @@ def open_document(
     with file_errors("open", path):
         if shown is not None:
             image = apply_mask(image, shown)
-        if threshold is None:
-            threshold = fitting_threshold(image[..., 3])
         with part(0.5 if is_layered(path) else 0.25, 1.0):
             drawing = make_drawing(image, threshold=threshold, name=path.stem, mesher=mesher)
         return replace(new_document(drawing), notes=notes)
@@ -79,8 +83,11 @@ def read_picture(path: str | Path) -> tuple[Picture, tuple[str, ...]]:
         return composite(layered), tuple(merging_notes(layered))
 
 
-def opening_notes(document: Document) -> list[str]:
-    """Sentences about a picture that was opened: merged layers, a lower threshold, and faint parts."""
+def opening_notes(document: Document, setting: str = THRESHOLD_OPTION) -> list[str]:
+    """Sentences about a picture that was opened: merged layers, a lower threshold, and faint parts.
+
+    setting: where a lower threshold can be chosen.
+    """
     drawing = document.drawing
     if document.path is not None or drawing.meshing is None:
         return []
@@ -93,15 +100,15 @@ def opening_notes(document: Document) -> list[str]:
         )
     share = faint_share(alpha, drawing.mesh, threshold)
     if share >= MIN_REPORTED_SHARE:
-        notes.append(faint_note(share))
+        notes.append(faint_note(share, setting))
     return notes
 
 
-def faint_note(share: float) -> str:
-    """A sentence about the share of the visible pixels that the threshold cuts off."""
+def faint_note(share: float, setting: str = THRESHOLD_OPTION) -> str:
+    """A sentence about the share of the visible pixels that the threshold cuts off; see `opening_notes`."""
     return (
         f"{share:.0%} of what is visible is fainter than the edge and left out; "
-        "a lower alpha threshold (--threshold) keeps it"
+        f"a lower alpha threshold ({setting}) keeps it"
     )
 
 

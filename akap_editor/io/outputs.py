@@ -1,4 +1,4 @@
-"""Keeps exports from replacing files that nobody named: companions, frames in a folder, their own source."""
+"""Keeps exports from replacing files that nobody named, and their own sources."""
 
 import os
 from collections.abc import Iterable
@@ -49,13 +49,18 @@ def refuse_replacing(path: Path, unnamed: Iterable[Path], overwrite: bool) -> No
 
 def refuse_source(path: Path, sources: Iterable[Path | None], overwrite: bool) -> None:
     """Raise FileError if ``path`` is one of the files that the export reads, unless ``overwrite``."""
-    for source in sources:
-        if not overwrite and source is not None and _is_same(path, source):
-            reason = "it is the file that is read; choose another name, or replace it (--overwrite)"
-            raise FileError("export", path, reason)
+    if not overwrite and is_source(path, sources):
+        reason = "it is a file that is read; choose another name, or replace it (--overwrite)"
+        raise FileError("export", path, reason)
 
 
-def _is_same(path: Path, other: Path) -> bool:
+def is_source(path: Path, sources: Iterable[Path | None]) -> bool:
+    """Whether ``path`` is one of the files, by whatever name."""
+    return any(source is not None and same_file(path, source) for source in sources)
+
+
+def same_file(path: Path, other: Path) -> bool:
+    """Whether two paths lead to one file, which exists."""
     try:
         return os.path.samefile(path, other)
     except (OSError, ValueError):

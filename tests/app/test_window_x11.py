@@ -1,11 +1,8 @@
 """The program on a real X server, with a real mouse and keyboard, judged by what is on the screen."""
 
 import json
-import os
 import shutil
 import signal
-import subprocess
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -24,7 +21,6 @@ from tests.support.running_program import (
     DEADLINE,
     LEFT,
     RIGHT,
-    SIZE,
     TOP,
     RunningProgram,
     assert_markers,
@@ -33,32 +29,15 @@ from tests.support.running_program import (
     far_apart,
     find_camera,
 )
+from tests.support.x_server import x_server
 
 pytestmark = pytest.mark.window
 
 
-@contextmanager
-def x_server():
-    """An X server of our own, never the user's screen: its process and its display."""
-    for tool in ("Xvfb", "xdotool"):
-        assert shutil.which(tool), f"{tool} is missing: install the packages xvfb and xdotool"
-    read, write = os.pipe()
-    screen = "{}x{}x24".format(*SIZE)
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", screen, "-nolisten", "tcp", "-noreset"]
-    server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
-    os.close(write)
-    with os.fdopen(read) as pipe:
-        number = pipe.readline().strip()
-    assert number, "Xvfb did not start"
-    yield server, f":{number}"
-    server.terminate()
-    server.wait(DEADLINE)
-
-
 @pytest.fixture(scope="module")
 def display():
-    with x_server() as (_, name):
-        yield name
+    with x_server() as server:
+        yield server.display
 
 
 @pytest.fixture
@@ -169,17 +148,17 @@ def test_unsaved_work_survives_the_end_of_the_program(picture, monkeypatch, tmp_
     """Also if it comes right after the first pin, while the program sleeps."""
     state = tmp_path / "state"
     monkeypatch.setenv("AKAP_EDITOR_STATE", str(state))
-    with x_server() as (server, display):
+    with x_server() as server:
         preferences = tmp_path / "preferences"
         preferences.mkdir()
         (preferences / "preferences.json").write_text(json.dumps({"first steps done": True}))
-        program = RunningProgram(display, picture, tmp_path, preferences)
+        program = RunningProgram(server.display, picture, tmp_path, preferences)
         alpha = read_image(picture)[..., 3]
         zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
         (pin,) = np.rint(far_apart(alpha, 1) * zoom + offset).astype(int).tolist()
         program.click(pin)
         if end == "the display is lost":
-            server.kill()
+            server.process.kill()
         else:
             program.process.send_signal(getattr(signal, end))
         assert program.process.wait(DEADLINE) != 0

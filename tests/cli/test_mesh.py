@@ -10,6 +10,7 @@ import pytest
 from akap_editor.io.images import write_png
 from akap_editor.io.mesh_files.mesh_drawing import read_mesh
 from akap_editor.meshing.meshers import MESHERS
+from tests.support.command_line import assert_one_line
 
 
 @pytest.fixture
@@ -77,6 +78,15 @@ def test_json(run, picture):
     assert 0 < row["outside"] < 0.2
     assert row["seconds"] > 0
     assert row["cut_out"] is True
+
+
+def test_a_faint_picture_gets_a_threshold_that_suits_it_unless_one_is_given(run, tmp_path, image):
+    image = image.copy()
+    image[..., 3] //= 4
+    write_png(tmp_path / "faint.png", image)
+    (row,) = json.loads(run("mesh", "faint.png", "--json")[1])
+    assert row["covered"] > 0.9
+    assert_one_line(run("mesh", "faint.png", "--threshold", 0.5), "faint.png", "transparent")
 
 
 def test_expansion_and_threshold_change_the_mesh(run, picture):

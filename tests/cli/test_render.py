@@ -97,7 +97,7 @@ def test_pictures_of_many_files_go_to_a_folder(run, picture, posed, tmp_path):
     for path in (picture, posed):
         written = read_image(tmp_path / "new" / "pictures" / f"{path.stem}.png")
         np.testing.assert_array_equal(written, picture_of(path))
-    code, said, _ = run("render", picture, posed, "-o", "new/pictures", "--json")
+    code, said, _ = run("render", picture, posed, "-o", "new/pictures", "--json", "--overwrite")
     assert [len(record["files"]) for record in json.loads(said)] == [1, 1]
 
 

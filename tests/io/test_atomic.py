@@ -50,6 +50,20 @@ def test_written_is_what_is_read(tmp_path):
     assert os.listdir(tmp_path) == ["new.bin"]
 
 
+def test_reads_are_noted_also_in_blocks_inside_one_another(tmp_path):
+    files = [tmp_path / name for name in "abc"]
+    for path in files:
+        path.write_bytes(b"")
+    with atomic.noted_reads() as all_reads:
+        read_file(files[0], "a file")
+        with atomic.noted_reads() as inner:
+            read_file(files[1], "a file")
+            with pytest.raises(InputError):
+                read_file(tmp_path / "none", "a file")
+    read_file(files[2], "a file")
+    assert (all_reads, inner) == (files[:2], files[1:2])
+
+
 FAILURES = {
     "open": lambda patch: patch.setattr(atomic, "open_new", fail),
     "write": fail_to_write,

@@ -53,7 +53,7 @@ def test_the_source_is_refused_however_it_is_named(tmp_path, kind):
     if output is None:
         output = tmp_path / "other.png"
         output.symlink_to(source) if kind == "a link" else output.hardlink_to(source)
-    with pytest.raises(InputError, match="It is the file that is read"):
+    with pytest.raises(InputError, match="It is a file that is read"):
         refuse_source(output, [None, source], overwrite=False)
     refuse_source(output, [None, source], overwrite=True)
     refuse_source(tmp_path / "new.png", [None, source], overwrite=False)

@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image, ImageGrab
 from scipy.ndimage import distance_transform_edt
+from Xlib.display import Display
 
 from tests.support.x11 import X11Client
 
 Screen = NDArray[np.uint8]  # (h, w, 3)
 Point = Sequence[float]
 
-SIZE = (1280, 800)  # of the screen, and of the window by default
+SIZE = (1280, 800)  # of the window by default
 DEADLINE = 300.0  # seconds; a slow machine takes minutes to compile the engine at the first start
 PAUSE = 0.05  # seconds between two looks at the screen
 LEFT, TOP, RIGHT, BOTTOM = 48, 40, 1280 - 268, 760  # well within the canvas, without menu and status bar
@@ -26,7 +27,7 @@ MARKER = 14  # pixels around a pin's center that its marker covers
 
 
 class RunningProgram:
-    """The running program and its screen.
+    """The running program and its window, which is called the screen; points count from its top left corner.
 
     display: of the X server; file: to open; folder: for the log and for screenshots of failures; preferences:
     folder of the program's preferences.
@@ -41,6 +42,8 @@ class RunningProgram:
         command = [sys.executable, "-m", "akap_editor.cli", str(file)]
         self._log = (folder / f"{Path(file).stem}.log").open("w+")
         self.process = subprocess.Popen(command, env=self._environment, stderr=self._log)
+        self._connection = Display(display)
+        self._window = self._find_window()
         self.xdotool("mousemove", *CORNER)
         self.until(lambda screen: (np.ptp(canvas(screen), axis=2) > 60).mean() > 0.02, "a drawing is shown")
 
@@ -48,7 +51,29 @@ class RunningProgram:
 
     def grab(self) -> Screen:
         """The screen."""
-        return np.asarray(ImageGrab.grab(xdisplay=self._display).convert("RGB"))
+        x, y = self._origin
+        box = x, y, x + SIZE[0], y + SIZE[1]
+        return np.asarray(ImageGrab.grab(box, xdisplay=self._display).convert("RGB"))
+
+    def _find_window(self) -> int:
+        """Wait for the window, and for the keyboard focus; returns its number."""
+        find = ["search", "--onlyvisible", "--all", "--pid", self.process.pid, "--name", "akap-editor"]
+        command = ["xdotool", *map(str, find)]
+        deadline = time.monotonic() + DEADLINE
+        while time.monotonic() < deadline:
+            assert self.process.poll() is None, f"the program has ended: {self.log()}"
+            found = subprocess.run(command, env=self._environment, capture_output=True, text=True).stdout
+            if found and getattr(self._connection.get_input_focus().focus, "id", None) == int(found):
+                return int(found)
+            time.sleep(PAUSE)
+        raise AssertionError(f"no window with the keyboard focus within {DEADLINE:g} s; {self.log()}")
+
+    @property
+    def _origin(self) -> tuple[int, int]:
+        """The window's top left corner on the X server's screen."""
+        root = self._connection.screen().root
+        place = root.translate_coords(self._window, 0, 0)
+        return place.x, place.y
 
     def save(self, screen: Screen) -> Path:
         """Write a screenshot for whoever reads a failure; returns its path."""
@@ -119,7 +144,10 @@ class RunningProgram:
 
     def xdotool(self, *arguments: object) -> None:
         """Move the mouse, press buttons or keys."""
-        subprocess.run(["xdotool", *map(str, arguments)], env=self._environment, check=True)
+        command = ["xdotool"]
+        for word in map(str, arguments):
+            command += [word, "--window", str(self._window)] if word == "mousemove" else [word]
+        subprocess.run(command, env=self._environment, check=True)
 
     def press(self, chord: str) -> None:
         """Type e.g. "ctrl+s" as a hand does, the key inside the modifiers; xdotool's own chords overlap."""
@@ -171,10 +199,7 @@ class RunningProgram:
 
     def client(self) -> X11Client:
         """A connection for messages of other programs to the window."""
-        search = ["xdotool", "search", "--name", "akap-editor"]
-        output = subprocess.run(search, env=self._environment, check=True, capture_output=True, text=True)
-        (window,) = map(int, output.stdout.split())
-        return X11Client(self._display, window)
+        return X11Client(self._display, self._window)
 
     def close_window(self) -> None:
         """Ask the window to close, as a window manager does."""

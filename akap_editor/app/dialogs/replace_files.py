@@ -6,6 +6,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from ...display_text import display_name
 from ...io.outputs import quoted_names
 from .. import widgets
 from ..app_state import AppState
@@ -43,15 +44,27 @@ class ReplaceFilesDialog:
         self._question = question
 
     def ask_unless_new(
-        self, paths: list[Path], replace: Callable[[], None], rename: Callable[[], None]
+        self,
+        paths: list[Path],
+        replace: Callable[[], None],
+        rename: Callable[[], None],
+        source: Path | None = None,
     ) -> None:
-        """Call ``replace`` at once if ``paths``, the files that exist, are none; else ask first."""
-        if not paths:
+        """Call ``replace`` at once if ``paths``, the files that exist, are none; else ask first.
+
+        source: a file that will be replaced, too, and that the drawing was opened from; None if there is
+        none.
+        """
+        sentences = []
+        if source is not None:
+            sentences.append(f"The drawing was opened from “{display_name(source)}”, which will be replaced.")
+        if paths:
+            verb = "exists" if len(paths) == 1 else "exist"
+            sentences.append(f"{quoted_names(paths)} {verb} already and will be replaced.")
+        if sentences:
+            self.ask(ReplaceQuestion(" ".join(sentences), replace, "Other Name...", rename))
+        else:
             replace()
-            return
-        verb = "exists" if len(paths) == 1 else "exist"
-        text = f"{quoted_names(paths)} {verb} already and will be replaced."
-        self.ask(ReplaceQuestion(text, replace, "Other Name...", rename))
 
     def draw(self, _: AppState, scale: float) -> None:
         """Draw one frame. scale: points per design point."""

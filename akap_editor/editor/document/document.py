@@ -84,7 +84,8 @@ class Document:
 
     revision: grows with every change of ``state``; path: the .akap file, None if there is none; digest: of
     the bytes of this file when they were read or written here, "" if unknown; notes: sentences, without
-    period, about what opening a file of another program merged or left out; they are not saved.
+    period, about what opening a file of another program merged or left out; sources: the files that it was
+    read from, for example a mesh with its material and texture. Notes and sources are not saved.
     """
 
     drawing: Drawing
@@ -93,6 +94,7 @@ class Document:
     path: Path | None = None
     digest: str = ""
     notes: tuple[str, ...] = ()
+    sources: tuple[Path, ...] = ()
 
     @property
     def face_order(self) -> Ints | None:

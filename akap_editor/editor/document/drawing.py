@@ -11,6 +11,7 @@ from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import as_channel, as_instance, as_picture, as_points, freeze
 from ...meshing.background import remove_background
+from ...meshing.faint import fitting_threshold
 from ...meshing.meshers import check_mesher, default_mesher, nearest_mesher
 from ...meshing.picture_mesh import mesh_picture
 from ...progress import announce, part
@@ -81,7 +82,7 @@ def make_drawing(
     mask: NDArray[np.uint8] | None = None,
     vertices: int = Meshing.vertices,
     expand: float = Meshing.expand,
-    threshold: float = Meshing.threshold,
+    threshold: float | None = None,
     background: float | None = Meshing.background,
     name: str = "untitled",
     mesher: str | None = None,
@@ -89,13 +90,16 @@ def make_drawing(
     """Cut a picture out along its alpha and triangulate it.
 
     image: (h, w, 4) uint8 RGBA, straight alpha; mask: (h, w) uint8, 255 where the picture is fully visible;
-    mesher: "triangle", "pythoncdt", or None for the default one; for the other arguments see `Meshing`. The
-    parts of the mesh are tied: a part without pins moves with the nearest part that has one. Raises
-    InputError on bad arguments, or if nothing of the picture is visible.
+    threshold: None for 0.5, or less if the picture is faint, see `fitting_threshold`; the drawing's
+    ``meshing`` holds it; mesher: "triangle", "pythoncdt", or None for the default one; for the other
+    arguments see `Meshing`. The parts of the mesh are tied: a part without pins moves with the nearest part
+    that has one. Raises InputError on bad arguments, or if nothing of the picture is visible.
     """
     image = as_picture(image, "image")
     if mask is not None:
         image = apply_mask(image, mask)
+    if threshold is None:
+        threshold = fitting_threshold(image[..., 3])
     meshing = Meshing(vertices, expand, threshold, background, check_mesher(mesher))
     return remove_background_and_mesh(image, meshing, name)
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ...deform.deformer import StepResult
+from ...display_text import shortened
 from ...errors import InputError, SolverError
 from ...meshing.meshers import TRIANGLE
 from ..document.document import EditState, new_document
@@ -79,7 +80,7 @@ class Replay:
                 step = self._replay_event(event)
             except (*_BAD_EVENT, InputError) as error:
                 raise InputError(
-                    f"recording line {line}: cannot be replayed, {_shorten(str(error))}"
+                    f"recording line {line}: cannot be replayed, {shortened(str(error), _MAX_REASON)}"
                 ) from error
             except SolverError as error:
                 raise SolverError(f"recording line {line}: {error}") from error
@@ -162,9 +163,3 @@ def replay_target(recording: Recording, drawing: Drawing) -> ReplayTarget:
             f"has {width} x {height}"
         )
     return ReplayTarget(drawing.mesh, same_mesh, scale)
-
-
-def _shorten(text: str) -> str:
-    """A text for a message, without its middle if it is long: values of an event may be of any length."""
-    half = _MAX_REASON // 2
-    return text if len(text) <= _MAX_REASON else f"{text[:half]} ... {text[-half:]}"

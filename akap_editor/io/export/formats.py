@@ -12,7 +12,7 @@ from ...geometry.validation import as_instance
 from ...overlap.overlaps import NO_CROSSINGS
 from ..atomic import as_path, write_atomic
 from ..images import encode_png
-from ..outputs import existing, refuse_replacing
+from ..outputs import existing, refuse_replacing, refuse_source
 from ..painter import Painter
 from .gltf import encode_glb
 from .mesh_json import encode_json
@@ -139,14 +139,16 @@ def export(
     """Export a drawing; return the written files, with ``path`` last.
 
     The ending of ``path`` decides on the format. Additional files, e.g. textures, are named after it. Each
-    file is written whole or not at all. painter: draws pictures, needed for .png only; overwrite: replace
-    additional files, too, if they exist with another content. Raises InputError for an unknown ending, or if
-    the drawing cannot be exported or written.
+    file is written whole or not at all, and replaces an older one at ``path``. painter: draws pictures,
+    needed for .png only; overwrite: replace also the files that the drawing was read from, and additional
+    files that exist with another content. Raises InputError for an unknown ending, or if the drawing cannot
+    be exported or written.
     """
     as_instance(document, "document", Document)
     options = ExportOptions() if options is None else as_instance(options, "options", ExportOptions)
     path = as_path(path)
     chosen = format_of(path)
+    refuse_source(path, (document.path, *document.sources), overwrite)
     if options.rest:
         state = replace(document.state, positions=document.drawing.mesh.vertices, crossings=NO_CROSSINGS)
         document = document.with_state(state)

@@ -108,6 +108,22 @@ def test_nothing_left_is_a_notice_and_all_stays(opened):
     assert opened.document.state.positions.shape == before.state.positions.shape
 
 
+def test_a_faint_drawing_keeps_its_threshold_while_other_options_change(opened, image):
+    faint = image // np.array([1, 1, 1, 5], np.uint8)
+    files.show_document(opened.state, new_document(make_drawing(faint, vertices=200)))
+    opened.settle()
+    assert "faint" in opened.state.notice
+    threshold = opened.document.drawing.meshing.threshold
+    assert 0 < threshold < 0.2
+    slide(opened, "##Detail", 0.2, 0.4)
+    drawing = opened.document.drawing
+    assert drawing.meshing.threshold == threshold
+    assert len(drawing.mesh.vertices) > 400
+    slide(opened, "##Alpha threshold", 0.1, 0.6)
+    assert "transparent" in opened.state.notice
+    assert opened.document.drawing is drawing, "there is no such mesh, and all stays"
+
+
 def test_the_background_goes_and_comes_back(opened):
     image = np.full((160, 240, 4), 255, np.uint8)
     image[40:120, 60:180, :3] = (200, 60, 30)

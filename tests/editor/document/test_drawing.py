@@ -5,6 +5,7 @@ import pytest
 
 from akap_editor.editor.document.drawing import Drawing, apply_mask, make_drawing
 from akap_editor.errors import InputError
+from tests.support.pictures import bar_picture
 
 
 def test_a_drawing_covers_its_picture(image, drawing):
@@ -84,3 +85,23 @@ def test_a_mask_multiplies_the_alpha(image):
 def test_a_mask_is_a_gray_picture_of_the_same_size(image, mask, message):
     with pytest.raises(InputError, match=message):
         make_drawing(image, mask)
+
+
+@pytest.mark.parametrize("opacity", [255, 120, 40, 10])
+def test_a_faint_picture_is_cut_out_at_a_lower_threshold(opacity):
+    picture = bar_picture()
+    picture[..., 3] = picture[..., 3].astype(int) * opacity // 255
+    drawing = make_drawing(picture, vertices=200)
+    assert 0 < drawing.meshing.threshold <= 0.5
+    assert (drawing.meshing.threshold < 0.5) == (opacity < 128)
+    whole = make_drawing(bar_picture(), vertices=200)
+    assert drawing.mesh.rest_areas.sum() == pytest.approx(whole.mesh.rest_areas.sum(), rel=0.05)
+    if opacity < 128:
+        with pytest.raises(InputError, match="transparent"):
+            make_drawing(picture, vertices=200, threshold=0.5)
+
+
+def test_a_faint_mask_lowers_the_threshold():
+    picture = bar_picture()
+    drawing = make_drawing(picture, np.full(picture.shape[:2], 60, np.uint8), vertices=200)
+    assert drawing.meshing.threshold < 60 / 255

@@ -20,6 +20,7 @@ from ....io.animation.formats import (
     replaced_files,
     write_animation,
 )
+from ....io.outputs import is_source
 from ....io.painter import paint_frames
 from ... import widgets
 from ...app_state import AppState
@@ -194,14 +195,15 @@ def request_file(state: AppState, options: AnimationExportOptions) -> None:
 def export_animation(state: AppState, options: AnimationExportOptions, path: Path) -> None:
     """Write the played range of the timeline; the file name's ending decides on the format.
 
-    Ask before files are replaced that the user did not name.
+    Ask before files are replaced that the user did not name, or that the drawing was opened from.
     """
     sheet = options.chosen_format.is_sheet and path.suffix.lower() == ".png"
 
     def check() -> None:
         animation_format(path, sheet)  # raises InputError
         rename = partial(request_file, state, options)
-        state.part(ReplaceFilesDialog).ask_unless_new(replaced_files(path, sheet), begin, rename)
+        source = path if state.document is not None and is_source(path, state.document.sources) else None
+        state.part(ReplaceFilesDialog).ask_unless_new(replaced_files(path, sheet), begin, rename, source)
 
     def begin() -> None:
         state.task = Task(f"Exporting {display_name(path)}", _export_steps(state, options, path, sheet))

@@ -11,6 +11,7 @@ from ....editor.document.document import Document
 from ....editor.framing import CROPS, MAX_SIZE, Color, crop_box, output_size
 from ....errors import InputError
 from ....io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of, replaced_companions
+from ....io.outputs import is_source
 from ....io.painter import Painter
 from ... import widgets
 from ...app_state import AppState
@@ -108,10 +109,13 @@ def request_file(state: AppState, options: PoseExportOptions) -> None:
 def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None:
     """Write the current pose in the background; the file name's ending decides on the format.
 
-    Ask before files are replaced that the user did not name.
+    Ask before files are replaced that the user did not name, or that the drawing was opened from.
     """
+    if state.document is None:
+        return
     rename, write = partial(request_file, state, options), partial(_begin_export, state, options, path)
-    state.part(ReplaceFilesDialog).ask_unless_new(replaced_companions(path), write, rename)
+    source = path if is_source(path, state.document.sources) else None
+    state.part(ReplaceFilesDialog).ask_unless_new(replaced_companions(path), write, rename, source)
 
 
 def _begin_export(state: AppState, options: PoseExportOptions, path: Path) -> None:

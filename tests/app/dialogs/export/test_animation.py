@@ -1,6 +1,7 @@
 """Exports of the timeline: the dialog, what it remembers, and every format."""
 
 import json
+from dataclasses import replace
 from itertools import pairwise
 from threading import Event
 from threading import enumerate as enumerate_threads
@@ -212,6 +213,21 @@ def test_files_that_were_not_named_are_replaced_only_on_demand(keyed, tmp_path, 
     assert is_kept == (button == "Cancel")
     assert (tmp_path / "frames" / "frame-0000.png").exists() == (label == "Pictures" and not is_kept)
     assert (tmp_path / "walk.png").exists() == (label == "Sprite sheet" and not is_kept)
+
+
+@pytest.mark.parametrize("button", ["Replace", "Cancel"])
+def test_the_file_that_the_drawing_was_opened_from_is_replaced_only_on_demand(keyed, tmp_path, button):
+    source = tmp_path / "cat.webp"
+    source.write_bytes(b"a picture")
+    session = keyed.session
+    session.document = replace(session.document, sources=(source,))
+    export_animation(keyed.state, AnimationExportOptions(DIALOG_FORMATS[0].label, fps=5, size=40), source)
+    keyed.settle()
+    assert source.read_bytes() == b"a picture"
+    keyed.dialog("Replace files", button)
+    keyed.settle()
+    assert not keyed.state.error
+    assert (source.read_bytes() == b"a picture") == (button == "Cancel")
 
 
 def test_an_export_is_cancelled_and_leaves_no_file(keyed, tmp_path, monkeypatch):

@@ -8,7 +8,8 @@ from akap_editor.app.commands.command import CTRL, Key
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.editor.framing import crop_box
 from akap_editor.io.export import EXPORT_FORMATS
-from akap_editor.io.images import read_image
+from akap_editor.io.images import read_image, write_png
+from akap_editor.io.open_document import open_document
 from akap_editor.render.offscreen import OffscreenRenderer
 
 EXPORT, FILE, MESSAGE, REPLACE = "Export", "Export to", "Error", "Replace files"
@@ -163,3 +164,23 @@ def test_files_beside_the_named_one_are_replaced_only_on_demand(bent, tmp_path, 
     assert ((tmp_path / "cat.mtl").read_bytes() == b"of somebody") == (button != "Replace")
     written = {"Replace": ["cat.obj"], "Other Name...": ["dog.obj"]}.get(button, [])
     assert [path.name for path in tmp_path.glob("*.obj")] == written
+
+
+@pytest.mark.parametrize("button", ["Replace", "Cancel", "Other Name..."])
+def test_the_picture_that_the_drawing_was_opened_from_is_replaced_only_on_demand(bent, tmp_path, button):
+    source = tmp_path / "cat.png"
+    write_png(source, bent.document.drawing.image)
+    before = source.read_bytes()
+    bent.reset(open_document(source))
+    bent.state.folder = tmp_path
+    bent.menu("File", "Export...")
+    bent.dialog(EXPORT, option(BY_SUFFIX[".png"].label), option("2×"))
+    export_as(bent, "cat")
+    assert source.read_bytes() == before
+    bent.dialog(REPLACE, button)
+    if button == "Other Name...":
+        bent.type_name(FILE, "dog")
+    bent.settle()
+    assert not bent.state.error
+    assert (source.read_bytes() == before) == (button != "Replace")
+    assert (tmp_path / "dog.png").exists() == (button == "Other Name...")
