@@ -46,11 +46,11 @@ class Renderer:
 
     def __init__(self, ctx: moderngl.Context, *, precise: bool = False, sharp: bool | None = None) -> None:
         self._ctx = ctx
-        self._is_sharp = not _is_software(ctx) if sharp is None else sharp
+        sharp = not _is_software(ctx) if sharp is None else sharp
         self._texture_dtype = "f2" if precise else "f1"
         self.max_texture_size: int = ctx.info["GL_MAX_TEXTURE_SIZE"]
         self._premultiply = load_program(ctx, "fullscreen.vert", "premultiply.frag")
-        self._mesh_program = load_program(ctx, "mesh.vert", "mesh.frag")
+        self._mesh_program = load_program(ctx, "mesh.vert", "mesh_sharp.frag" if sharp else "mesh.frag")
         self._edge_program = load_program(ctx, "lines.vert", "mesh_edges.geom", "mesh_edges.frag")
         self._checker_program = load_program(ctx, "checkerboard.vert", "checkerboard.frag")
         self._face_colors = FaceColorPainter(ctx)
@@ -202,7 +202,6 @@ class Renderer:
         self._mesh_program["view"] = view
         self._mesh_program["opacity"] = opacity
         self._mesh_program["tint"] = tint
-        self._mesh_program["sharp"] = self._is_sharp
         mesh.render()
 
     def _draw_reference(self, reference: Reference, frame: tuple[int, int], view: View) -> None:
