@@ -22,13 +22,13 @@ from ..io.animation.formats import (
     ANIMATION_FORMATS,
     MAX_PLAYS,
     animation_format,
+    animation_shots,
     replaced_files,
     write_animation,
 )
 from ..io.atomic import noted_reads
 from ..io.open_document import open_document
 from ..io.outputs import refuse_replacing, refuse_source, same_file
-from ..io.painter import paint_frames
 from .options import (
     FILE,
     append_formats,
@@ -109,6 +109,7 @@ _FORMATS = [
 @click.option(
     "--quality", type=int, metavar="NUMBER", help="Of a lossy WebP, 1 to 100; it is lossless by default."
 )
+@click.option("--hover", is_flag=True, help="Let a web page play only while the pointer is over it.")
 @json_option
 @overwrite_option
 def replay_command(
@@ -145,6 +146,7 @@ def replay_recording(
     ping_pong: bool = False,
     plays: int | None = None,
     quality: int | None = None,
+    hover: bool = False,
     overwrite: bool = False,
     as_json: bool = False,
 ) -> None:
@@ -162,6 +164,8 @@ def replay_recording(
         if not chosen.has_quality:
             raise InputError(f"--quality: expected an output that ends in .webp, got {chosen.label}")
         _check_number("--quality", quality, 1, 100)
+    if hover and not chosen.is_page:
+        raise InputError(f"--hover: expected an output that ends in .html, got {chosen.label}")
     if pose is not None:
         check_png(pose)
         if pose.absolute() == output.absolute() or same_file(pose, output):
@@ -181,9 +185,11 @@ def replay_recording(
     make_folder_of(output)
     written_files = [output]
     with OffscreenRenderer() as renderer:
-        pictures = paint_frames(frames, renderer, size, background_color, chosen.is_video)
-        with progress_bar(pictures, len(frames), "Drawing") as bar:
-            written = write_animation(output, bar, fps, plays, sheet, overwrite=overwrite, quality=quality)
+        shots = animation_shots(chosen, frames, renderer, size, background_color)
+        with progress_bar(shots, len(frames), "Drawing") as bar:
+            written = write_animation(
+                output, bar, fps, plays, sheet, overwrite=overwrite, quality=quality, hover=hover
+            )
         if pose is not None:
             picture = renderer.render(
                 end_frame.drawing, end_frame.pose, background=background_color, order=end_frame.order

@@ -1,7 +1,7 @@
 """Pictures of poses and of frames of an animation, drawn by whatever renderer is at hand."""
 
 from collections.abc import Iterator, Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from ..editor.animation.frames import Frame
 from ..editor.document.drawing import Drawing
@@ -30,6 +30,28 @@ class Painter(Protocol):
         """
 
 
+class FramedPose(NamedTuple):
+    """A frame of an animation and how it is shown: see `Painter.render`."""
+
+    frame: Frame
+    box: Box
+    scale: float
+    background: Color | None
+
+
+def framed_poses(
+    frames: Sequence[Frame], longest_side: int, background: Color | None, is_even: bool = False
+) -> list[FramedPose]:
+    """The frames of an animation, with one box around the drawing's frame and all poses.
+
+    longest_side: in pixels, at most: a drawing is not enlarged; is_even: whether width and height must be
+    even, see `fitted_box`. Raises InputError if the pictures would be too large.
+    """
+    box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])
+    box, scale = fitted_box(box, longest_side, is_even)
+    return [FramedPose(frame, box, scale, background) for frame in frames]
+
+
 def paint_frames(
     frames: Sequence[Frame],
     painter: Painter,
@@ -39,12 +61,10 @@ def paint_frames(
 ) -> Iterator[Picture]:
     """The pictures of an animation's frames, all of one size, each drawn when it is asked for.
 
-    They show the drawing's frame and all poses. longest_side: in pixels, at most: a drawing is not enlarged;
-    is_even: whether width and height must be even, see `fitted_box`.
-    Raises InputError at once if the pictures would be too large.
+    See `framed_poses`; raises InputError at once.
     """
-    box = union_of_boxes([frame_box(frame.drawing, [frame.pose]) for frame in frames])
-    box, scale = fitted_box(box, longest_side, is_even)
+    framed = framed_poses(frames, longest_side, background, is_even)
     return (
-        painter.render(frame.drawing, frame.pose, box, scale, background, frame.order) for frame in frames
+        painter.render(frame.drawing, frame.pose, box, scale, background, frame.order)
+        for frame, box, scale, background in framed
     )

@@ -197,6 +197,20 @@ def test_a_lossy_webp_is_smaller(replay_bar, tmp_path):
     assert (tmp_path / "lossy.webp").stat().st_size != (tmp_path / "lossless.webp").stat().st_size
 
 
+def test_a_web_page(replay_bar, tmp_path):
+    code, said, errors = replay_bar("-o", "bar.html", "--fps", 8, "--hover", "--background", "#fF8000")
+    assert (code, errors) == (0, "")
+    assert said.startswith("Wrote bar.html, 9 frames")
+    text = (tmp_path / "bar.html").read_text("utf-8")
+    assert '"hover":true' in text
+    assert "background: #ff8000" in text
+
+
+def test_only_a_web_page_waits_for_the_pointer(replay_bar, tmp_path):
+    assert_one_line(replay_bar("-o", "bar.gif", "--hover"), "--hover", ".html", "GIF")
+    assert not (tmp_path / "bar.gif").exists()
+
+
 def test_a_sheet_and_its_index(replay_bar, tmp_path):
     assert replay_bar("-o", "bar.png", "--sheet", "--fps", 8, "--size", 64)[0] == 0
     index = json.loads((tmp_path / "bar.json").read_text())

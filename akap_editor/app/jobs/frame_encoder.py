@@ -1,4 +1,4 @@
-"""Encodes pictures to a file in a thread, while the window draws more of them."""
+"""Encodes shots to a file in a thread, while the window draws more of them."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -6,17 +6,17 @@ from queue import Full, Queue
 from typing import Protocol
 
 from ...errors import InputError
+from ...io.animation.formats import Shot
 from ...io.atomic import Write, write_atomic
-from ...io.images import Picture
 from .background_thread import BackgroundThread, Wake, no_window
 
 _MOST_QUEUED = 8  # pictures that may wait to be encoded: bounds the memory
 
 
 class Export(Protocol):
-    """Reads all frames, encodes them, and writes them with ``write``; a few words on what was written."""
+    """Reads all shots, encodes them, and writes them with ``write``; a few words on what was written."""
 
-    def __call__(self, *, frames: Iterable[Picture], write: Write) -> str: ...
+    def __call__(self, *, shots: Iterable[Shot], write: Write) -> str: ...
 
 
 class FrameEncoder:
@@ -28,12 +28,12 @@ class FrameEncoder:
 
     def __init__(self, export: Export, wake: Wake = no_window) -> None:
         self._wake = wake
-        self._queue: Queue[Picture | None] = Queue(_MOST_QUEUED)
+        self._queue: Queue[Shot | None] = Queue(_MOST_QUEUED)
         self._is_cancelled = False
         self._thread = BackgroundThread("encoder", wake)
-        self._written = self._thread.submit(lambda: export(frames=self._pictures(), write=self._write))
+        self._written = self._thread.submit(lambda: export(shots=self._shots(), write=self._write))
 
-    def take(self, picture: Picture | None) -> Iterator[None]:
+    def take(self, picture: Shot | None) -> Iterator[None]:
         """Add a picture, or None after the last one; yields as long as the queue is full.
 
         Drops the picture if the export has ended, for example with an error.
@@ -63,7 +63,7 @@ class FrameEncoder:
         next(self.take(None), None)  # if the queue is full, the thread is about to read it and sees the flag
         self._thread.shutdown(wait=False)
 
-    def _pictures(self) -> Iterator[Picture]:
+    def _shots(self) -> Iterator[Shot]:
         while (picture := self._queue.get()) is not None:
             self._check()
             self._wake()

@@ -1,23 +1,28 @@
 """The table of animation formats, and the export of frames by it."""
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...display_text import display_name
+from ...editor.animation.frames import Frame
+from ...editor.framing import Color
 from ...errors import FileError, InputError, join_with_or
 from ..atomic import Write, write_atomic
 from ..images import Picture, write_png
 from ..outputs import existing, refuse_replacing
+from ..painter import FramedPose, Painter, framed_poses, paint_frames
 from .animated_images import write_apng, write_webp
 from .gif import MAX_GIF_FPS, write_gif
+from .player import write_player
 from .sprite_sheet import frame_files, index_path, write_frames, write_sheet
 from .video import require_av, write_mp4, write_webm
 
 MAX_PLAYS = 65535
 
-Writer = Callable[..., str]  # of path, frames, fps, plays and write; and quality, where there is one
+Shot = Picture | FramedPose  # what a format is written from: a picture, or a pose for a reader that draws it
+Writer = Callable[..., str]  # of path, shots, fps, plays and write; and quality or hover, where there is one
 
 
 @dataclass(frozen=True)
@@ -27,8 +32,9 @@ class AnimationFormat:
     label: name on the screen; suffix: ending of file names, "" for a folder; about: description for the user;
     has_transparency: whether the background can be transparent; repeats: whether the file says how often it
     plays; is_video: whether the package av is needed, and width and height must be even; is_sheet: whether
-    all frames are in one picture; is_still: whether only the last frame is written; has_quality: whether it
-    can be lossy; max_fps: frames per second, at most. writer: see `write_animation`.
+    all frames are in one picture; is_still: whether only the last frame is written; is_page: whether it is a
+    web page, which draws poses itself and can wait for the pointer; has_quality: whether it can be lossy;
+    max_fps: frames per second, at most. writer: see `write_animation`.
     """
 
     label: str
@@ -40,6 +46,7 @@ class AnimationFormat:
     is_video: bool = False
     is_sheet: bool = False
     is_still: bool = False
+    is_page: bool = False
     has_quality: bool = False
     max_fps: float = 120.0
 
@@ -88,6 +95,14 @@ ANIMATION_FORMATS = (
         is_video=True,
     ),
     AnimationFormat("WebM", ".webm", "A video (VP9) with transparency.", write_webm, is_video=True),
+    AnimationFormat(
+        "Web page",
+        ".html",
+        "A page that plays in browsers at any size, smoothly, with the picture inside.",
+        write_player,
+        repeats=True,
+        is_page=True,
+    ),
     AnimationFormat("Pictures", "", "A folder with one PNG per frame.", _write_pictures),
     AnimationFormat(
         "Sprite sheet",
@@ -120,23 +135,42 @@ def animation_format(path: str | Path, sheet: bool = False) -> AnimationFormat:
     raise FileError("export", path, f"expected a name that ends in {endings}, got {suffix or 'none'}")
 
 
+def animation_shots(
+    chosen: AnimationFormat,
+    frames: Sequence[Frame],
+    painter: Painter,
+    longest_side: int,
+    background: Color | None,
+) -> Iterable[Shot]:
+    """What `write_animation` needs of frames for a format; pictures are drawn when they are asked for.
+
+    longest_side, background: see `framed_poses`. Raises InputError if the pictures would be too large.
+    """
+    if chosen.is_page:
+        return framed_poses(frames, longest_side, background)
+    return paint_frames(frames, painter, longest_side, background, chosen.is_video)
+
+
 def write_animation(
     path: str | Path,
-    frames: Iterable[Picture],
+    shots: Iterable[Shot],
     fps: float,
     plays: int = 0,
     sheet: bool = False,
     write: Write = write_atomic,
     overwrite: bool = False,
     quality: int | None = None,
+    hover: bool = False,
 ) -> str:
-    """Write frames, (h, w, 4) uint8 each, straight alpha, all of one size; return a few words on the result.
+    """Write an animation; return a few words on the result.
 
-    The ending of ``path`` decides on the format, see `animation_format`. frames: read once, in order; plays:
-    how often the animation is shown, 0 for forever; formats that do not repeat ignore it; write: writes a
-    file when all of it is encoded; overwrite: replace files that ``path`` does not name, too, see
-    `replaced_files`; quality: 1 to 100 for a lossy WebP, None for a lossless one. Raises InputError for bad
-    frames or arguments, and if the file cannot be written.
+    The ending of ``path`` decides on the format, see `animation_format`. shots: pictures (h, w, 4) uint8,
+    straight alpha, all of one size, or `FramedPose`s for a web page, see `animation_shots`; read once, in
+    order; plays: how often the animation is shown, 0 for forever; formats that do not repeat ignore it;
+    write: writes a file when all of it is encoded; overwrite: replace files that ``path`` does not name, too,
+    see `replaced_files`; quality: 1 to 100 for a lossy WebP, None for a lossless one; hover: let a web page
+    play only while the pointer is over it. Raises InputError for bad frames or arguments, and if the file
+    cannot be written.
     """
     path = Path(path)
     chosen = animation_format(path, sheet)
@@ -145,13 +179,24 @@ def write_animation(
     if not 0 <= plays <= MAX_PLAYS:
         raise InputError(f"plays: expected a number from 0 to {MAX_PLAYS}, got {plays}")
     refuse_replacing(path, replaced_files(path, sheet), overwrite)
-    if quality is None:
-        return chosen.writer(path, frames, fps, plays, write)
-    if not chosen.has_quality:
-        raise InputError(f"quality: expected a WebP, got {chosen.label}, which has no such choice")
-    if not 1 <= quality <= 100:
-        raise InputError(f"quality: expected a number from 1 to 100, got {quality}")
-    return chosen.writer(path, frames, fps, plays, write, quality)
+    options = _own_options(chosen, quality, hover)
+    return chosen.writer(path, shots, fps, plays, write, **options)
+
+
+def _own_options(chosen: AnimationFormat, quality: int | None, hover: bool) -> dict[str, object]:
+    """The options that only some formats have. Raises InputError for one that this one has not."""
+    options: dict[str, object] = {}
+    if quality is not None:
+        if not chosen.has_quality:
+            raise InputError(f"quality: expected a WebP, got {chosen.label}, which has no such choice")
+        if not 1 <= quality <= 100:
+            raise InputError(f"quality: expected a number from 1 to 100, got {quality}")
+        options["quality"] = quality
+    if hover:
+        if not chosen.is_page:
+            raise InputError(f"hover: expected a web page, got {chosen.label}, which has no such choice")
+        options["hover"] = True
+    return options
 
 
 def replaced_files(path: Path, sheet: bool = False) -> list[Path]:

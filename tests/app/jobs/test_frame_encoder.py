@@ -21,8 +21,8 @@ def exhaust(steps):
 def test_all_pictures_arrive_in_order_and_the_file_is_written(tmp_path):
     target = tmp_path / "values.bin"
 
-    def export(*, frames, write):
-        values = bytes(frame[0, 0, 0] for frame in frames)
+    def export(*, shots, write):
+        values = bytes(frame[0, 0, 0] for frame in shots)
         write(target, values)
         return f"{len(values)} pictures"
 
@@ -38,9 +38,9 @@ def test_all_pictures_arrive_in_order_and_the_file_is_written(tmp_path):
 def test_what_waits_is_bounded_until_the_thread_reads(tmp_path):
     reads = Event()
 
-    def export(*, frames, write):
+    def export(*, shots, write):
         reads.wait()
-        return str(sum(1 for _ in frames))
+        return str(sum(1 for _ in shots))
 
     encoder = FrameEncoder(export)
     taken = 0
@@ -54,7 +54,7 @@ def test_what_waits_is_bounded_until_the_thread_reads(tmp_path):
 
 
 def test_an_error_of_the_export_is_told_and_later_pictures_are_dropped():
-    def export(*, frames, write):
+    def export(*, shots, write):
         raise OSError("the disk is full")
 
     encoder = FrameEncoder(export)
@@ -69,9 +69,9 @@ def test_an_error_of_the_export_is_told_and_later_pictures_are_dropped():
 def test_closing_before_the_end_writes_nothing(tmp_path):
     target, ended = tmp_path / "values.bin", Event()
 
-    def export(*, frames, write):
+    def export(*, shots, write):
         try:
-            write(target, bytes(frame[0, 0, 0] for frame in frames))
+            write(target, bytes(frame[0, 0, 0] for frame in shots))
         finally:
             ended.set()
         return ""

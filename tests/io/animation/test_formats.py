@@ -25,6 +25,7 @@ def dot(step, height=20, width=30):
         ("a.WebP", False, "WebP"),
         ("a.mp4", False, "MP4"),
         ("a.webm", False, "WebM"),
+        ("a.html", False, "Web page"),
         ("frames", False, "Pictures"),
     ],
 )
@@ -39,7 +40,7 @@ def test_a_folder_that_exists_is_one_whatever_its_name(tmp_path):
 
 def test_each_row_says_what_its_files_can_do():
     by_label = {each.label: each for each in ANIMATION_FORMATS}
-    assert {label for label, each in by_label.items() if each.repeats} == {"WebP", "GIF", "APNG"}
+    assert {label for label, each in by_label.items() if each.repeats} == {"WebP", "GIF", "APNG", "Web page"}
     assert {label for label, each in by_label.items() if each.is_video} == {"MP4", "WebM"}
     assert {label for label, each in by_label.items() if not each.has_transparency} == {"MP4"}
 

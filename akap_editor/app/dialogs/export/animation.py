@@ -17,11 +17,11 @@ from ....io.animation.formats import (
     ANIMATION_FORMATS,
     AnimationFormat,
     animation_format,
+    animation_shots,
     replaced_files,
     write_animation,
 )
 from ....io.outputs import is_source
-from ....io.painter import paint_frames
 from ... import widgets
 from ...app_state import AppState
 from ...jobs.frame_encoder import FrameEncoder
@@ -48,7 +48,7 @@ class AnimationExportOptions:
 
     format: label of a format; fps: frames per second; size: longest side in pixels, at most; speed: 2 is
     twice as fast; ease: see `easing`; loop: repeat forever, else play once; ping_pong: forwards, then
-    backwards; opaque: whether ``background`` is used.
+    backwards; hover: a web page plays only under the pointer; opaque: whether ``background`` is used.
     """
 
     format: str = DIALOG_FORMATS[0].label
@@ -58,6 +58,7 @@ class AnimationExportOptions:
     ease: str = "none"
     loop: bool = True
     ping_pong: bool = False
+    hover: bool = False
     opaque: bool = False
     background: Color = (1.0, 1.0, 1.0)
 
@@ -219,23 +220,26 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
         frames.append(frame_at(state, time))
         yield Progress(0.3 * number / len(times), f"Posing frame {number + 1} of {len(times)}")
     frames = options.playing_order(frames, frames[0], frames[-1])
-    pictures = paint_frames(
-        frames,
-        state.offscreen_renderer,
-        options.size,
-        options.visible_background,
-        options.chosen_format.is_video,
+    chosen = animation_format(path, sheet)
+    shots = animation_shots(
+        chosen, frames, state.offscreen_renderer, options.size, options.visible_background
     )
     export = partial(
-        write_animation, path, fps=options.written_fps, plays=options.plays, sheet=sheet, overwrite=True
+        write_animation,
+        path,
+        fps=options.written_fps,
+        plays=options.plays,
+        sheet=sheet,
+        overwrite=True,
+        hover=options.hover and chosen.is_page,
     )
     encoder = FrameEncoder(export, state.wake)
     try:
-        for number, picture in enumerate(pictures):
+        for number, shot in enumerate(shots):
             share = 0.3 + 0.6 * number / len(frames)
             progress = Progress(share, f"Drawing frame {number + 1} of {len(frames)}")
             yield progress
-            for _ in encoder.take(picture):
+            for _ in encoder.take(shot):
                 yield progress._replace(is_blocked=True)
         for _ in encoder.finish():
             yield Progress(0.95, f"Writing {display_name(path)}", is_blocked=True)
@@ -273,6 +277,10 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     if options.chosen_format.repeats:
         tooltip += " Off: the animation plays once."
     _, options.loop = widgets.switch("Loop forever", options.loop, tooltip)
+    if options.chosen_format.is_page:
+        widgets.switch_label("", LABEL_WIDTH * scale)
+        tooltip = "Off: it plays at once, and a click stops it."
+        _, options.hover = widgets.switch("Play on hover", options.hover, tooltip)
     options.opaque, options.background = background_field(
         options.opaque,
         options.background,

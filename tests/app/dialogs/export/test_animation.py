@@ -1,6 +1,7 @@
 """Exports of the timeline: the dialog, what it remembers, and every format."""
 
 import json
+import re
 from dataclasses import replace
 from itertools import pairwise
 from threading import Event
@@ -158,8 +159,22 @@ def size_of(path):
 
         with av.open(str(path)) as container:
             return f"{container.streams.video[0].width} × {container.streams.video[0].height} px"
+    if path.suffix == ".html":
+        width, height = re.search(r"aspect-ratio: (\d+) / (\d+)", path.read_text("utf-8")).groups()
+        return f"{width} × {height} px"
     with Image.open(path / "frame-0000.png" if path.is_dir() else path) as opened:
         return f"{opened.size[0]} × {opened.size[1]} px"
+
+
+def test_a_web_page_can_wait_for_the_pointer(keyed, tmp_path):
+    keyed.state.folder = tmp_path
+    keyed.key(CTRL | SHIFT | imgui.Key.e)
+    keyed.dialog(TITLE, "**/Web page", "**/Play on hover", "Export...")
+    keyed.type_name(TITLE, "wave")
+    keyed.settle()
+    assert not keyed.state.error
+    assert '"hover":true' in (tmp_path / "wave.html").read_text("utf-8")
+    assert AnimationExportOptions.remembered(keyed.state.preferences).hover
 
 
 def test_the_size_is_measured_beside_the_dialog(keyed):
