@@ -98,7 +98,7 @@ ANIMATION_FORMATS = (
     AnimationFormat(
         "Web page",
         ".html",
-        "A page that plays in browsers at any size, smoothly, with the picture inside.",
+        "A page that plays in browsers, sharp at any size.",
         write_player,
         repeats=True,
         is_page=True,

@@ -39,19 +39,19 @@ def bent(drawing: Drawing, angle: float) -> np.ndarray:
     turn = angle * -offset[:, 1] / height
     cos, sin = np.cos(turn), np.sin(turn)
     x, y = offset.T
-    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=1) + [width / 2, height]
+    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=1) + np.array([width / 2, height])
 
 
 def cut_across(drawing: Drawing) -> CutMesh:
     """The drawing with one face cut in three, drawn back to front in the reverse order."""
-    faces = drawing.mesh.faces[::-1]
+    faces = drawing.mesh.faces[::-1].astype(np.int32)
     a, b, c = faces[0].tolist()
     n = len(drawing.mesh.vertices)
     parts = np.array([(a, n, n + 1), (n, b, c), (n, c, n + 1)], dtype=np.int32)
     edges, shares = np.array([(a, b), (a, c)], dtype=np.int32), np.array([0.25, 0.5])
     order = np.arange(len(faces))[::-1]
     sources = np.concatenate([order[[0, 0, 0]], order[1:]]).astype(np.int32)
-    return CutMesh(order, np.concatenate([parts, faces[1:]]).astype(np.int32), sources, edges, shares)
+    return CutMesh(order, np.concatenate([parts, faces[1:]]), sources, edges, shares)
 
 
 @pytest.fixture(scope="module")

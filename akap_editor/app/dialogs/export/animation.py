@@ -37,7 +37,7 @@ PREFERENCE = "animation"  # name of the stored options
 DIALOG_FORMATS = tuple(each for each in ANIMATION_FORMATS if not each.is_still)
 FRAME_RATES = (12, 24, 30, 60)
 LIMITS = {"fps": (1.0, 120.0), "size": (16, 8192), "speed": (0.01, 100.0)}
-_WIDTH, _HEIGHT, _LIST_WIDTH = 600, 324, 190  # design points
+_WIDTH, _HEIGHT, _LIST_WIDTH = 600, 346, 190  # design points
 
 T = TypeVar("T")
 
