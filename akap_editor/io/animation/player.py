@@ -73,7 +73,7 @@ def encode_player(frames: Sequence[FramedPose], fps: float, plays: int = 0, hove
         "meshes": contents.meshes,
         "orders": contents.orders,
         "frames": contents.frames,
-        "shaders": [_es_shader(name) for name in ("mesh.vert", "mesh.frag")],
+        "shaders": [_es_shader(name) for name in ("mesh.vert", "mesh_sharp.frag")],
         "pictures": [_data_uri(image) for image in contents.pictures],
     }
     record = json.dumps(animation, separators=(",", ":"), allow_nan=False)
