@@ -1,7 +1,7 @@
 """Exports drawings for other programs."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
@@ -113,6 +113,7 @@ def print_results(results: list[ExportResult], as_json: bool) -> None:
 @mesher_option
 @overwrite_option
 @click.option("--rest", is_flag=True, help="Export the rest pose.")
+@click.option("--textured", is_flag=True, help="Draw an SVG with its texture instead of the outline alone.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def export_command(
     files: tuple[Path, ...],
@@ -125,6 +126,7 @@ def export_command(
     mesher: str | None,
     overwrite: bool,
     rest: bool,
+    textured: bool,
     as_json: bool,
 ) -> None:
     """Export FILE, a saved drawing or a picture, for other programs."""
@@ -138,7 +140,9 @@ def export_command(
     for name, value in given.items():
         if value is not None and not chosen.uses_framing:
             raise InputError(f"{name}: expected a picture or an outline as output, got {chosen.suffix}")
-    options = export_options(scale, background, crop, rest)
+    if textured and not chosen.can_be_textured:
+        raise InputError(f"--textured: expected an output that ends in .svg, got {chosen.suffix}")
+    options = replace(export_options(scale, background, crop, rest), textured=textured)
     refuse_unnamed(outputs, output, files, overwrite)
     results = [
         export_file(file, target, options, threshold, overwrite, mesher)

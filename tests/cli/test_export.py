@@ -59,6 +59,12 @@ def test_png_is_what_the_renderer_draws(run, posed, tmp_path, crop, rest):
     assert said == f"a.png: {expected.shape[1]} × {expected.shape[0]} pixels\n"
 
 
+def test_an_svg_with_its_texture(run, posed, tmp_path):
+    assert run("export", posed, "-o", "a.svg", "--textured")[0] == 0
+    assert "<image " in (tmp_path / "a.svg").read_text()
+    assert_one_line(run("export", posed, "-o", "a.glb", "--textured"), "--textured", ".svg", ".glb")
+
+
 def test_a_picture_is_exported_at_rest(run, picture, tmp_path):
     assert run("export", picture, "-o", "bar.glb")[0] == 0
     assert run("export", picture, "-o", "bar.obj")[0] == 0

@@ -18,7 +18,7 @@ from .gltf import encode_glb
 from .mesh_json import encode_json
 from .obj import companion_names, encode_obj
 from .spine import encode_spine
-from .svg import encode_svg
+from .svg import encode_svg, encode_textured_svg
 from .texture import texture_name
 
 Files = dict[str, bytes]  # contents by file name
@@ -29,13 +29,15 @@ class ExportOptions:
     """Options of an export.
 
     scale: pixels per pixel of the drawing; background: None for transparent; crop: see `crop_box`; rest:
-    export the rest pose instead of the current pose.
+    export the rest pose instead of the current pose; textured: draw an SVG with its texture instead of the
+    outline alone.
     """
 
     scale: float = 1.0
     background: Color | None = None
     crop: str = "none"
     rest: bool = False
+    textured: bool = False
 
 
 @dataclass(frozen=True)
@@ -43,8 +45,8 @@ class ExportFormat:
     """A row of the table of formats.
 
     label: name on the screen; suffix: ending of file names; about: description for the user; uses_framing:
-    whether scale, background and crop matter; encode: returns the contents of all files by name, the named
-    file last; companions: names of the other files for a stem.
+    whether scale, background and crop matter; can_be_textured: see `ExportOptions`; encode: returns the
+    contents of all files by name, the named file last; companions: names of the other files for a stem.
     """
 
     label: str
@@ -53,20 +55,31 @@ class ExportFormat:
     uses_framing: bool
     encode: Callable[[Document, str, ExportOptions, Painter | None], Files] = field(repr=False)
     companions: Callable[[str], list[str]] = field(default=lambda _: [], repr=False)
+    can_be_textured: bool = False
+
+
+def _require_painter(painter: Painter | None) -> Painter:
+    if painter is None:
+        raise InputError("expected a painter for a picture, e.g. an OffscreenRenderer, got None")
+    return painter
 
 
 def _encode_png(document: Document, stem: str, options: ExportOptions, painter: Painter | None) -> Files:
-    if painter is None:
-        raise InputError("expected a painter for a picture, e.g. an OffscreenRenderer, got None")
     drawing, pose = document.drawing, document.state.positions
     box = crop_box(drawing, pose, options.crop)
-    picture = painter.render(drawing, pose, box, options.scale, options.background, document.draw_order)
+    picture = _require_painter(painter).render(
+        drawing, pose, box, options.scale, options.background, document.draw_order
+    )
     return {f"{stem}.png": encode_png(picture)}
 
 
-def _encode_svg(document: Document, stem: str, options: ExportOptions, _: Painter | None) -> Files:
-    box = crop_box(document.drawing, document.state.positions, options.crop)
-    text = encode_svg(document.drawing, document.state.positions, box, options.scale, options.background)
+def _encode_svg(document: Document, stem: str, options: ExportOptions, painter: Painter | None) -> Files:
+    drawing, pose = document.drawing, document.state.positions
+    framing = crop_box(drawing, pose, options.crop), options.scale, options.background
+    if options.textured:
+        text = encode_textured_svg(drawing, pose, *framing, _require_painter(painter), document.draw_order)
+    else:
+        text = encode_svg(drawing, pose, *framing)
     return {f"{stem}.svg": text.encode()}
 
 
@@ -79,7 +92,12 @@ def _encode_spine(document: Document, stem: str, _: ExportOptions, __: Painter |
 EXPORT_FORMATS = (
     ExportFormat("PNG picture", ".png", "The pose as a picture with transparency.", True, _encode_png),
     ExportFormat(
-        "SVG outline", ".svg", "The outline of the pose as paths, for cutting and tracing.", True, _encode_svg
+        "SVG",
+        ".svg",
+        "The outline of the pose as paths, for cutting and tracing, or a picture of each part.",
+        True,
+        _encode_svg,
+        can_be_textured=True,
     ),
     ExportFormat(
         "glTF binary",

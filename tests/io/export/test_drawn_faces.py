@@ -12,8 +12,8 @@ import pytest
 
 from akap_editor.editor.document.crossings import overlaps_of
 from akap_editor.editor.document.document import Document
+from akap_editor.io.export.component_runs import component_runs
 from akap_editor.io.export.drawn_faces import DrawnFaces, drawn_faces
-from akap_editor.io.export.spine import component_runs
 from akap_editor.io.export.texture import y_up
 from akap_editor.overlap.seams import CutMesh
 

@@ -11,7 +11,12 @@ import resvg_py
 import shapely
 from PIL import Image
 
+from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import signed_areas
+from akap_editor.io.export import ExportOptions, export
+from akap_editor.render.offscreen import OffscreenRenderer
+from tests.io.export.test_drawn_faces import woven
+from tests.support.similarity import structural_similarity
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 
@@ -102,3 +107,53 @@ def test_background_and_name(exported, bent):
     assert drawn_by_resvg(path)[0, 0].tolist() == [255, 128, 0, 255]
     assert ElementTree.parse(path).getroot().find(f"{NAMESPACE}title").text == "ring & disc"
     assert drawn_by_resvg(exported(bent, "b.svg"))[0, 0, 3] == 0
+
+
+# -- with its texture ----------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def textured(tmp_path):
+    """Exports a document as an SVG with its texture: the file, and the picture that it should look like."""
+
+    def write(document, **options):
+        with OffscreenRenderer() as renderer:
+            choices = ExportOptions(textured=True, **options)
+            (path,) = export(document, tmp_path / "textured.svg", choices, renderer)
+            (png,) = export(document, tmp_path / "textured.png", ExportOptions(**options), renderer)
+        return path, np.asarray(Image.open(png).convert("RGBA"))
+
+    return write
+
+
+@pytest.mark.parametrize("pose", ["rest", "bent", "woven"])
+@pytest.mark.parametrize("options", [{}, {"scale": 2.0, "crop": "pose", "background": (1.0, 0.5, 0.0)}])
+def test_it_looks_like_the_picture(textured, drawn, bent, pose, options):
+    document = {"rest": drawn, "bent": bent, "woven": woven(drawn)}[pose]
+    path, expected = textured(document, **options)
+    picture = drawn_by_resvg(path)
+    assert picture.shape == expected.shape
+    assert structural_similarity(picture, expected) >= 0.995
+    assert np.abs(picture[..., 3].astype(int) - expected[..., 3]).mean() < 0.2
+
+
+def test_each_part_is_a_picture_from_back_to_front(textured, drawn, bent):
+    for document, count in ((bent, 2), (woven(drawn), 3)):
+        root = ElementTree.parse(textured(document)[0]).getroot()
+        images = list(root.iter(f"{NAMESPACE}image"))
+        assert [image.get("id") for image in images] == [f"part-{k + 1}" for k in range(count)]
+        assert not list(root.iter(f"{NAMESPACE}path"))
+
+
+def test_parts_outside_the_frame_are_left_out(textured, drawn):
+    mesh = drawn.drawing.mesh
+    apart = mesh.component == mesh.component[np.argmax(mesh.vertices[:, 0])]
+    pose = mesh.vertices + np.where(apart[:, None], [400.0, 0.0], [0.0, 0.0])
+    path, _ = textured(drawn.with_state(replace(drawn.state, positions=pose)), crop="frame")
+    assert len(list(ElementTree.parse(path).getroot().iter(f"{NAMESPACE}image"))) == 1
+
+
+def test_a_texture_needs_a_painter(drawn, tmp_path):
+    with pytest.raises(InputError, match="Expected a painter"):
+        export(drawn, tmp_path / "a.svg", ExportOptions(textured=True))
+    assert list(tmp_path.iterdir()) == []

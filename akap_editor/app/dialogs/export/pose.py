@@ -40,11 +40,13 @@ class PoseExportOptions:
     background: Color = (1.0, 1.0, 1.0)
     crop: str = CROPS[0]
     rest: bool = False
+    textured: bool = False
 
     @property
     def export_options(self) -> ExportOptions:
         """The choices as `export` takes them."""
-        return ExportOptions(self.scale, self.background if self.is_opaque else None, self.crop, self.rest)
+        background = self.background if self.is_opaque else None
+        return ExportOptions(self.scale, background, self.crop, self.rest, self.textured)
 
     def output_size(self, document: Document) -> tuple[int, int]:
         """Width and height in pixels of an exported picture. Raises InputError if it is too large."""
@@ -145,6 +147,11 @@ def _draw_options(options: PoseExportOptions, document: Document, scale: float) 
     widgets.switch_label("Pose", LABEL_WIDTH * scale)
     tooltip = "Export the rest pose instead of the current pose."
     _, options.rest = widgets.switch("Rest pose", options.rest, tooltip)
+    if options.format.can_be_textured:
+        imgui.same_line(0, 16 * scale)
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
+        tooltip = "A picture of each part, from back to front. Off: the outline alone."
+        _, options.textured = widgets.switch("Texture", options.textured, tooltip)
     return problem
 
 

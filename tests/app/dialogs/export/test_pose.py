@@ -83,6 +83,14 @@ def test_every_format(bent, tmp_path, suffix):
         assert path.name in bent.state.notice
 
 
+def test_an_svg_with_its_texture(bent, tmp_path):
+    bent.menu("File", "Export...")
+    bent.dialog(EXPORT, option("SVG"), option("Texture"))
+    export_as(bent, "figure")
+    assert not bent.state.error
+    assert "<image " in (tmp_path / "figure.svg").read_text()
+
+
 def test_the_drawing_at_rest(bent, tmp_path):
     bent.menu("File", "Export...")
     bent.dialog(EXPORT, option("glTF binary"), option("Rest pose"), "Export...")
