@@ -70,13 +70,15 @@ def circular_pairs(face_count: int, low: Ints, high: Ints, placed: Ints) -> Ints
 def least_violating_order(face_count: int, low: Ints, high: Ints, weights: Floats):  # type: ignore[no-untyped-def]
     """A rank (m,) of faces, from below to above, that violates little weight (p,) where pairs are circular.
 
-    Where no face is free, the one goes first whose pairs above lower faces weigh least.
+    Pairs of weight 0 are never violated; they must not contradict one another. Where no face is free, the one
+    goes first whose pairs above lower faces weigh least.
     """
     starts, waiting = np.zeros(face_count + 1, dtype=np.int32), np.zeros(face_count, dtype=np.int32)
-    cost = np.zeros(face_count)
+    firm, cost = np.zeros(face_count, dtype=np.int32), np.zeros(face_count)
     for i in range(len(low)):
         starts[low[i] + 1] += 1
         waiting[high[i]] += 1
+        firm[high[i]] += weights[i] == 0
         cost[high[i]] += weights[i]
     for f in range(face_count):
         starts[f + 1] += starts[f]
@@ -95,7 +97,7 @@ def least_violating_order(face_count: int, low: Ints, high: Ints, weights: Float
         if reached == size:
             best = -1
             for f in range(face_count):
-                if not placed[f] and (best < 0 or cost[f] < cost[best]):
+                if not placed[f] and firm[f] == 0 and (best < 0 or cost[f] < cost[best]):
                     best = f
             placed[best] = True
             queue[size] = best
@@ -109,6 +111,7 @@ def least_violating_order(face_count: int, low: Ints, high: Ints, weights: Float
             if placed[g]:
                 continue
             waiting[g] -= 1
+            firm[g] -= weights[i] == 0
             cost[g] -= weights[i]
             if waiting[g] == 0:
                 placed[g] = True
@@ -118,16 +121,17 @@ def least_violating_order(face_count: int, low: Ints, high: Ints, weights: Float
 
 
 def without_circles(
-    face_count: int, first: Ints, second: Ints, regions: Ints, signs: Ints, ages: Ints, known: Ints
+    face_count: int, first: Ints, second: Ints, regions: Ints, signs: Ints, ages: Ints, firm: Ints
 ) -> tuple[Ints, Ints]:
     """Signs (p,) int8 without circles, and the levels of faces (m,) that satisfy them.
 
-    ages: (r,) rank of each region, the oldest 0; known: (p,) whether a pair was there in the pose before. On
-    a circle the youngest region gives way: as a whole if it is new, else its pairs on the circle, those
-    first that were not there before. None turns over twice.
+    ages: (r,) rank of each region, the oldest 0; firm: (p,) signs that must stay or come back, 0 for pairs
+    that may turn over. The firm ones must not contradict one another, as those of the last pose do not. On a
+    circle the youngest region gives way: as a whole if none of it is firm, else the pairs on the circle.
     """
-    signs, turned, whole = signs.copy(), np.zeros(len(signs), dtype=bool), np.zeros(len(ages), dtype=bool)
-    known_regions = np.bincount(regions[known], minlength=len(ages)) > 0
+    wanted, turned, whole = np.where(firm, firm, signs), firm != 0, np.zeros(len(ages), dtype=bool)
+    signs = wanted.copy()
+    firm_regions = np.bincount(regions[turned], minlength=len(ages)) > 0
     for _ in range(MAX_ROUNDS):
         low, high = low_and_high(first, second, signs)
         levels, placed = face_levels(face_count, low, high)
@@ -137,7 +141,7 @@ def without_circles(
         free = circle[~turned[circle]]
         if not len(free):
             break
-        fresh = free[~known_regions[regions[free]] & ~whole[regions[free]]]
+        fresh = free[~firm_regions[regions[free]] & ~whole[regions[free]]]
         if len(fresh):
             youngest = regions[fresh[np.argmax(ages[regions[fresh]])]]
             whole[youngest] = True
@@ -147,15 +151,13 @@ def without_circles(
             if _circle_size(face_count, first, second, turned_signs) < len(circle):
                 signs = turned_signs
             continue
-        new = free[~known[free]]
-        candidates = new if len(new) else free
-        youngest = regions[candidates[np.argmax(ages[regions[candidates]])]]
-        chosen = candidates[regions[candidates] == youngest]
+        youngest = regions[free[np.argmax(ages[regions[free]])]]
+        chosen = free[regions[free] == youngest]
         signs[chosen] *= -1
         turned[chosen] = True
     # Circles within single regions, or too many of them: adopt an order of faces that turns over little.
-    low, high = low_and_high(first, second, signs)
-    weights = np.where(known, 100.0, 1.0) * (1.0 + ages.max() - ages[regions])
+    low, high = low_and_high(first, second, wanted)
+    weights = np.where(firm, 0.0, 1.0 + ages.max() - ages[regions])
     rank = least_violating_order(face_count, low, high, weights)
     signs = np.where(rank[first] > rank[second], 1, -1).astype(np.int8)
     return signs, face_levels(face_count, *low_and_high(first, second, signs))[0]

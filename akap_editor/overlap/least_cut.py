@@ -59,10 +59,12 @@ def spread_signs(  # type: ignore[no-untyped-def]
     heads: Ints,
     starts: Ints,
     links: Ints,
+    is_exchanged: bool,
 ):
     """Give each of ``members`` without a sign that of the nearest pair with one; changes ``signs``.
 
-    members: indices of all pairs of one region.
+    members: indices of all pairs of one region; is_exchanged: see `FacePairs.exchanged`. Without it, pairs
+    that `adjacent_pairs` calls exchanged only meet at a corner.
     """
     begin, end = members[0], members[-1] + 1
     queue, size = np.empty(len(members), dtype=np.int64), 0
@@ -72,7 +74,7 @@ def spread_signs(  # type: ignore[no-untyped-def]
         if signs[i] == 0:
             adjacent_pairs(i, begin, end, first, second, neighbors, heads, starts, links, beside)
             for j in beside:
-                if j != -1:
+                if j >= 0 or (is_exchanged and j < -1):
                     is_source[(j if j >= 0 else -2 - j) - begin] = True
     for i in members:
         if signs[i] != 0 and is_source[i - begin]:
@@ -85,7 +87,7 @@ def spread_signs(  # type: ignore[no-untyped-def]
         adjacent_pairs(i, begin, end, first, second, neighbors, heads, starts, links, beside)
         for j in beside:
             sign = signs[i] if j >= 0 else -signs[i]
-            if j < -1:
+            if is_exchanged and j < -1:
                 j = -2 - j
             if j >= 0 and signs[j] == 0:
                 signs[j] = sign
@@ -126,7 +128,8 @@ def seam_pairs(  # type: ignore[no-untyped-def]
             continue
         adjacent_pairs(i, begin, end, first, second, neighbors, heads, starts, links, beside)
         for j in beside:
-            if (j >= 0 and signs[j] == -signs[i]) or (j < -1 and signs[-2 - j] == signs[i]):
+            is_turned = is_exchanged and j < -1 and signs[-2 - j] == signs[i]
+            if is_turned or (j >= 0 and signs[j] == -signs[i]):
                 distance[i] = 0
                 queue[size] = i
                 size += 1

@@ -1,10 +1,14 @@
-"""Signs of overlapping pairs that are carried over from the pose before."""
+"""Signs of overlapping pairs: carried over from the pose before, and the few pairs that restore all signs."""
 
 import numpy as np
 
 from ..geometry.jit import compiled
-from ..geometry.validation import Floats, Ints
-from .face_pairs import pair_index
+from ..geometry.validation import Floats, Ints, freeze
+from .circles import low_and_high
+from .common_area import common_areas, has_flipped
+from .face_pairs import FacePairs, pair_index
+from .least_cut import seam_pairs, spread_signs
+from .topology import Topology
 
 _REACH = 0.1  # share of the mesh's length within which the partner of a face tells of its neighbor
 
@@ -80,3 +84,90 @@ def tally(regions: Ints, signs: Ints, known: Ints, sources: Ints, old_ages: Ints
         if known[i] or ages[r] == len(old_ages):
             ages[r] = min(ages[r], old_ages[sources[i]])
     return votes, guesses, ages
+
+
+def deciding_pairs(
+    topology: Topology, pose: Floats, pairs: FacePairs, signs: Ints, order: Ints, before: Ints
+) -> Ints:
+    """The pairs (s, 2), upper and lower faces, from which `recalled_signs` finds all signs (p,) again.
+
+    order: (r,) the regions, the oldest first; before: (s, 2) those of the pose before, some of which are kept
+    where they serve. The same object as ``before`` if nothing changed.
+    """
+    arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
+    indices, sides = find_pairs(
+        before[:, 0], before[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
+    )
+    valid = (indices >= 0) & (signs[indices] == sides)
+    is_flipped = has_flipped(pose, topology.faces)
+    ends = np.searchsorted(pairs.regions, np.arange(pairs.region_count + 1))
+    chosen = []
+    for region in order:
+        members = np.arange(ends[region], ends[region + 1])
+        is_exchanged = bool(pairs.exchanged[region])
+        is_cut = is_exchanged or signs[members].min() != signs[members].max()
+        row = seam_pairs(members, signs, *arrays, 0, is_exchanged) if is_cut else members[:0]
+        if len(row):
+            row = np.sort(row)
+        else:
+            row = indices[valid & (indices >= members[0]) & (indices <= members[-1])][:1]
+        if not len(row):
+            candidates = members[:: max(1, len(members) // 32)]
+            areas = common_areas(pose, topology.faces, pairs.first[candidates], pairs.second[candidates])
+            row = candidates[np.argmax(areas)][None]
+        chosen.append(_sufficient(row, members, signs, topology, pairs) if is_flipped else row)
+    low, high = low_and_high(pairs.first, pairs.second, signs)
+    kept = np.concatenate(chosen)
+    crossings = np.stack([high[kept], low[kept]], axis=1).astype(np.int32)
+    return before if np.array_equal(crossings, before) else freeze(crossings)
+
+
+def _sufficient(row: Ints, members: Ints, signs: Ints, topology: Topology, pairs: FacePairs) -> Ints:
+    """The pairs ``row`` of one region, and as many others as it takes to restore its signs.
+
+    Where faces are flipped, pairs of a region need not be side by side.
+    """
+    arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
+    is_exchanged = bool(pairs.exchanged[pairs.regions[members[0]]])
+    while True:
+        found = np.zeros_like(signs)
+        found[row] = signs[row]
+        spread_signs(members, found, *arrays, is_exchanged)
+        wrong = members[found[members] != signs[members]]
+        if not len(wrong):
+            return row
+        row = np.concatenate([row, wrong])
+
+
+def recalled_signs(topology: Topology, pairs: FacePairs, crossings: Ints) -> tuple[Ints, Ints]:
+    """The signs (p,) int8 that ``crossings`` (s, 2) restore, and the rank (r,) of each region: its first row.
+
+    A pair has the sign of the row that is nearest to it within its region; 0 in regions without one, whose
+    rank is s.
+    """
+    signs = np.zeros(len(pairs), dtype=np.int8)
+    ages = np.full(pairs.region_count, len(crossings), dtype=np.int64)
+    arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
+    indices, sides = find_pairs(
+        crossings[:, 0], crossings[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
+    )
+    for row in range(len(crossings) - 1, -1, -1):
+        if indices[row] >= 0:
+            signs[indices[row]] = sides[row]
+            ages[pairs.regions[indices[row]]] = row
+    for region in np.unique(pairs.regions[indices[indices >= 0]]):
+        begin, end = np.searchsorted(pairs.regions, (region, region + 1))
+        spread_signs(np.arange(begin, end), signs, *arrays, bool(pairs.exchanged[region]))
+    return signs, ages
+
+
+@compiled
+def find_pairs(first: Ints, second: Ints, seconds: Ints, heads: Ints, starts: Ints, links: Ints):  # type: ignore[no-untyped-def]
+    """Indices (s,) of pairs in either order, −1 for none, and whether they are in this order, 1 or −1."""
+    indices, signs = np.full(len(first), -1, dtype=np.int64), np.ones(len(first), dtype=np.int8)
+    for i in range(len(first)):
+        indices[i] = pair_index(first[i], second[i], seconds, heads, starts, links)
+        if indices[i] < 0:
+            indices[i] = pair_index(second[i], first[i], seconds, heads, starts, links)
+            signs[i] = -1
+    return indices, signs

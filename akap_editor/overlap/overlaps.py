@@ -6,19 +6,18 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry.jit import compiled
 from ..geometry.mesh import TriMesh
 from ..geometry.validation import Floats, Ints, freeze
 from .circles import face_levels, low_and_high, satisfies, without_circles
 from .common_area import common_areas
-from .face_pairs import FacePairs, no_face_pairs, overlapping_faces, pair_index
-from .least_cut import cut_signs, seam_pairs, spread_signs
-from .memory import carried_signs, tally
+from .face_pairs import FacePairs, no_face_pairs, overlapping_faces
+from .least_cut import cut_signs, spread_signs
+from .memory import carried_signs, deciding_pairs, recalled_signs, tally
 from .rules import Rules
 from .topology import Topology, face_centers, mesh_topology
 
 _JUMP = 0.15  # share of the mesh's length: a region that moved less far on both sheets is the same one
-_NEGLIGIBLE = 1e-4  # share of the mesh's area: of two decisions in one region the smaller is dropped
+_NEGLIGIBLE = 1e-4  # share of the mesh's area on which decisions may be dropped where regions grow together
 _SEAM_TRAVEL = 2e-4  # share of the mesh's area that seams may pass over in one step
 _PULL = 50.0  # a pair turned over costs its area over this part of the mesh's length
 _GUESS = 0.3  # firmness of a sign that was inferred from a neighbor
@@ -141,7 +140,6 @@ def asked_overlaps(mesh: TriMesh, pose: Floats, overlaps: Overlaps, limb: Ints, 
         return overlaps
     decision = _Decision(mesh, mesh_topology(mesh), pose, pairs)
     decision.signs = overlaps.signs.copy()
-    decision.known[:] = True
     on_first, on_second = limb[pairs.first], limb[pairs.second]
     wanted = (on_first.astype(np.int8) - on_second) * (1 if to_front else -1)
     decision.ages = 1 + overlaps.ages
@@ -160,6 +158,7 @@ def asked_overlaps(mesh: TriMesh, pose: Floats, overlaps: Overlaps, limb: Ints, 
         hidden = decision.hidden(region)
         steps = len(members)  # the seam may be anywhere
         decision.signs = cut_signs(decision.topology, pose, pairs, members, signs, firmness, hidden, steps)
+    decision.firm = np.where(decision.signs == wanted, wanted, 0).astype(np.int8)
     return overlaps if np.array_equal(decision.signs, overlaps.signs) else decision.result(overlaps)
 
 
@@ -171,21 +170,22 @@ def overlaps_by_depth(
         return overlaps
     pairs = overlaps.pairs
     decision = _Decision(mesh, mesh_topology(mesh), pose, pairs)
-    decision.signs, decision.ages = overlaps.signs.copy(), overlaps.ages
-    decision.known[:] = True
+    decision.signs, decision.ages = overlaps.signs.copy(), 1 + overlaps.ages
     for region in range(decision.count):
         members = decision.members(region)
         sheets = pairs.first[members], pairs.second[members], decision.areas(members)
         sign = after.depth_sign(*sheets)
         if sign and sign != before.depth_sign(*sheets):
             decision.signs[members] = sign
+            decision.ages[region] = 0
     return overlaps if np.array_equal(decision.signs, overlaps.signs) else decision.result(overlaps)
 
 
 class _Decision:
     """The signs of one pose's pairs while they are decided.
 
-    known: (p,) whether the sign is that of the same pair in the pose before; fresh: regions without memory.
+    known: (p,) whether the pair was there in a pose that decides; firm: (p,) int8 signs that no circle turns
+    over, 0 for none. Those of one pose never contradict one another.
     """
 
     def __init__(self, mesh: TriMesh, topology: Topology, pose: Floats, pairs: FacePairs) -> None:
@@ -193,6 +193,7 @@ class _Decision:
         self.count = pairs.region_count
         self.signs = np.zeros(len(pairs), dtype=np.int8)
         self.known = np.zeros(len(pairs), dtype=bool)
+        self.firm = np.zeros(len(pairs), dtype=np.int8)
         self.ages = np.full(self.count, np.iinfo(np.int64).max)  # no region is younger than a new one
         self.contradictory: list[int] = []  # regions with both signs
         self.ends = np.searchsorted(pairs.regions, np.arange(self.count + 1))
@@ -237,7 +238,10 @@ class _Decision:
             mesh.length,
         )
         votes, guesses, ages = tally(self.pairs.regions, signs, known, sources, before.ages, self.count)
+        if not self.known.any():
+            self.firm[known] = signs[known]
         is_open = self.signs[self.ends[:-1]] == 0
+        negligible = _NEGLIGIBLE * self.mesh.length**2
         self.ages[is_open] = ages[is_open]
         self.known |= known
         for region in np.flatnonzero(is_open).tolist():
@@ -254,25 +258,17 @@ class _Decision:
             members = begin + np.flatnonzero(mine == minority)
             dissent = guesses[region, 0 if minority > 0 else 1]
             is_unanimous = not votes[region].min() and 2 * votes[region].max() >= dissent
-            if is_unanimous or self.areas(members).sum() <= _NEGLIGIBLE * self.mesh.length**2:
+            area = 0.0 if is_unanimous else self.areas(members).sum()
+            if area <= negligible:
                 self.signs[begin:end] = -minority
+                negligible -= area
             else:
                 self.signs[begin:end] = mine
                 self.contradictory.append(region)
 
     def take_over(self, crossings: Ints) -> None:
         """Give each pair the sign of the rows of ``crossings`` that are nearest to it within its region."""
-        self.ages[:] = len(crossings)
-        pairs = self.pairs
-        indices, signs = find_pairs(
-            crossings[:, 0], crossings[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
-        )
-        for row in range(len(crossings) - 1, -1, -1):
-            if indices[row] >= 0:
-                self.signs[indices[row]] = signs[row]
-                self.ages[pairs.regions[indices[row]]] = row
-        for region in np.unique(pairs.regions[indices[indices >= 0]]):
-            spread_signs(self.members(region), self.signs, *self.arrays)
+        self.signs, self.ages = recalled_signs(self.topology, self.pairs, crossings)
 
     def decide_new(self, before: Overlaps, rules: RulesSource) -> None:
         """Give the regions without a sign one: of an old region nearby, else by the rules."""
@@ -304,7 +300,7 @@ class _Decision:
         allowed = _SEAM_TRAVEL * self.mesh.length**2 / len(self.contradictory)
         for region in self.contradictory:
             members = self.members(region)
-            spread_signs(members, self.signs, *self.arrays)
+            spread_signs(members, self.signs, *self.arrays, bool(self.pairs.exchanged[region]))
             hidden = self.hidden(region)
             wanted = self.signs
             firmness = np.full(len(self.pairs), _PULL / self.mesh.length)
@@ -337,49 +333,11 @@ class _Decision:
             levels, placed = face_levels(m, low, high)
             if not placed.all():
                 self.signs, levels = without_circles(
-                    m, pairs.first, pairs.second, pairs.regions, self.signs, ages, self.known
+                    m, pairs.first, pairs.second, pairs.regions, self.signs, ages, self.firm
                 )
-        crossings = self._crossings(order, before.crossings)
+        old = before.crossings
+        crossings = deciding_pairs(self.topology, self.pose, pairs, self.signs, order, old)
         return Overlaps(pairs, freeze(self.signs), ages, levels, crossings)
-
-    def _crossings(self, order: Ints, before: Ints) -> Ints:
-        """The pairs that restore all signs, by regions in ``order``; old ones where they still do."""
-        pairs = self.pairs
-        indices, signs = find_pairs(
-            before[:, 0], before[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
-        )
-        valid = (indices >= 0) & (self.signs[indices] == signs)
-        chosen = []
-        for region in order:
-            members = self.members(region)
-            is_exchanged = bool(pairs.exchanged[region])
-            if is_exchanged or self.signs[members].min() != self.signs[members].max():
-                seam = seam_pairs(members, self.signs, *self.arrays, 0, is_exchanged)
-                if len(seam):
-                    chosen.append(np.sort(seam))
-                    continue
-            mine = indices[valid & (indices >= members[0]) & (indices <= members[-1])]
-            if len(mine):
-                chosen.append(mine[:1])
-                continue
-            candidates = members[:: max(1, len(members) // 32)]
-            chosen.append(candidates[np.argmax(self.areas(candidates))][None])
-        low, high = low_and_high(pairs.first, pairs.second, self.signs)
-        kept = np.concatenate(chosen)
-        crossings = np.stack([high[kept], low[kept]], axis=1).astype(np.int32)
-        return before if np.array_equal(crossings, before) else freeze(crossings)
-
-
-@compiled
-def find_pairs(first: Ints, second: Ints, seconds: Ints, heads: Ints, starts: Ints, links: Ints):  # type: ignore[no-untyped-def]
-    """Indices (s,) of pairs in either order, −1 for none, and whether they are in this order, 1 or −1."""
-    indices, signs = np.full(len(first), -1, dtype=np.int64), np.ones(len(first), dtype=np.int8)
-    for i in range(len(first)):
-        indices[i] = pair_index(first[i], second[i], seconds, heads, starts, links)
-        if indices[i] < 0:
-            indices[i] = pair_index(second[i], first[i], seconds, heads, starts, links)
-            signs[i] = -1
-    return indices, signs
 
 
 def _sheet_centers(mesh: TriMesh, overlaps: Overlaps) -> list[Floats]:
