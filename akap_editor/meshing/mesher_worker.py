@@ -9,6 +9,7 @@ import math
 import os
 import struct
 import sys
+from functools import cache
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -92,6 +93,13 @@ def _pythoncdt(graph: Graph, min_angle: float, max_area: float, most: int) -> tu
     return vertices[used], index.reshape(-1, 3).astype(np.int32)
 
 
+@cache
+def _sides(count: int) -> NDArray[np.uint32]:
+    """(count, 2) the corners of each side of a polygon; cached, because a mesh needs thousands of them."""
+    index = np.arange(count, dtype=np.uint32)
+    return np.stack([index, np.roll(index, -1)], axis=1)
+
+
 class _Thinning:
     """Removes vertices from a constrained Delaunay mesh, which stays one.
 
@@ -104,6 +112,7 @@ class _Thinning:
         self._places = [complex(x, y) for x, y in vertices.tolist()]
         self._next_number = len(faces)
         self._faces = {number: tuple(face) for number, face in enumerate(faces.tolist())}
+        self._cotangents = {number: self._cotangent(face) for number, face in self._faces.items()}
         self._star: dict[int, set[int]] = {}  # the faces of each vertex
         for number, face in self._faces.items():
             for vertex in face:
@@ -134,17 +143,23 @@ class _Thinning:
 
         limit: cotangent of the smallest allowed angle.
         """
-        old = [self._faces[number] for number in self._star[vertex]]
-        rim = self._rim(vertex, old)
-        new = self._fill(rim)
-        if not new or self._largest_cotangent(new) > max(limit, self._largest_cotangent(old)):
+        star = self._star[vertex]
+        rim = self._rim(vertex, [self._faces[number] for number in star])
+        limit = max(limit, *(self._cotangents[number] for number in star))
+        new: dict[tuple[int, ...], float] = {}
+        for face in self._fill(rim):
+            new[face] = self._cotangent(face)
+            if new[face] > limit:
+                return []
+        if not new:
             return []
         for number in self._star.pop(vertex):
+            del self._cotangents[number]
             for corner in self._faces.pop(number):
                 if corner != vertex:
                     self._star[corner].discard(number)
-        for face in new:
-            self._faces[self._next_number] = face
+        for face, cotangent in new.items():
+            self._faces[self._next_number], self._cotangents[self._next_number] = face, cotangent
             for corner in face:
                 self._star[corner].add(self._next_number)
             self._next_number += 1
@@ -166,30 +181,28 @@ class _Thinning:
         """The constrained Delaunay faces of a polygon."""
         import pythoncdt as cdt
 
-        index = np.arange(len(rim), dtype=np.uint32)
         mesh = cdt.Triangulation(
             cdt.VertexInsertionOrder.AS_PROVIDED, cdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
         )
         mesh.insert_vertices(np.ascontiguousarray(self._vertices[rim]))
-        mesh.insert_edges(np.stack([index, np.roll(index, -1)], axis=1))
+        mesh.insert_edges(_sides(len(rim)))
         mesh.erase_outer_triangles()
         faces = mesh.triangles_array()["vertices"].tolist()
         return [tuple(rim[corner] for corner in face) for face in faces] if len(faces) == len(rim) - 2 else []
 
-    def _largest_cotangent(self, faces: list[tuple[int, ...]]) -> float:
-        """The cotangent of the smallest angle of some faces, infinite if one is flipped or has no area.
+    def _cotangent(self, face: tuple[int, ...]) -> float:
+        """The cotangent of the smallest angle of a face, infinite if it is flipped or has no area.
 
         Without numpy, which is slow for so few numbers.
         """
-        largest = -math.inf
-        for face in faces:
-            a, b, c = (self._places[vertex] for vertex in face)
-            double_area = ((b - a).conjugate() * (c - a)).imag
-            if double_area <= 0:
-                return math.inf
-            for at, first, second in ((a, b, c), (b, c, a), (c, a, b)):
-                largest = max(largest, ((first - at).conjugate() * (second - at)).real / double_area)
-        return largest
+        a, b, c = (self._places[vertex] for vertex in face)
+        double_area = ((b - a).conjugate() * (c - a)).imag
+        if double_area <= 0:
+            return math.inf
+        # The products of the two sides at each corner are the cosine of its angle times their lengths.
+        at_a, at_b = ((b - a).conjugate() * (c - a)).real, ((c - b).conjugate() * (a - b)).real
+        at_c = ((a - c).conjugate() * (b - c)).real
+        return max(at_a, at_b, at_c) / double_area
 
 
 _MESHERS = {"triangle": _triangle, "pythoncdt": _pythoncdt}
