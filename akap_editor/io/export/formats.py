@@ -14,10 +14,11 @@ from ..atomic import as_path, write_atomic
 from ..images import encode_png
 from ..outputs import existing, refuse_replacing, refuse_source
 from ..painter import Painter
+from .baked_animation import bake_animation
 from .gltf import encode_glb
 from .mesh_json import encode_json
 from .obj import companion_names, encode_obj
-from .spine import encode_spine
+from .spine import atlas_name, encode_spine
 from .svg import encode_svg, encode_textured_svg
 from .texture import texture_name
 
@@ -86,7 +87,13 @@ def _encode_svg(document: Document, stem: str, options: ExportOptions, painter: 
 def _encode_spine(document: Document, stem: str, _: ExportOptions, __: Painter | None) -> Files:
     mesh, state = document.drawing.mesh, document.state
     pairs = overlaps_of(mesh, state.pins, state.positions, state.crossings).low_and_high
-    return encode_spine(document.drawing, state.positions, stem, document.face_order, pairs)
+    baked = bake_animation(document)
+    return encode_spine(document.drawing, state.positions, stem, document.face_order, pairs, baked)
+
+
+def _encode_glb(document: Document, stem: str, _: ExportOptions, __: Painter | None) -> Files:
+    baked = bake_animation(document)
+    return {f"{stem}.glb": encode_glb(document.drawing, document.state.positions, document.draw_order, baked)}
 
 
 EXPORT_FORMATS = (
@@ -102,11 +109,9 @@ EXPORT_FORMATS = (
     ExportFormat(
         "glTF binary",
         ".glb",
-        "Mesh and texture in one file, with the pose as a morph target, for Blender and game engines.",
+        "Mesh and texture in one file, pose and keyframes as morph targets, for Blender and game engines.",
         False,
-        lambda document, stem, *_: {
-            f"{stem}.glb": encode_glb(document.drawing, document.state.positions, document.draw_order)
-        },
+        _encode_glb,
     ),
     ExportFormat(
         "Wavefront OBJ",
@@ -121,10 +126,10 @@ EXPORT_FORMATS = (
     ExportFormat(
         "Spine skeleton",
         ".spine.json",
-        "Mesh attachments with the pose as a deform key, and their texture, for Spine and its runtimes.",
+        "Mesh attachments, pose and keyframes as deform keys, and an atlas, for Spine and its runtimes.",
         False,
         _encode_spine,
-        lambda stem: [texture_name(stem)],
+        lambda stem: [texture_name(stem), atlas_name(stem)],
     ),
     ExportFormat(
         "Mesh and pins",

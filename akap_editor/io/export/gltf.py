@@ -1,7 +1,8 @@
-"""Exports glTF 2.0 binary files: mesh, texture, and the pose as a morph target (Khronos specification)."""
+"""Exports glTF 2.0 binary files (Khronos): mesh, texture, pose and keyframes as morph targets."""
 
 import json
 import struct
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,8 @@ from numpy.typing import NDArray
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
 from ...overlap.seams import CutMesh
-from .drawn_faces import drawn_faces
+from .baked_animation import BakedAnimation
+from .drawn_faces import DrawnFaces, drawn_faces
 from .texture import encode_texture, y_up
 
 PIXELS_PER_UNIT = 100.0  # by the scale of the node; the mesh itself is in pixels
@@ -41,47 +43,69 @@ class _Buffer:
         """
         is_index = array.dtype == np.uint32
         view = self.add_view(array.tobytes(), target=_INDICES if is_index else _VERTICES)
-        count = array.size if is_index else len(array)
+        return self._add_accessor(view, array, kind, bounds)
+
+    def add_samples(self, array: NDArray[Any], kind: str, bounds: bool = False) -> int:
+        """Append the times or the values (count, columns) float32 of an animation; see `add_array`."""
+        return self._add_accessor(self.add_view(array.tobytes()), array, kind, bounds)
+
+    def _add_accessor(self, view: int, array: NDArray[Any], kind: str, bounds: bool) -> int:
+        is_index = array.dtype == np.uint32
+        count = array.size if kind == "SCALAR" else len(array)
         accessor: dict[str, Any] = {"bufferView": view, "componentType": _UINT if is_index else _FLOAT}
         accessor |= {"count": count, "type": kind}
         if bounds:
-            accessor |= {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
+            low, high = np.atleast_1d(array.min(axis=0)), np.atleast_1d(array.max(axis=0))
+            accessor |= {"min": low.tolist(), "max": high.tolist()}
         self.accessors.append(accessor)
         return len(self.accessors) - 1
 
 
-def encode_glb(drawing: Drawing, positions: Floats, order: Ints | CutMesh | None = None) -> bytes:
+def encode_glb(
+    drawing: Drawing,
+    positions: Floats,
+    order: Ints | CutMesh | None = None,
+    baked: BakedAnimation | None = None,
+) -> bytes:
     """The bytes of a .glb file: the rest pose, and the pose ``positions`` (n, 2) as a morph target.
 
     The target's weight is 1, so that viewers show the pose. Faces are counterclockwise seen from +z, from
-    back to front; order: see `Document.draw_order`.
+    back to front; order: see `Document.draw_order`. baked: keyframes, of which each pose is a target, too,
+    and the animation "Keyframes" sets their weights. Where they need several orders, there is a node for each
+    of these, and the animation scales those to nothing that are not shown.
     """
-    buffer, drawn = _Buffer(), drawn_faces(drawing, positions, order)
-    rest, pose = (_to_3d(y_up(drawing, points)) for points in (drawn.rest, drawn.pose))
-    primitive = {
-        "attributes": {
-            "POSITION": buffer.add_array(rest, "VEC3", bounds=True),
-            "TEXCOORD_0": buffer.add_array(drawn.uv.astype("<f4"), "VEC2"),
-        },
-        "indices": buffer.add_array(drawn.faces[:, ::-1].astype("<u4"), "SCALAR"),
-        "material": 0,
-        "targets": [{"POSITION": buffer.add_array(pose - rest, "VEC3", bounds=True)}],
-    }
+    buffer = _Buffer()
+    orders: list[Ints | CutMesh | None] = [order]
+    poses = [positions]
+    if baked is not None:
+        keeps_seams = isinstance(order, CutMesh)  # of the pose; in motion they run along whole faces
+        orders = [*orders[: int(keeps_seams)], *(each.order for each in baked.orders)]
+        poses += baked.poses
+    layers = [drawn_faces(drawing, positions, each) for each in orders]
+    names = ["Pose", *(f"Keyframes {k}" for k in range(1, len(poses)))]
+    meshes = [
+        {
+            "name": drawing.name if number == 0 else f"{drawing.name} {number + 1}",
+            "primitives": [primitive],
+            "weights": [1.0, *[0.0] * (len(poses) - 1)],
+            "extras": {"targetNames": names},
+        }
+        for number, primitive in enumerate(_primitives(buffer, drawing, layers, poses, order))
+    ]
+    nodes = [
+        {"name": mesh["name"], "mesh": number, "scale": [0.0 if number else 1 / PIXELS_PER_UNIT] * 3}
+        for number, mesh in enumerate(meshes)
+    ]
+    animations = {} if baked is None else {"animations": [_animation(buffer, baked, len(orders))]}
     image = buffer.add_view(encode_texture(drawing))
     scene = {
         "asset": {"version": "2.0", "generator": "akap-editor"},
         "extensionsUsed": ["KHR_materials_unlit"],
         "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"name": drawing.name, "mesh": 0, "scale": [1 / PIXELS_PER_UNIT] * 3}],
-        "meshes": [
-            {
-                "name": drawing.name,
-                "primitives": [primitive],
-                "weights": [1.0],
-                "extras": {"targetNames": ["Pose"]},
-            }
-        ],
+        "scenes": [{"nodes": list(range(len(nodes)))}],
+        "nodes": nodes,
+        "meshes": meshes,
+        **animations,
         "materials": [_material(drawing.name)],
         "textures": [{"sampler": 0, "source": 0}],
         "samplers": [{"magFilter": _LINEAR, "minFilter": _MIPMAPS, "wrapS": _CLAMP, "wrapT": _CLAMP}],
@@ -93,6 +117,73 @@ def encode_glb(drawing: Drawing, positions: Floats, order: Ints | CutMesh | None
     text = json.dumps(scene, separators=(",", ":"), allow_nan=False).encode()
     chunks = _chunk(b"JSON", text + b" " * (-len(text) % 4)) + _chunk(b"BIN\0", bytes(buffer.data))
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def _primitives(
+    buffer: _Buffer,
+    drawing: Drawing,
+    layers: Sequence[DrawnFaces],
+    poses: Sequence[Floats],
+    order: Ints | CutMesh | None,
+) -> list[dict[str, Any]]:
+    """A primitive for each order of drawing; those without seams share their vertices and targets.
+
+    order: that of the first one.
+    """
+    cut = order if isinstance(order, CutMesh) else None
+    shared: dict[int, dict[str, Any]] = {}  # by number of vertices
+    primitives = []
+    for drawn in layers:
+        count = len(drawn.rest)
+        if count not in shared:
+            rest = _to_3d(y_up(drawing, drawn.rest))
+            shared[count] = {
+                "attributes": {
+                    "POSITION": buffer.add_array(rest, "VEC3", bounds=True),
+                    "TEXCOORD_0": buffer.add_array(drawn.uv.astype("<f4"), "VEC2"),
+                },
+                "material": 0,
+            }
+            indices = buffer.add_array(drawn.faces[:, ::-1].astype("<u4"), "SCALAR")
+            targets = []
+            for pose in poses:
+                points = pose if cut is None or count == len(pose) else cut.values(pose)
+                offsets = _to_3d(y_up(drawing, points)) - rest
+                targets.append({"POSITION": buffer.add_array(offsets, "VEC3", bounds=True)})
+            shared[count]["targets"] = targets
+        else:
+            indices = buffer.add_array(drawn.faces[:, ::-1].astype("<u4"), "SCALAR")
+        primitives.append({**shared[count], "indices": indices})
+    return primitives
+
+
+def _animation(buffer: _Buffer, baked: BakedAnimation, node_count: int) -> dict[str, Any]:
+    """Weights of all targets over time; and where there are several nodes, when they are shown.
+
+    The last nodes are those of the orders, one before them is of the pose alone.
+    """
+    count = len(baked.times)
+    times = buffer.add_samples(np.array(baked.times, dtype="<f4"), "SCALAR", bounds=True)
+    weights = np.eye(count, count + 1, 1, dtype="<f4")
+    samplers: list[dict[str, Any]] = [
+        {"input": times, "output": buffer.add_samples(weights.reshape(-1, 1), "SCALAR")}
+    ]
+    channels: list[dict[str, Any]] = [
+        {"sampler": 0, "target": {"node": node, "path": "weights"}} for node in range(node_count)
+    ]
+    if node_count > 1:
+        changes = sorted({0.0, *(start for each in baked.orders for start, _ in each.spans)})
+        moments = buffer.add_samples(np.array(changes, dtype="<f4"), "SCALAR", bounds=True)
+        spans: list[list[tuple[float, float]]] = [[]] * (node_count - len(baked.orders)) + [
+            each.spans for each in baked.orders
+        ]
+        for node, shown_in in enumerate(spans):
+            shown = [any(start <= time < end for start, end in shown_in) for time in changes]
+            scales = np.repeat(np.array(shown, dtype="<f4")[:, None] / PIXELS_PER_UNIT, 3, axis=1)
+            output = buffer.add_samples(scales.astype("<f4"), "VEC3")
+            channels.append({"sampler": len(samplers), "target": {"node": node, "path": "scale"}})
+            samplers.append({"input": moments, "output": output, "interpolation": "STEP"})
+    return {"name": "Keyframes", "channels": channels, "samplers": samplers}
 
 
 def _to_3d(points: Floats) -> NDArray[np.float32]:

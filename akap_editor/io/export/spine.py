@@ -1,6 +1,7 @@
 """Exports Spine skeletons in its JSON format, https://esotericsoftware.com/spine-json-format."""
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,9 @@ from ...editor.document.drawing import Drawing
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
+from .baked_animation import BakedAnimation, DrawingOrder
 from .component_runs import component_runs
-from .texture import encode_texture, texture_name, y_up
+from .texture import companion_stem, encode_texture, texture_name, y_up
 
 SPINE_VERSION = "4.2.00"
 MAX_ATTACHMENT_VERTICES = 32767  # runtimes count vertices with signed 16-bit integers
@@ -23,27 +25,42 @@ def encode_spine(
     stem: str,
     order: Ints | None = None,
     pairs: tuple[Ints, Ints] = (np.zeros(0, dtype=int), np.zeros(0, dtype=int)),
+    baked: BakedAnimation | None = None,
 ) -> dict[str, bytes]:
-    """The contents of texture and JSON file, by name. Raises InputError if the mesh is too large.
+    """The contents of texture, atlas and JSON file, by name. Raises InputError if the mesh is too large.
 
     The skeleton has one bone; each component of the mesh is a slot with one unweighted mesh attachment, or
     several slots where it passes both behind and in front of another one. The setup pose is the rest pose,
     the animation "pose" holds ``positions`` (n, 2) as a deform key. order: (m,) faces from back to front;
-    pairs: (p,) lower and upper faces that overlap, see `Overlaps.low_and_high`.
+    pairs: (p,) lower and upper faces that overlap, see `Overlaps.low_and_high`. baked: keyframes, which are
+    the animation "keyframes"; where they need several orders, there are slots for each of these.
     """
     texture, title = texture_name(stem), drawing.name or "drawing"
-    rest, pose = y_up(drawing, drawing.mesh.vertices), y_up(drawing, positions)
-    slots, attachments, deform = [], {}, {}
-    mesh, order = drawing.mesh, np.arange(len(drawing.mesh.faces)) if order is None else order
+    region = texture.removesuffix(".png")
+    rest, mesh = y_up(drawing, drawing.mesh.vertices), drawing.mesh
+    order = np.arange(len(mesh.faces)) if order is None else order
+    orders = [DrawingOrder(order, *pairs)] if baked is None else baked.orders
     parts = [_Part(mesh, number) for number in range(int(mesh.component.max()) + 1)]
-    runs = component_runs(mesh.component[mesh.faces[:, 0]], order, *pairs)
-    for number, (component, faces) in enumerate(runs, start=1):
-        part = parts[component]
-        name = title if number == 1 else f"{title} {number}"
-        slots.append({"name": name, "bone": "root", "attachment": name})
-        attachments[name] = {name: _attachment(drawing, part, faces, rest, texture.removesuffix(".png"))}
-        offsets = _flat(pose[part.order]) - _flat(rest[part.order])
-        deform[name] = {name: {"deform": [{"vertices": np.round(offsets, _DECIMALS).tolist()}]}}
+    slots: list[dict[str, str]] = []
+    attachments, slot_parts = {}, []  # by slot
+    slots_of_orders: list[list[str]] = []
+    for number, each in enumerate(orders):
+        runs = component_runs(mesh.component[mesh.faces[:, 0]], each.order, each.low, each.high)
+        names = [_slot_name(title, len(slots) + k) for k in range(len(runs))]
+        for name, (component, faces) in zip(names, runs, strict=True):
+            shown = {"attachment": name} if number == 0 else {}
+            slots.append({"name": name, "bone": "root", **shown})
+            part = parts[component]
+            slot_parts.append(part)
+            attachments[name] = {name: _attachment(drawing, part, faces, rest, region)}
+        slots_of_orders.append(names)
+    part_of = dict(zip(attachments, slot_parts, strict=True))
+    offsets = _Offsets(drawing, part_of)
+    animations = {
+        "pose": {"attachments": {"default": offsets.timelines(slots_of_orders[0], [(0.0, positions)])}}
+    }
+    if baked is not None:
+        animations["keyframes"] = _animation(baked, slots_of_orders, offsets)
     low, high = rest.min(axis=0), rest.max(axis=0)
     x, y, width, height = np.round([*low, *(high - low)], 2).tolist()
     skeleton = {"spine": SPINE_VERSION, "x": x, "y": y, "width": width, "height": height, "images": "./"}
@@ -52,10 +69,88 @@ def encode_spine(
         "bones": [{"name": "root"}],
         "slots": slots,
         "skins": [{"name": "default", "attachments": attachments}],
-        "animations": {"pose": {"attachments": {"default": deform}}},
+        "animations": animations,
     }
     text = json.dumps(record, separators=(",", ":"), allow_nan=False)
-    return {texture: encode_texture(drawing), f"{stem}.spine.json": text.encode()}
+    return {
+        texture: encode_texture(drawing),
+        atlas_name(stem): _atlas(texture, drawing.size).encode(),
+        f"{stem}.spine.json": text.encode(),
+    }
+
+
+def atlas_name(stem: str) -> str:
+    """The name of the texture atlas beside a skeleton."""
+    return f"{companion_stem(stem)}.atlas"
+
+
+def _atlas(texture: str, size: tuple[int, int]) -> str:
+    """A texture atlas with one region: https://esotericsoftware.com/spine-atlas-format."""
+    width, height = size
+    region = texture.removesuffix(".png")
+    lines = texture, f"size: {width}, {height}", "filter: Linear, Linear", region
+    return "\n".join([*lines, f"bounds: 0, 0, {width}, {height}", ""])
+
+
+def _slot_name(title: str, number: int) -> str:
+    return title if number == 0 else f"{title} {number + 1}"
+
+
+class _Offsets:
+    """Deform keys of slots: where vertices are, relative to the rest pose. part_of: the part of each slot."""
+
+    def __init__(self, drawing: Drawing, part_of: dict[str, "_Part"]) -> None:
+        self._drawing, self._part_of = drawing, part_of
+        self._rest = y_up(drawing, drawing.mesh.vertices)
+
+    def timelines(self, names: Sequence[str], keys: Sequence[tuple[float, Floats]]) -> dict[str, Any]:
+        """Deform timelines of slots with poses (n, 2) at times in seconds."""
+        return {name: {name: {"deform": [self._key(name, *key) for key in keys]}} for name in names}
+
+    def _key(self, name: str, time: float, pose: Floats) -> dict[str, Any]:
+        order = self._part_of[name].order
+        offsets = _flat(y_up(self._drawing, pose)[order]) - _flat(self._rest[order])
+        vertices = {"vertices": (np.round(offsets, _DECIMALS) + 0.0).tolist()}
+        return {"time": round(time, 4), **vertices} if time else vertices
+
+
+def _animation(
+    baked: BakedAnimation, slots_of_orders: Sequence[Sequence[str]], offsets: _Offsets
+) -> dict[str, Any]:
+    """The animation of keyframes: deform keys; the slots of an order have attachments while it is shown."""
+    switches: dict[str, Any] = {}
+    deform: dict[str, Any] = {}
+    for number, (names, order) in enumerate(zip(slots_of_orders, baked.orders, strict=True)):
+        deform |= offsets.timelines(names, _keys_in_spans(baked, order.spans))
+        if len(baked.orders) == 1:
+            continue
+        for name in names:
+            keys: list[dict[str, Any]] = (
+                [] if number and order.spans and order.spans[0][0] == 0 else [{"name": None}]
+            )
+            for start, end in order.spans:
+                keys += [{"time": start, "name": name}, {"time": end, "name": None}]
+            if order.spans and order.spans[-1][1] == baked.times[-1]:
+                keys.pop()  # it stays at the end
+            switches[name] = {"attachment": _without_doubles(keys)}
+    slots = {"slots": switches} if switches else {}
+    return {**slots, "attachments": {"default": deform}}
+
+
+def _without_doubles(keys: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Keys of which each is later than the one before; of several at one time the last one."""
+    return list({key.get("time", 0.0): key for key in keys}.values())
+
+
+def _keys_in_spans(baked: BakedAnimation, spans: Sequence[tuple[float, float]]) -> list[tuple[float, Floats]]:
+    """The poses while an order is shown, and those just before and after."""
+    times = baked.times
+    needed: set[int] = set()
+    for start, end in spans:
+        first = max(k for k, time in enumerate(times) if time <= start)
+        last = min(k for k, time in enumerate(times) if time >= end)
+        needed |= set(range(first, last + 1))
+    return [(times[k], baked.poses[k]) for k in sorted(needed)] or [(0.0, baked.poses[0])]
 
 
 class _Part:

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from akap_editor.editor.document.crossings import overlaps_of
 from akap_editor.editor.document.document import Document, new_document
 from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.editor.document.keyframes import Animation, Keyframe
 from akap_editor.editor.document.pin import Pin
 from akap_editor.io.export import ExportOptions, export
 
@@ -39,6 +41,27 @@ def bent(drawn: Document) -> Document:
     pose = rest + np.stack([0.3 * rest[:, 1] - 40, 12 * np.sin(rest[:, 0] / 30)], axis=1)
     pins = Pin(1, 0, [0.2, 0.3, 0.5], [1.5, 2.5]), Pin(4, 7, [1.0, 0.0, 0.0], [30.0, -4.0])
     return drawn.with_state(replace(drawn.state, positions=pose, pins=pins))
+
+
+@pytest.fixture(scope="session")
+def keyed(drawn: Document) -> Document:
+    """Keyframes: the disc moves over the ring, is held there, then behind it, and back; rest is the pose."""
+    mesh = drawn.drawing.mesh
+    is_disc = mesh.component == mesh.component[np.argmax(mesh.vertices[:, 0])]
+    over = mesh.vertices - np.where(is_disc[:, None], [40.0, 5.0], [0.0, 0.0])
+    low, high = overlaps_of(mesh, (), over, drawn.state.crossings).low_and_high
+    behind = np.array([[low[0], high[0]]], dtype=np.int32)
+    bent = mesh.vertices + np.stack([0 * mesh.vertices[:, 1], 9 * np.sin(mesh.vertices[:, 0] / 30)], axis=1)
+    animation = Animation(
+        (
+            Keyframe(0.0, mesh.vertices),
+            Keyframe(0.4, over, ease="hold"),
+            Keyframe(0.8, over, crossings=behind, ease="in-out"),
+            Keyframe(1.2, bent),
+        ),
+        ease="smooth",
+    )
+    return drawn.with_state(replace(drawn.state, animation=animation))
 
 
 class FlatPainter:

@@ -13,7 +13,7 @@ from akap_editor.io.images import read_image, write_png
 from akap_editor.io.open_document import open_document
 from tests.support.names import assert_readable, strange_names
 
-OUTSIDE = {".obj": ["cat-texture.png", "cat.mtl"], ".spine.json": ["cat-texture.png"]}
+OUTSIDE = {".obj": ["cat-texture.png", "cat.mtl"], ".spine.json": ["cat-texture.png", "cat.atlas"]}
 
 
 @pytest.mark.parametrize("each", EXPORT_FORMATS, ids=lambda each: each.suffix)

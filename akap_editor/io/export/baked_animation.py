@@ -1,0 +1,150 @@
+"""A document's keyframes as poses between which other programs interpolate linearly."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...editor.animation.crossing_blend import CrossingBlend
+from ...editor.animation.keyframe_playback import animation_crossings
+from ...editor.animation.keyframe_poses import KeyframePoses
+from ...editor.document.crossings import depth_order, overlaps_of
+from ...editor.document.document import Document
+from ...geometry.validation import Floats, Ints
+from ...overlap.circles import face_levels
+
+TOLERANCE = 0.25  # pixels by which a pose may be off between two that are kept
+_RATE = 30.0  # samples a second
+_MOST_NUMBERS = 2e7  # vertices of all samples, so that long animations of fine meshes fit into the memory
+_LONGEST_GAP = 15  # samples
+_INSTANT = 0.001  # seconds before a keyframe, at which a pose that is held still is as it was
+
+
+@dataclass
+class DrawingOrder:
+    """An order in which faces are drawn, and when.
+
+    order: (m,) the faces from back to front; low, high: (p,) pairs of faces that it keeps in order; spans:
+    from when until when it is shown, in seconds.
+    """
+
+    order: Ints
+    low: Ints
+    high: Ints
+    spans: list[tuple[float, float]] = field(default_factory=list)
+
+
+@dataclass(frozen=True, eq=False)
+class BakedAnimation:
+    """Poses (n, 2) each at times in seconds, the first at 0, and the orders in which they are drawn.
+
+    The first order is that of the document's present pose, and may be shown at no time.
+    """
+
+    times: list[float]
+    poses: list[Floats]
+    orders: list[DrawingOrder]
+
+
+def bake_animation(document: Document) -> BakedAnimation | None:
+    """The keyframes of a document; None if there are fewer than two.
+
+    Poses are kept where straight lines between the others would be off by more than `TOLERANCE`, and at each
+    keyframe. One order serves as long as its pairs are in no circle.
+    """
+    drawing, state = document.drawing, document.state
+    mesh, animation = drawing.mesh, state.animation
+    if len(animation.keyframes) < 2:
+        return None
+    collected = _Orders(document)
+    times = _sample_times(document)
+    poses, blend, interpolation = [], CrossingBlend(), KeyframePoses()
+    numbers = []
+    for time in times:
+        pose, crossings = animation_crossings(interpolation, blend, mesh, state.pins, animation, time)
+        numbers.append(collected.number_for(*overlaps_of(mesh, state.pins, pose, crossings).low_and_high))
+        poses.append(pose)
+    orders = collected.orders()
+    starts = [k for k, number in enumerate(numbers) if k == 0 or number != numbers[k - 1]]
+    for k, after in zip(starts, [*starts[1:], len(times) - 1], strict=True):
+        orders[numbers[k]].spans.append((times[k], times[after]))
+    kept = _needed_samples(times, poses, set(animation.times))
+    return BakedAnimation([times[k] for k in kept], [poses[k] for k in kept], orders)
+
+
+def _sample_times(document: Document) -> list[float]:
+    animation = document.state.animation
+    most = _MOST_NUMBERS / len(document.drawing.mesh.vertices)
+    count = max(2, int(min(_RATE * animation.duration, most)))
+    times = {0.0, *np.linspace(0, animation.duration, count + 1).round(4).tolist(), *animation.times}
+    for start, end in zip(animation.keyframes, animation.keyframes[1:], strict=False):
+        if animation.easing_after(start) == "hold":
+            times.add(max(start.time, end.time - _INSTANT))
+    return sorted(times)
+
+
+def _needed_samples(times: Sequence[float], poses: Sequence[Floats], fixed: set[float]) -> list[int]:
+    """The samples to keep, so that straight lines between them come near all others."""
+    kept = [0]
+    while kept[-1] < len(times) - 1:
+        start = end = kept[-1]
+        while end + 1 < len(times) and end - start < _LONGEST_GAP:
+            if end > start and (times[end] in fixed or not _is_straight(times, poses, start, end + 1)):
+                break
+            end += 1
+        kept.append(end)
+    return kept
+
+
+def _is_straight(times: Sequence[float], poses: Sequence[Floats], start: int, end: int) -> bool:
+    span = times[end] - times[start]
+    for k in range(start + 1, end):
+        share = (times[k] - times[start]) / span
+        if np.abs((1 - share) * poses[start] + share * poses[end] - poses[k]).max() > TOLERANCE:
+            return False
+    return True
+
+
+class _Orders:
+    """Finds few orders that keep all pairs of all samples."""
+
+    def __init__(self, document: Document) -> None:
+        mesh, state = document.drawing.mesh, document.state
+        self._count = len(mesh.faces)
+        depths = depth_order(mesh, state.pins)
+        self._rank = np.arange(self._count)
+        if depths is not None:
+            self._rank[depths] = np.arange(self._count)
+        overlaps = overlaps_of(mesh, state.pins, state.positions, state.crossings)
+        self._pairs = [np.unique(self._codes(*overlaps.low_and_high))]  # of each order
+
+    def number_for(self, low: Ints, high: Ints) -> int:
+        """The number of an order that keeps these pairs, too: the last one if it can, else another one."""
+        codes = np.unique(self._codes(low, high))
+        for number in reversed(range(len(self._pairs))):
+            joint = np.union1d(self._pairs[number], codes)
+            if len(joint) == len(self._pairs[number]) or self._is_possible(joint):
+                self._pairs[number] = joint
+                return number
+        self._pairs.append(codes)
+        return len(self._pairs) - 1
+
+    def orders(self) -> list[DrawingOrder]:
+        """All orders."""
+        result = []
+        for codes in self._pairs:
+            low, high = self._low_and_high(codes)
+            levels, _ = face_levels(self._count, low, high)
+            result.append(DrawingOrder(np.lexsort((self._rank, levels)), low, high))
+        return result
+
+    def _codes(self, low: Ints, high: Ints) -> Ints:
+        return low.astype(np.int64) * self._count + high
+
+    def _low_and_high(self, codes: Ints) -> tuple[Ints, Ints]:
+        return (codes // self._count).astype(np.int32), (codes % self._count).astype(np.int32)
+
+    def _is_possible(self, codes: Ints) -> bool:
+        """Whether pairs are in no circle."""
+        _, placed = face_levels(self._count, *self._low_and_high(codes))
+        return bool(placed.all())
