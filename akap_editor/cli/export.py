@@ -114,6 +114,11 @@ def print_results(results: list[ExportResult], as_json: bool) -> None:
 @overwrite_option
 @click.option("--rest", is_flag=True, help="Export the rest pose.")
 @click.option("--textured", is_flag=True, help="Draw an SVG with its texture instead of the outline alone.")
+@click.option(
+    "--z-order/--no-z-order",
+    default=None,
+    help="Lay what is in front nearer to the viewer in z, as ray tracers need it; by default for OBJ.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def export_command(
     files: tuple[Path, ...],
@@ -127,6 +132,7 @@ def export_command(
     overwrite: bool,
     rest: bool,
     textured: bool,
+    z_order: bool | None,
     as_json: bool,
 ) -> None:
     """Export FILE, a saved drawing or a picture, for other programs."""
@@ -142,7 +148,9 @@ def export_command(
             raise InputError(f"{name}: expected a picture or an outline as output, got {chosen.suffix}")
     if textured and not chosen.can_be_textured:
         raise InputError(f"--textured: expected an output that ends in .svg, got {chosen.suffix}")
-    options = replace(export_options(scale, background, crop, rest), textured=textured)
+    if z_order is not None and chosen.z_order is None:
+        raise InputError(f"--z-order: expected an output that ends in .obj or .glb, got {chosen.suffix}")
+    options = replace(export_options(scale, background, crop, rest), textured=textured, z_order=z_order)
     refuse_unnamed(outputs, output, files, overwrite)
     results = [
         export_file(file, target, options, threshold, overwrite, mesher)

@@ -65,6 +65,12 @@ def test_an_svg_with_its_texture(run, posed, tmp_path):
     assert_one_line(run("export", posed, "-o", "a.glb", "--textured"), "--textured", ".svg", ".glb")
 
 
+def test_z_by_the_order_of_drawing_is_for_meshes_in_space(run, posed, tmp_path):
+    for name, option in (("a.obj", "--no-z-order"), ("a.glb", "--z-order")):
+        assert run("export", posed, "-o", name, option)[0] == 0
+    assert_one_line(run("export", posed, "-o", "a.svg", "--z-order"), "--z-order", ".obj", ".svg")
+
+
 def test_a_picture_is_exported_at_rest(run, picture, tmp_path):
     assert run("export", picture, "-o", "bar.glb")[0] == 0
     assert run("export", picture, "-o", "bar.obj")[0] == 0

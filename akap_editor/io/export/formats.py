@@ -31,7 +31,7 @@ class ExportOptions:
 
     scale: pixels per pixel of the drawing; background: None for transparent; crop: see `crop_box`; rest:
     export the rest pose instead of the current pose; textured: draw an SVG with its texture instead of the
-    outline alone.
+    outline alone; z_order: lay what is in front nearer to the viewer in z, None for the format's default.
     """
 
     scale: float = 1.0
@@ -39,6 +39,7 @@ class ExportOptions:
     crop: str = "none"
     rest: bool = False
     textured: bool = False
+    z_order: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -46,8 +47,9 @@ class ExportFormat:
     """A row of the table of formats.
 
     label: name on the screen; suffix: ending of file names; about: description for the user; uses_framing:
-    whether scale, background and crop matter; can_be_textured: see `ExportOptions`; encode: returns the
-    contents of all files by name, the named file last; companions: names of the other files for a stem.
+    whether scale, background and crop matter; encode: returns the contents of all files by name, the named
+    file last; companions: names of the other files for a stem; can_be_textured: see `ExportOptions`; z_order:
+    whether it has z by the order of drawing by default, None if never.
     """
 
     label: str
@@ -57,6 +59,7 @@ class ExportFormat:
     encode: Callable[[Document, str, ExportOptions, Painter | None], Files] = field(repr=False)
     companions: Callable[[str], list[str]] = field(default=lambda _: [], repr=False)
     can_be_textured: bool = False
+    z_order: bool | None = None
 
 
 def _require_painter(painter: Painter | None) -> Painter:
@@ -91,9 +94,15 @@ def _encode_spine(document: Document, stem: str, _: ExportOptions, __: Painter |
     return encode_spine(document.drawing, state.positions, stem, document.face_order, pairs, baked)
 
 
-def _encode_glb(document: Document, stem: str, _: ExportOptions, __: Painter | None) -> Files:
+def _encode_glb(document: Document, stem: str, options: ExportOptions, _: Painter | None) -> Files:
+    drawing, pose = document.drawing, document.state.positions
     baked = bake_animation(document)
-    return {f"{stem}.glb": encode_glb(document.drawing, document.state.positions, document.draw_order, baked)}
+    return {f"{stem}.glb": encode_glb(drawing, pose, document.draw_order, baked, options.z_order is True)}
+
+
+def _encode_obj(document: Document, stem: str, options: ExportOptions, _: Painter | None) -> Files:
+    drawing, pose = document.drawing, document.state.positions
+    return encode_obj(drawing, pose, stem, document.draw_order, options.z_order is not False)
 
 
 EXPORT_FORMATS = (
@@ -112,16 +121,16 @@ EXPORT_FORMATS = (
         "Mesh and texture in one file, pose and keyframes as morph targets, for Blender and game engines.",
         False,
         _encode_glb,
+        z_order=False,
     ),
     ExportFormat(
         "Wavefront OBJ",
         ".obj",
         "The posed mesh with its material and texture, as three files, for almost any 3D program.",
         False,
-        lambda document, stem, *_: encode_obj(
-            document.drawing, document.state.positions, stem, document.draw_order
-        ),
+        _encode_obj,
         companion_names,
+        z_order=True,
     ),
     ExportFormat(
         "Spine skeleton",

@@ -12,8 +12,8 @@ from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
 from ...overlap.seams import CutMesh
 from .baked_animation import BakedAnimation
-from .drawn_faces import DrawnFaces, drawn_faces
-from .texture import encode_texture, y_up
+from .drawn_faces import DrawnFaces, drawn_faces, stacked
+from .texture import encode_texture, level_height, y_up
 
 PIXELS_PER_UNIT = 100.0  # by the scale of the node; the mesh itself is in pixels
 
@@ -66,22 +66,19 @@ def encode_glb(
     positions: Floats,
     order: Ints | CutMesh | None = None,
     baked: BakedAnimation | None = None,
+    z_order: bool = False,
 ) -> bytes:
     """The bytes of a .glb file: the rest pose, and the pose ``positions`` (n, 2) as a morph target.
 
     The target's weight is 1, so that viewers show the pose. Faces are counterclockwise seen from +z, from
     back to front; order: see `Document.draw_order`. baked: keyframes, of which each pose is a target, too,
     and the animation "Keyframes" sets their weights. Where they need several orders, there is a node for each
-    of these, and the animation scales those to nothing that are not shown.
+    of these, and the animation scales those to nothing that are not shown. z_order: lay what is in front
+    nearer to the viewer, see `stacked`.
     """
     buffer = _Buffer()
-    orders: list[Ints | CutMesh | None] = [order]
-    poses = [positions]
-    if baked is not None:
-        keeps_seams = isinstance(order, CutMesh)  # of the pose; in motion they run along whole faces
-        orders = [*orders[: int(keeps_seams)], *(each.order for each in baked.orders)]
-        poses += baked.poses
-    layers = [drawn_faces(drawing, positions, each) for each in orders]
+    poses = [positions, *([] if baked is None else baked.poses)]
+    layers = _layers(drawing, positions, order, baked, z_order)
     names = ["Pose", *(f"Keyframes {k}" for k in range(1, len(poses)))]
     meshes = [
         {
@@ -96,7 +93,7 @@ def encode_glb(
         {"name": mesh["name"], "mesh": number, "scale": [0.0 if number else 1 / PIXELS_PER_UNIT] * 3}
         for number, mesh in enumerate(meshes)
     ]
-    animations = {} if baked is None else {"animations": [_animation(buffer, baked, len(orders))]}
+    animations = {} if baked is None else {"animations": [_animation(buffer, baked, len(layers))]}
     image = buffer.add_view(encode_texture(drawing))
     scene = {
         "asset": {"version": "2.0", "generator": "akap-editor"},
@@ -119,6 +116,25 @@ def encode_glb(
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
+def _layers(
+    drawing: Drawing,
+    positions: Floats,
+    order: Ints | CutMesh | None,
+    baked: BakedAnimation | None,
+    z_order: bool,
+) -> list[DrawnFaces]:
+    """The faces in each order; the pose has one of its own if it has seams, which motion has not."""
+    layers = []
+    if baked is None or isinstance(order, CutMesh):
+        drawn = drawn_faces(drawing, positions, order)
+        layers.append(stacked(drawn, *drawn.low_and_high) if z_order else drawn)
+    for each in [] if baked is None else baked.orders:
+        drawn = drawn_faces(drawing, positions, each.order)
+        rank = np.argsort(each.order)
+        layers.append(stacked(drawn, rank[each.low], rank[each.high]) if z_order else drawn)
+    return layers
+
+
 def _primitives(
     buffer: _Buffer,
     drawing: Drawing,
@@ -126,34 +142,33 @@ def _primitives(
     poses: Sequence[Floats],
     order: Ints | CutMesh | None,
 ) -> list[dict[str, Any]]:
-    """A primitive for each order of drawing; those without seams share their vertices and targets.
+    """A primitive for each order of drawing; those with the same vertices share them and their targets.
 
-    order: that of the first one.
+    order: that of the pose.
     """
-    cut = order if isinstance(order, CutMesh) else None
-    shared: dict[int, dict[str, Any]] = {}  # by number of vertices
+    shared: dict[tuple[bytes, bytes], dict[str, Any]] = {}  # by vertices and levels
     primitives = []
     for drawn in layers:
-        count = len(drawn.rest)
-        if count not in shared:
-            rest = _to_3d(y_up(drawing, drawn.rest))
-            shared[count] = {
+        key = drawn.sources.tobytes(), drawn.z.tobytes()
+        if key not in shared:
+            rest = _to_3d(y_up(drawing, drawn.rest), drawn.z * level_height(drawing))
+            shared[key] = {
                 "attributes": {
                     "POSITION": buffer.add_array(rest, "VEC3", bounds=True),
                     "TEXCOORD_0": buffer.add_array(drawn.uv.astype("<f4"), "VEC2"),
                 },
                 "material": 0,
             }
-            indices = buffer.add_array(drawn.faces[:, ::-1].astype("<u4"), "SCALAR")
+        indices = buffer.add_array(drawn.faces[:, ::-1].astype("<u4"), "SCALAR")
+        if "targets" not in shared[key]:
+            has_seams = drawn.sources.max() >= len(drawing.mesh.vertices)
             targets = []
             for pose in poses:
-                points = pose if cut is None or count == len(pose) else cut.values(pose)
-                offsets = _to_3d(y_up(drawing, points)) - rest
+                points = order.values(pose) if isinstance(order, CutMesh) and has_seams else pose
+                offsets = _to_3d(y_up(drawing, points[drawn.sources]), rest[:, 2]) - rest
                 targets.append({"POSITION": buffer.add_array(offsets, "VEC3", bounds=True)})
-            shared[count]["targets"] = targets
-        else:
-            indices = buffer.add_array(drawn.faces[:, ::-1].astype("<u4"), "SCALAR")
-        primitives.append({**shared[count], "indices": indices})
+            shared[key]["targets"] = targets
+        primitives.append({**shared[key], "indices": indices})
     return primitives
 
 
@@ -186,9 +201,9 @@ def _animation(buffer: _Buffer, baked: BakedAnimation, node_count: int) -> dict[
     return {"name": "Keyframes", "channels": channels, "samplers": samplers}
 
 
-def _to_3d(points: Floats) -> NDArray[np.float32]:
-    """Points (n, 2) as (n, 3) float32 with z = 0."""
-    return np.pad(points, [(0, 0), (0, 1)]).astype("<f4")
+def _to_3d(points: Floats, z: NDArray[Any]) -> NDArray[np.float32]:
+    """Points (n, 2) and their z (n,) as (n, 3) float32."""
+    return np.column_stack([points, z]).astype("<f4")
 
 
 def _material(name: str) -> dict[str, Any]:

@@ -5,26 +5,34 @@ import numpy as np
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
 from ...overlap.seams import CutMesh
-from .drawn_faces import drawn_faces
-from .texture import companion_stem, encode_texture, texture_name, y_up
+from .drawn_faces import drawn_faces, stacked
+from .texture import companion_stem, encode_texture, level_height, texture_name, y_up
 
 
 def encode_obj(
-    drawing: Drawing, positions: Floats, stem: str, order: Ints | CutMesh | None = None
+    drawing: Drawing,
+    positions: Floats,
+    stem: str,
+    order: Ints | CutMesh | None = None,
+    z_order: bool = True,
 ) -> dict[str, bytes]:
     """The contents of texture, material and mesh file, by name, for the pose ``positions`` (n, 2).
 
     Vertices keep their order, so that other programs can blend two poses of a drawing; new ones along seams
-    follow. Faces are counterclockwise seen from +z, from back to front; order: see `Document.draw_order`.
+    follow. Faces are counterclockwise seen from +z, from back to front; order: see `Document.draw_order`;
+    z_order: lay what is in front nearer to the viewer, see `stacked`.
     """
     drawn = drawn_faces(drawing, positions, order)
+    if z_order:
+        drawn = stacked(drawn, *drawn.low_and_high)
+    z = drawn.z * level_height(drawing)
     texture, material = companion_names(stem)
     points, uv = y_up(drawing, drawn.pose), drawn.uv * np.array([1, -1]) + np.array([0, 1])
     corners = drawn.faces[:, ::-1] + 1
     lines = [
         f"mtllib {material}",
         f"o {companion_stem(drawing.name) or 'drawing'}",
-        *(f"v {x:.9g} {y:.9g} 0" for x, y in points.tolist()),
+        *(f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in np.column_stack([points, z]).tolist()),
         *(f"vt {u:.9g} {v:.9g}" for u, v in uv.tolist()),
         "vn 0 0 1",
         "usemtl drawing",

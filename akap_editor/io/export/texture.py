@@ -45,6 +45,11 @@ def y_up(drawing: Drawing, points: Floats) -> Floats:
     return np.array([-width / 2, height]) + points * [1.0, -1.0]
 
 
+def level_height(drawing: Drawing) -> float:
+    """The distance in z, in pixels, from one level of faces to the next, see `stacked`."""
+    return max(drawing.size) / 1000
+
+
 def texture_name(stem: str) -> str:
     """The name of the texture beside an exported file."""
     return f"{companion_stem(stem)}-texture.png"

@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from akap_editor.editor.document.crossings import overlaps_of
 from akap_editor.editor.document.document import Document
 from akap_editor.io.export.component_runs import component_runs
-from akap_editor.io.export.drawn_faces import DrawnFaces, drawn_faces
+from akap_editor.io.export.drawn_faces import DrawnFaces, drawn_faces, stacked
 from akap_editor.io.export.texture import y_up
 from akap_editor.overlap.seams import CutMesh
 
@@ -168,3 +169,74 @@ def test_the_new_vertices_of_a_seam_follow_those_of_the_mesh(drawn: Document) ->
         result.rest[-1], 0.75 * mesh.vertices[edge[0, 0]] + 0.25 * mesh.vertices[edge[0, 1]]
     )
     assert len(result.uv) == len(result.rest) == len(pose) + 1
+
+
+# -- z by the order of drawing -------------------------------------------------------------------------------
+
+
+def nearest_uv(corners: np.ndarray, uv: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """The texture coordinates of the triangle of the highest z at each point, (k, 2); NaN without one.
+
+    corners: (q, 3, 3), in any order.
+    """
+    result, height = np.full((len(points), 2), np.nan), np.full(len(points), -np.inf)
+    for (a, b, c), texture in zip(corners, uv, strict=True):
+        weights = np.linalg.solve(np.stack([b - a, c - a], axis=1)[:2], (points - a[:2]).T)
+        weights = np.concatenate([1 - weights.sum(axis=0, keepdims=True), weights])
+        z = np.array([a[2], b[2], c[2]]) @ weights
+        is_nearest = (weights.min(axis=0) >= 0) & (z > height)
+        height[is_nearest] = z[is_nearest]
+        result[is_nearest] = (texture.T @ weights).T[is_nearest]
+    return result
+
+
+def assert_depth_tested(document: Document, corners: np.ndarray, uv: np.ndarray) -> None:
+    drawing, points = document.drawing, probes(document)
+    shown = drawn_faces(drawing, document.state.positions, document.draw_order)
+    expected = visible_uv((shown.pose[shown.faces], shown.uv[shown.faces]), points)
+    seen = nearest_uv(corners[::-1], uv[::-1], y_up(drawing, points))
+    wrong = np.abs(np.nan_to_num(seen, nan=-1) - np.nan_to_num(expected, nan=-1)).max(axis=1) > 0.005
+    assert wrong.mean() < 0.002, "but for points on edges"
+
+
+def test_an_obj_is_right_in_depth_tested_viewers(drawn: Document, exported: Callable[..., Path]) -> None:
+    document = woven(drawn)
+    rows = [line.split() for line in exported(document, "a.obj").read_text().splitlines()]
+    points = np.array([row[1:4] for row in rows if row[0] == "v"], dtype=float)
+    uv = np.array([row[1:3] for row in rows if row[0] == "vt"], dtype=float) * [1, -1] + [0, 1]
+    faces = np.array([[int(c.split("/")[0]) - 1 for c in row[1:]] for row in rows if row[0] == "f"])
+    assert_depth_tested(document, points[faces], uv[faces])
+    flat = exported(document, "a.obj", z_order=False).read_text()
+    assert {line.split()[3] for line in flat.splitlines() if line.startswith("v ")} == {"0"}
+
+
+def test_gltf_has_the_same_depth_on_demand(drawn: Document, exported: Callable[..., Path]) -> None:
+    document = woven(drawn)
+    mesh = trimesh.load(exported(document, "a.glb", z_order=True), process=False, force="mesh")
+    faces, uv = mesh.faces, np.array(mesh.visual.uv) * [1, -1] + [0, 1]
+    pose = drawn_faces(document.drawing, document.state.positions, document.draw_order).pose
+    points = np.column_stack([y_up(document.drawing, pose), 100 * mesh.vertices[:, 2]])
+    assert_depth_tested(document, points[faces], uv[faces])
+    flat = trimesh.load(exported(document, "a.glb"), process=False, force="mesh")
+    assert np.abs(flat.vertices[:, 2]).max() == 0
+
+
+def test_the_surface_is_torn_only_where_levels_go_around_in_a_circle(drawn: Document) -> None:
+    drawing = drawn.drawing
+    plain = drawn_faces(drawing, drawn.state.positions, None)
+    ring, disc = (np.flatnonzero(plain.components == component) for component in (0, 1))
+
+    def neighbors(faces: np.ndarray) -> np.ndarray:
+        """Two faces with a common edge."""
+        shared = (plain.faces[faces[1:]][:, :, None] == plain.faces[faces[0]]).any(axis=2).sum(axis=1) == 2
+        return faces[[0, 1 + int(np.argmax(shared))]]
+
+    (f, g), (p, q) = neighbors(ring), neighbors(disc)
+    for low, high, is_torn in (([f, g], [p, q], False), ([f, q], [p, g], True)):
+        result = stacked(plain, np.array(low), np.array(high))
+        assert (len(result.rest) > len(plain.rest)) == is_torn
+        np.testing.assert_array_equal(result.rest[: len(plain.rest)], plain.rest)
+        np.testing.assert_array_equal(result.rest[result.faces], plain.rest[plain.faces])
+        np.testing.assert_array_equal(result.uv, plain.uv[result.sources])
+        below, above = result.z[result.faces[low]], result.z[result.faces[high]]
+        assert (below.max(axis=1) < above.min(axis=1)).all()

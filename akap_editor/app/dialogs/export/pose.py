@@ -41,12 +41,14 @@ class PoseExportOptions:
     crop: str = CROPS[0]
     rest: bool = False
     textured: bool = False
+    z_order: bool | None = None
 
     @property
     def export_options(self) -> ExportOptions:
         """The choices as `export` takes them."""
         background = self.background if self.is_opaque else None
-        return ExportOptions(self.scale, background, self.crop, self.rest, self.textured)
+        z_order = None if self.format.z_order is None else self.z_order
+        return ExportOptions(self.scale, background, self.crop, self.rest, self.textured, z_order)
 
     def output_size(self, document: Document) -> tuple[int, int]:
         """Width and height in pixels of an exported picture. Raises InputError if it is too large."""
@@ -147,6 +149,13 @@ def _draw_options(options: PoseExportOptions, document: Document, scale: float) 
     widgets.switch_label("Pose", LABEL_WIDTH * scale)
     tooltip = "Export the rest pose instead of the current pose."
     _, options.rest = widgets.switch("Rest pose", options.rest, tooltip)
+    if options.format.z_order is not None:
+        imgui.same_line(0, 16 * scale)
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
+        tooltip = "Lay what is in front nearer to the viewer in z, for ray tracers and depth-tested viewers."
+        value = options.format.z_order if options.z_order is None else options.z_order
+        changed, value = widgets.switch("Depth in z", value, tooltip)
+        options.z_order = value if changed else options.z_order
     if options.format.can_be_textured:
         imgui.same_line(0, 16 * scale)
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())

@@ -91,6 +91,17 @@ def test_an_svg_with_its_texture(bent, tmp_path):
     assert "<image " in (tmp_path / "figure.svg").read_text()
 
 
+def test_depth_in_z_is_on_for_obj_until_it_is_switched(bent):
+    bent.menu("File", "Export...")
+    for label, default in (("Wavefront OBJ", None), ("glTF binary", None)):
+        bent.dialog(EXPORT, option(label))
+        assert dialog(bent).options.export_options.z_order is default
+    bent.dialog(EXPORT, option("Depth in z"))
+    assert dialog(bent).options.export_options.z_order is True
+    bent.dialog(EXPORT, option("SVG"))
+    assert dialog(bent).options.export_options.z_order is None
+
+
 def test_the_drawing_at_rest(bent, tmp_path):
     bent.menu("File", "Export...")
     bent.dialog(EXPORT, option("glTF binary"), option("Rest pose"), "Export...")
