@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from ..errors import FileError, file_errors
+from ..errors import InputError, file_errors
 from ..io.akap.archive import Archive
 from ..io.akap.project import MAX_PICTURE_BYTES, PROJECT_SUFFIX, THUMBNAIL_ENTRY
 from ..io.akap.recording import RECORDING_SUFFIX, bundled_drawing, decode_recording, drawing_inside
@@ -16,7 +16,7 @@ from ..io.images import Picture, decode_image
 def make_thumbnail(path: Path, side: int) -> Picture:
     """A picture (h, w, 4) of a drawing or recording, at most ``side`` pixels high and wide.
 
-    Of a recording it shows the drawing. Raises FileError if the file is damaged or of another kind.
+    Of a recording it shows the drawing. Raises InputError if the file is damaged or of another kind.
     """
     data = read_file(path, "a drawing or recording")
     with file_errors("open", path):
@@ -26,7 +26,7 @@ def make_thumbnail(path: Path, side: int) -> Picture:
             case str(suffix) if suffix == RECORDING_SUFFIX:
                 image = _drawing_of_recording(data)
             case suffix:
-                raise FileError("open", path, f"expected a drawing or recording, got {suffix or 'no ending'}")
+                raise InputError(f"expected a drawing or recording, got {suffix or 'no ending'}")
     picture = Image.fromarray(image)
     picture.thumbnail((side, side))
     return np.asarray(picture)

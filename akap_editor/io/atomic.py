@@ -6,6 +6,7 @@ import reprlib
 import secrets
 import shutil
 import stat
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
@@ -122,6 +123,9 @@ def resolved(path: Path) -> Path:
 
 def os_error_reason(error: OSError | ValueError) -> str:
     """The cause alone, e.g. "permission denied", without number and file name."""
+    if isinstance(error, UnicodeError):
+        encoding = sys.getfilesystemencoding()
+        return f"the names of files have no such characters in the present locale ({encoding})"
     text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return text[:1].lower() + text[1:]
 

@@ -2,11 +2,15 @@
 
 import io
 import json
+import os
+import subprocess
 import sys
+from contextlib import suppress
 
 import pytest
 
 from akap_editor import cli
+from akap_editor.display_text import display_text
 from akap_editor.io.akap.project import load
 from akap_editor.io.images import write_png
 from tests.support.names import assert_readable, strange_names
@@ -62,17 +66,39 @@ def test_a_name_inside_a_drawing(run, posed, name):
 
 @pytest.mark.parametrize("encoding", ["latin-1", "cp1252", "koi8-r"])
 def test_a_terminal_without_these_characters(monkeypatch, tmp_path, image, encoding):
-    write_png(tmp_path / "猫.png", image)
+    name = os.fsdecode("猫".encode())  # also where names of files are not UTF-8
+    shown = display_text(name).encode(encoding, "backslashreplace").decode(encoding)
+    write_png(tmp_path / f"{name}.png", image)
     streams = [io.TextIOWrapper(io.BytesIO(), encoding) for _ in range(2)]
     monkeypatch.setattr(sys, "stdout", streams[0])
     monkeypatch.setattr(sys, "stderr", streams[1])
-    monkeypatch.setattr(sys, "argv", ["akap-editor", "info", str(tmp_path / "猫.png")])
+    monkeypatch.setattr(sys, "argv", ["akap-editor", "info", str(tmp_path / f"{name}.png")])
     cli.main()
-    monkeypatch.setattr(sys, "argv", ["akap-editor", "info", str(tmp_path / "no “猫”.png")])
+    monkeypatch.setattr(sys, "argv", ["akap-editor", "info", str(tmp_path / f"no {name}.png")])
     with pytest.raises(SystemExit):
         cli.main()
     for stream in streams:
         stream.flush()
     said = [stream.buffer.getvalue().decode(encoding) for stream in streams]
-    assert r"\u732b.png: picture, sound" in said[0]
-    assert r"\u732b" in said[1]
+    assert f"{shown}.png: picture, sound" in said[0]
+    assert f"no {shown}.png" in said[1]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are those of POSIX")
+@pytest.mark.parametrize("is_there", [True, False])
+def test_no_escape_sequence_of_a_name_reaches_a_terminal(tmp_path, image, is_there):
+    picture = tmp_path / os.fsdecode(b"\x1b]0;title\x07\x1b[31mred\xe9\x9b.png")
+    if is_there:
+        write_png(picture, image)
+    terminal, end = os.openpty()
+    command = [sys.executable, "-m", "akap_editor.cli", "info", str(picture)]
+    done = subprocess.run(command, stdin=end, stdout=end, stderr=end)
+    os.close(end)
+    said = b""
+    with suppress(OSError):  # on Linux, the end of the output
+        while part := os.read(terminal, 4096):
+            said += part
+    os.close(terminal)
+    assert done.returncode == (0 if is_there else 2)
+    assert rb"\x1b]0;title\x07\x1b[31mred\xe9\x9b.png" in said
+    assert not set(said) & {0x1B, 0x07, 0x9B}

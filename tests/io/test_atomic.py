@@ -42,6 +42,15 @@ def fail_to_write(monkeypatch):
     monkeypatch.setattr(atomic, "open_new", lambda path, mode: FullDisk(real(path, mode)))
 
 
+def test_a_name_that_the_locale_cannot_write_is_one_sentence(tmp_path):
+    """As "猫" where names of files are Latin-1; half a surrogate is one where they are UTF-8."""
+    for act in (lambda path: write_atomic(path, b""), lambda path: read_file(path, "a file")):
+        with pytest.raises(
+            InputError, match=r"The names of files have no such characters in the present locale"
+        ):
+            act(tmp_path / "\ud800.png")
+
+
 def test_written_is_what_is_read(tmp_path):
     path = tmp_path / "new.bin"
     for data in (b"first", b"", bytes(range(256)) * 1000):

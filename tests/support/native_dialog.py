@@ -40,8 +40,8 @@ class StandInDialog:
     @property
     def arguments(self) -> list[str]:
         """What zenity was called with; it must be open."""
-        return self._asked.read_text().splitlines()
+        return os.fsdecode(self._asked.read_bytes()).split("\n")
 
     def answer(self, path: Path | None) -> None:
         """Choose a file, or cancel with None; returns when the dialog, which must be open, has read it."""
-        self._answer.write_text(f"{path}\n" if path is not None else "")
+        self._answer.write_bytes(os.fsencode(path) + b"\n" if path is not None else b"")

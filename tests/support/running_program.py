@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -112,12 +113,20 @@ class RunningProgram:
     # -- the process ---------------------------------------------------------------------------------------
 
     def _activity(self) -> dict[str, tuple[str, int]]:
-        """State and number of context switches of each thread; it does not change while a thread sleeps."""
-        activity = {}
-        for thread in Path(f"/proc/{self.process.pid}/task").glob("*/status"):
-            fields = dict(line.split(":\t", 1) for line in thread.read_text().splitlines() if ":\t" in line)
-            switches = int(fields["voluntary_ctxt_switches"]) + int(fields["nonvoluntary_ctxt_switches"])
-            activity[thread.parent.name] = fields["State"][0], switches
+        """State and number of context switches of each thread; it does not change while a thread sleeps.
+
+        The threads are those of the program and of the mesher, its child, for which the program waits asleep.
+        """
+        activity, processes = {}, [str(self.process.pid)]
+        for process in processes:
+            for thread in Path(f"/proc/{process}/task").iterdir():
+                with suppress(OSError):  # one that has ended meanwhile
+                    lines = (thread / "status").read_text().splitlines()
+                    fields = dict(line.split(":\t", 1) for line in lines if ":\t" in line)
+                    switches = fields["voluntary_ctxt_switches"], fields["nonvoluntary_ctxt_switches"]
+                    if fields["State"][0] != "Z":
+                        activity[thread.name] = fields["State"][0], sum(map(int, switches))
+                    processes += (thread / "children").read_text().split()
         return activity
 
     def cpu_seconds(self) -> float:

@@ -15,8 +15,7 @@ from Xlib.display import Display
 
 from tests.support.running_program import DEADLINE, PAUSE, SIZE
 
-# Environment variables: the screen and the window manager with which the tests of a real window run.
-DEPTH_VARIABLE, MANAGER_VARIABLE = "AKAP_TEST_DEPTH", "AKAP_TEST_WINDOW_MANAGER"
+MANAGER_VARIABLE = "AKAP_TEST_WINDOW_MANAGER"  # environment variable: a command
 FRAME = 160  # pixels that the screen of a window manager is larger than the window
 
 
@@ -30,17 +29,23 @@ class XServer:
 
 @contextmanager
 def x_server() -> Iterator[XServer]:
-    """Start Xvfb, and a window manager if `MANAGER_VARIABLE` names a command; end them afterwards.
-
-    The screen has `DEPTH_VARIABLE` bits per pixel, 24 by default.
-    """
+    """Start Xvfb, and a window manager if `MANAGER_VARIABLE` names one; end them afterwards."""
     for tool in ("Xvfb", "xdotool"):
         assert shutil.which(tool), f"{tool} is missing: install the packages xvfb and xdotool"
     manager = shlex.split(os.environ.get(MANAGER_VARIABLE, ""))
     width, height = np.add(SIZE, FRAME if manager else 0)  # a managed window has a frame
-    screen = f"{width}x{height}x{os.environ.get(DEPTH_VARIABLE, '24')}"
     read, write = os.pipe()
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", screen, "-nolisten", "tcp", "-noreset"]
+    command = [
+        "Xvfb",
+        "-displayfd",
+        str(write),
+        "-screen",
+        "0",
+        f"{width}x{height}x24",
+        "-nolisten",
+        "tcp",
+        "-noreset",
+    ]
     processes = [subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)]
     os.close(write)
     with os.fdopen(read) as pipe:

@@ -21,6 +21,10 @@ from .replace_files import ReplaceFilesDialog
 
 _WIDTH, _HEIGHT = 520, 260  # of the list of files, in design points
 _OTHER_HEIGHT = 220  # of everything around the list in a low window, in design points
+_NOT_PASSED_ON = (
+    "The file dialog of the system cannot pass on a name of this file or folder, which is not UTF-8. "
+    "Choose the file here."
+)
 DIALOG_VARIABLE = "AKAP_EDITOR_FILE_DIALOG"  # environment variable: "own" for this dialog on every system
 
 
@@ -135,7 +139,7 @@ class FileDialog:
             self._native, self._replaces_native = None, True
             return
         self._native, self.request = None, None
-        path = result if isinstance(result, str) else next(iter(result), "")
+        path = result if isinstance(result, str) else "\n".join(result)  # one name, cut at its line feeds
         if path:
             request.name = path
             has_new_ending = request.saving and request.path != Path(path)
@@ -156,6 +160,9 @@ class FileDialog:
         imgui.end_popup()
 
     def _draw_fields(self, request: FileRequest, scale: float) -> None:
+        if self._replaces_native:
+            widgets.paragraph(_NOT_PASSED_ON, _WIDTH * scale)
+            imgui.spacing()
         _draw_folder(request, scale)
         is_chosen = _draw_entries(request, scale)
         imgui.set_next_item_width(_WIDTH * scale)
@@ -197,6 +204,8 @@ class FileDialog:
 
 
 def _open_native(request: FileRequest) -> Any:
+    """Open the system's dialog. Raises UnicodeError if it cannot be told the suggested path."""
+    str(request.path if request.saving else request.folder).encode()
     patterns = " ".join(f"*{suffix}" for suffix in request.suffixes)
     if request.saving:
         return native.save_file(request.title, str(request.path), [patterns, patterns])

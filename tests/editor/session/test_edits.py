@@ -26,8 +26,10 @@ from akap_editor.editor.session.edits import (
 )
 from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.recording import parse_recording
+from akap_editor.editor.session.replay import Replay
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
+from akap_editor.io.akap.project import decode_document, encode_document
 from akap_editor.meshing.meshers import MESHERS, PYTHONCDT, TRIANGLE
 from tests.support.edit_examples import EDIT_EXAMPLES
 from tests.support.editor_driver import Ticks, bits, replayed_state
@@ -230,3 +232,47 @@ def test_pins_set_while_the_drawing_moves_are_fixed_at_the_pose(session):
     session.apply(SetPins(session.state.pins))
     np.testing.assert_array_equal(session.state.targets, positions)
     assert not session.is_moving
+
+
+JUNK = [None, True, -1, 2**53, 10**400, 0.5, 1e155, "", "x" * 5000, "\ud800", [], [[]], [1e9, 1e9, 1e9], {}]
+
+
+def broken_events(event):
+    """The event with one of its values, or the first value inside one, replaced by each of `JUNK`."""
+    for key, value in event.items():
+        for junk in JUNK:
+            yield {**event, key: junk}
+            if isinstance(value, list) and value:
+                yield {**event, key: [junk, *value[1:]]}
+            if isinstance(value, dict) and value:
+                first = next(iter(value))
+                yield {**event, key: {**value, first: junk}}
+            if isinstance(value, list) and value and isinstance(value[0], dict):
+                for inner in value[0]:
+                    yield {**event, key: [{**value[0], inner: junk}, *value[1:]]}
+
+
+@pytest.mark.parametrize("name", EDIT_EXAMPLES)
+def test_a_recorded_edit_with_any_bad_value_is_refused_or_leaves_what_can_be_saved(drawing, name):
+    session = Session(new_document(drawing), Ticks())
+    session.begin("Add pin")
+    add_pin(session, (20.0, 40.0))
+    for edit in (AddPose("bow"), AddPose("nod"), SetKeyframe(0.0), SetKeyframe(1.0)):
+        session.apply(edit)
+    session.commit()
+    opening = Session(session.document, Ticks()).recording.to_text()
+    opening += json.dumps({"t": 9, "do": "begin", "label": "Edit"}) + "\n"
+    recorded = EDIT_EXAMPLES[name](session).to_json(drawing)
+    messages = []
+    for event in broken_events(recorded):
+        try:
+            replayed = Replay(parse_recording(opening + json.dumps({"t": 9, "do": name, **event})), drawing)
+            for _ in replayed.events():
+                pass
+        except InputError as error:
+            messages.append(str(error))
+        else:
+            encoded = encode_document(replayed.session.present_document)
+            assert encode_document(decode_document(encoded)) == encoded
+    assert messages or not recorded
+    assert all(len(message) < 400 and "\n" not in message for message in messages)

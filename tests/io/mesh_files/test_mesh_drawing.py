@@ -25,7 +25,7 @@ TEXTURED = (
 
 def written(tmp_path, name, text):
     path = tmp_path / name
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     return path
 
 
