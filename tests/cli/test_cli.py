@@ -29,7 +29,7 @@ def test_as_a_program():
 
 
 def test_the_entry_point_is_there():
-    scripts = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
+    scripts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["scripts"]
     module, _, name = scripts["akap-editor"].partition(":")
     assert getattr(importlib.import_module(module), name) is cli.main
 

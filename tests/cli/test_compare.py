@@ -84,9 +84,9 @@ def test_report_and_json_say_the_same(call, file, recording, drawing, tmp_path):
     assert "index.html" in output
     assert "comparison.json" in output
     assert sorted(path.name for path in (tmp_path / "report").iterdir()) == ["comparison.json", "index.html"]
-    (model,) = json.loads((tmp_path / "report" / "comparison.json").read_text())["models"]
+    (model,) = json.loads((tmp_path / "report" / "comparison.json").read_text("utf-8"))["models"]
     assert [method["spec"] for method in model["methods"]] == ["arap", "cauchy-green", "mls"]
-    text = (tmp_path / "report" / "index.html").read_text()
+    text = (tmp_path / "report" / "index.html").read_text("utf-8")
     page = Page(text)
     assert page.open == []
     for method in model["methods"]:
@@ -102,7 +102,7 @@ def test_report_and_json_say_the_same(call, file, recording, drawing, tmp_path):
 
 def test_report_needs_nothing_else(call, file, tmp_path):
     assert call(file, "-m", "igarashi mls", "-o", tmp_path / "new" / "report")[0] == 0
-    text = (tmp_path / "new" / "report" / "index.html").read_text()
+    text = (tmp_path / "new" / "report" / "index.html").read_text("utf-8")
     page = Page(text)
     assert page.figures >= 4
     assert (
@@ -118,10 +118,10 @@ def test_report_needs_nothing_else(call, file, tmp_path):
 def test_figures_of_the_paper_stand_beside(call, drawing, recording, tmp_path):
     bar = make_drawing(drawing.image, vertices=120, name="bar")
     write_recording(recording, tmp_path / "bar.akaprec", bar)
-    header = (tmp_path / "bar.akaprec").read_text().replace('"name":"plank"', '"name":"bar"', 1)
+    header = (tmp_path / "bar.akaprec").read_text("utf-8").replace('"name":"plank"', '"name":"bar"', 1)
     (tmp_path / "bar.akaprec").write_text(header)
     assert call("bar.akaprec", "-m", "mls arap:iterations=3 arap igarashi", "-o", "report")[0] == 0
-    rows = Page((tmp_path / "report" / "index.html").read_text()).rows
+    rows = Page((tmp_path / "report" / "index.html").read_text("utf-8")).rows
     assert ["in the paper", "4.951", "2.042", "", ""] in rows
     assert ["in the paper", "8.158", "2.036", "", ""] in rows
 
@@ -130,11 +130,11 @@ def test_all_methods_of_the_table_are_compared_by_default(call, file, tmp_path, 
     """Also one without presets and without parameters."""
     add_toy_method(monkeypatch)
     assert call(file, "-o", "report")[0] == 0
-    (model,) = json.loads((tmp_path / "report" / "comparison.json").read_text())["models"]
+    (model,) = json.loads((tmp_path / "report" / "comparison.json").read_text("utf-8"))["models"]
     assert [method["spec"] for method in model["methods"]] == compared_methods()
     assert {method["method"] for method in model["methods"]} == {*method_names()}
     assert model["methods"][-1]["spec"] == TOY
-    text = (tmp_path / "report" / "index.html").read_text()
+    text = (tmp_path / "report" / "index.html").read_text("utf-8")
     assert Page(text).open == []
     assert f"<dt>{TOY} <code>{TOY}</code></dt><dd>{TOY}.<br>" in text
 

@@ -61,7 +61,7 @@ def test_png_is_what_the_renderer_draws(run, posed, tmp_path, crop, rest):
 
 def test_an_svg_with_its_texture(run, posed, tmp_path):
     assert run("export", posed, "-o", "a.svg", "--textured")[0] == 0
-    assert "<image " in (tmp_path / "a.svg").read_text()
+    assert "<image " in (tmp_path / "a.svg").read_text("utf-8")
     assert_one_line(run("export", posed, "-o", "a.glb", "--textured"), "--textured", ".svg", ".glb")
 
 

@@ -72,7 +72,7 @@ def test_a_pose(facts, posed, tmp_path):
     record = facts("a.pose.json")
     assert (record["kind"], record["sound"]) == ("pose", True)
     assert record["facts"]["vertices"] == facts(posed)["facts"]["vertices"]
-    text = (tmp_path / "a.pose.json").read_text()
+    text = (tmp_path / "a.pose.json").read_text("utf-8")
     (tmp_path / "a.pose.json").write_text(text.replace('"positions":[', '"positions":[[0,0],', 1))
     assert "vertices, got" in facts("a.pose.json")["problems"][0]
 

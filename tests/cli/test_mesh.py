@@ -52,7 +52,7 @@ def test_one_picture(run, picture, tmp_path, image):
 
 def test_y_is_up_in_the_file(run, picture, tmp_path):
     run("mesh", picture, "-o", "ring.obj")
-    lines = [line.split() for line in (tmp_path / "ring.obj").read_text().splitlines()]
+    lines = [line.split() for line in (tmp_path / "ring.obj").read_text("utf-8").splitlines()]
     points = np.array([words[1:3] for words in lines if words[0] == "v"], dtype=float)
     faces = np.array([[int(corner.split("/")[0]) for corner in w[1:]] for w in lines if w[0] == "f"]) - 1
     island = points[points[:, 0] > 98]
@@ -189,7 +189,7 @@ def test_refused_in_one_line(run, picture, tmp_path, image, case):
 
 def test_as_a_program(picture):
     command = [sys.executable, "-m", "akap_editor.cli", "mesh", str(picture)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=120)
     assert done.returncode == 0
     assert "2 parts, 1 hole" in done.stdout
 

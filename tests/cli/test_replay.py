@@ -101,7 +101,7 @@ def test_replay_refuses_bad_options(run, tmp_path, options, parts):
 
 
 def test_replay_of_an_unknown_drawing_says_how_to_name_it(run, tmp_path):
-    text = RECORDING.read_text().replace('"name":"elephant"', '"name":"unicorn"', 1)
+    text = RECORDING.read_text("utf-8").replace('"name":"elephant"', '"name":"unicorn"', 1)
     (tmp_path / "other.akaprec").write_text(text)
     assert_one_line(run("replay", "other.akaprec", "-o", "wave.webp"), "'unicorn'", "--drawing", "elephant")
     assert not (tmp_path / "wave.webp").exists()
@@ -213,7 +213,7 @@ def test_only_a_web_page_waits_for_the_pointer(replay_bar, tmp_path):
 
 def test_a_sheet_and_its_index(replay_bar, tmp_path):
     assert replay_bar("-o", "bar.png", "--sheet", "--fps", 8, "--size", 64)[0] == 0
-    index = json.loads((tmp_path / "bar.json").read_text())
+    index = json.loads((tmp_path / "bar.json").read_text("utf-8"))
     with Image.open(tmp_path / "bar.png") as sheet:
         assert sheet.size == (index["meta"]["size"]["w"], index["meta"]["size"]["h"])
     assert len(index["frames"]) == 9
@@ -298,7 +298,7 @@ def test_bad_options_are_one_line_and_nothing_is_written(replay_bar, tmp_path, o
     ],
 )
 def test_a_bad_recording_is_told_with_its_line(replay_bar, tmp_path, change, part):
-    lines = (tmp_path / "bar.akaprec").read_text().splitlines()
+    lines = (tmp_path / "bar.akaprec").read_text("utf-8").splitlines()
     (tmp_path / "bad.akaprec").write_text("\n".join(change(lines)) + "\n")
     code, _, errors = replay_bar("-o", "bar.gif", recording="bad.akaprec")
     assert code == 2
@@ -388,7 +388,7 @@ def frames_in(path):
     if path.is_dir():
         return len(list(path.glob("*.png")))
     if path.suffix == ".png":
-        return len(json.loads(path.with_suffix(".json").read_text())["frames"])
+        return len(json.loads(path.with_suffix(".json").read_text("utf-8"))["frames"])
     if path.suffix in (".mp4", ".webm"):
         import av
 
@@ -430,7 +430,7 @@ def test_the_last_frame_of_keyframes_is_the_last_pose(replay_bar, posed, tmp_pat
     np.testing.assert_array_equal(read_image(tmp_path / "pose.png"), expected)
     options = ("--from", 0.2, "--to", 0.4, "--ping-pong", "--speed", 2, "--fps", 20, "--sheet")
     assert replay_bar("-o", "sheet.png", *options, recording="posed.akap")[0] == 0
-    assert len(json.loads((tmp_path / "sheet.json").read_text())["frames"]) == 4
+    assert len(json.loads((tmp_path / "sheet.json").read_text("utf-8"))["frames"]) == 4
 
 
 @pytest.mark.parametrize(
@@ -461,7 +461,8 @@ def test_a_recording_is_a_document_in_its_last_pose(session, tmp_path):
     document = open_document(tmp_path / "bar.akaprec")
     np.testing.assert_array_equal(document.state.positions, session.state.positions)
     (tmp_path / "bad.akaprec").write_text(
-        (tmp_path / "bar.akaprec").read_text() + '{"t": 99, "do": "undo", "x": 1}\n{"t": 0, "do": "undo"}\n'
+        (tmp_path / "bar.akaprec").read_text("utf-8")
+        + '{"t": 99, "do": "undo", "x": 1}\n{"t": 0, "do": "undo"}\n'
     )
     with pytest.raises(InputError, match=r"bad.akaprec”. Recording line \d+: expected a time of 99 s"):
         open_document(tmp_path / "bad.akaprec")
