@@ -44,8 +44,8 @@ class Rules:
             nearer = float(np.average(self.dragged[second] - self.dragged[first], weights=weights))
             if abs(nearer) > _DRAG_TOLERANCE * mesh.length:
                 dragged = 0 if nearer > 0 else 1
-                is_trunk = shares[dragged] > TRUNK_SHARE and is_limb
-                return 1 if (1 - dragged if is_trunk else dragged) == 0 else -1
+                is_trunk_over_limb = is_limb and dragged != limb and shares[dragged] > TRUNK_SHARE
+                return 1 if (limb if is_trunk_over_limb else dragged) == 0 else -1
         if is_limb:
             return 1 if limb == 0 else -1
         farther = float(np.average(limbs.distances[first] - limbs.distances[second], weights=weights))

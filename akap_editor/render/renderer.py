@@ -90,6 +90,7 @@ class Renderer:
         order = order.order if isinstance(order, CutMesh) else order
         if order is not self._order:
             faces = drawing.mesh.faces if order is None else drawing.mesh.faces[order]
+            self._face_buffer.orphan()
             self._face_buffer.write(faces.astype(np.uint32))
             self._order = order
 
