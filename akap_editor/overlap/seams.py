@@ -50,28 +50,27 @@ def cut_along_seams(mesh: TriMesh, overlaps: Overlaps, order: Ints) -> CutMesh |
     """
     pairs = overlaps.pairs
     signs = overlaps.signs.copy()
-    sides: dict[int, list[tuple[int, Floats]]] = defaultdict(list)  # blocks and corner values by face
+    candidates: dict[int, list[tuple[int, Floats]]] = defaultdict(list)  # blocks and corner values by face
     blocks = np.repeat(np.arange(len(pairs.links)), np.diff(pairs.starts))
     for region in range(pairs.region_count):
         members = np.flatnonzero(pairs.regions == region)
         if signs[members].min() == signs[members].max():
             continue
-        for block, corners in _block_values(mesh, pairs, signs, members, blocks):
-            inside = slice(pairs.starts[block], pairs.starts[block + 1])
-            if corners.min() >= 0:
-                signs[inside] = 1
-            elif corners.max() <= 0:
-                signs[inside] = -1
-            else:
-                sides[int(pairs.first[pairs.starts[block]])].append((block, corners))
-    cut = {face: blocks_[0] for face, blocks_ in sides.items() if len(blocks_) == 1}
+        band, corners = _block_values(mesh, pairs, signs, members, blocks)
+        sides = np.zeros(len(pairs.links), dtype=np.int8)  # of each block in the band that is not cut
+        sides[band] = (corners.min(axis=1) >= 0).astype(np.int8) - (corners.max(axis=1) <= 0)
+        signs = np.where(sides[blocks], sides[blocks], signs)
+        is_cut = sides[band] == 0
+        for block, values in zip(band[is_cut].tolist(), corners[is_cut], strict=True):
+            candidates[int(pairs.first[pairs.starts[block]])].append((block, values))
+    cut = {face: found[0] for face, found in candidates.items() if len(found) == 1}
     return _cut(mesh, pairs, signs, blocks, cut, order) if cut else None
 
 
 def _block_values(
     mesh: TriMesh, pairs: FacePairs, signs: Ints, members: Ints, blocks: Ints
-) -> list[tuple[int, Floats]]:
-    """Blocks of pairs near the seams of a region, and a smooth value at the corners of their first faces.
+) -> tuple[Ints, Floats]:
+    """Blocks of pairs near the seams of a region, (b,), and a smooth value at their faces' corners, (b, 3).
 
     The value is positive where the first sheet is in front; its zeros are the straightened seams.
     """
@@ -79,6 +78,7 @@ def _block_values(
     links = _block_links(
         members,
         blocks,
+        signs,
         pairs.first,
         pairs.second,
         topology.neighbors,
@@ -95,37 +95,64 @@ def _block_values(
     graph.data[:] = 1.0
     sizes = np.bincount(blocks[members] - first_block, minlength=count)
     means: Floats = np.bincount(blocks[members] - first_block, signs[members], count) / sizes
-    degree = np.maximum(graph.sum(axis=1), 1)
-    near = (np.abs(means) < 1) | (np.abs(graph @ means) < degree)
-    for _ in range(_BAND):
-        near = near | (graph @ near.astype(float) > 0)
-    inner = near & (graph @ near.astype(float) == degree)
-    values = means.copy()
-    for _ in range(_ROUNDS):
-        values = np.where(inner, 0.25 * values + 0.75 * (graph @ values) / degree, values)
-    band = np.flatnonzero(near)
+    band, values = _straightened(graph.indptr, graph.indices, means)
     labels = connected_components(graph[band][:, band], directed=False)[1]
     faces = pairs.first[pairs.starts[band + first_block]]
     corners = mesh.faces[faces]
     keys = labels[:, None].astype(np.int64) * len(mesh.vertices) + corners
     unique, inverse = np.unique(keys, return_inverse=True)
     inverse = inverse.reshape(-1)
-    totals = np.bincount(inverse, np.repeat(values[band], 3), len(unique)) / np.bincount(inverse)
+    totals = np.bincount(inverse, np.repeat(values, 3), len(unique)) / np.bincount(inverse)
     by_corner = totals[inverse].reshape(-1, 3)
     # A face that is there twice in one band has no single value at its corners.
     face_keys, counts = np.unique(labels.astype(np.int64) * len(mesh.faces) + faces, return_counts=True)
     is_single = np.isin(labels.astype(np.int64) * len(mesh.faces) + faces, face_keys[counts == 1])
-    return [
-        (int(block), corner)
-        for block, corner, single in zip(band + first_block, by_corner, is_single, strict=True)
-        if single
-    ]
+    return (band + first_block)[is_single], by_corner[is_single]
+
+
+@compiled
+def _straightened(starts: Ints, neighbors: Ints, means: Floats):  # type: ignore[no-untyped-def]
+    """The blocks near a change of sign, (b,), and their mean signs smoothed between blocks, (b,).
+
+    starts, neighbors: the graph of blocks by rows; means: (n,) mean sign of each block.
+    """
+    distance = np.full(len(means), -1, dtype=np.int64)
+    queue, size, reached = np.empty(len(means), dtype=np.int64), 0, 0
+    for i in range(len(means)):
+        total = 0.0
+        for j in range(starts[i], starts[i + 1]):
+            total += means[neighbors[j]]
+        if abs(means[i]) < 1 or abs(total) < starts[i + 1] - starts[i]:
+            distance[i] = 0
+            queue[size] = i
+            size += 1
+    while reached < size:
+        i = queue[reached]
+        reached += 1
+        for j in range(starts[i], starts[i + 1]):
+            if distance[i] < _BAND and distance[neighbors[j]] < 0:
+                distance[neighbors[j]] = distance[i] + 1
+                queue[size] = neighbors[j]
+                size += 1
+    band = np.sort(queue[:size])
+    values, smoothed = means.copy(), means.copy()
+    for _ in range(_ROUNDS):
+        for i in band:
+            total, is_inner = 0.0, starts[i + 1] > starts[i]
+            for j in range(starts[i], starts[i + 1]):
+                is_inner &= distance[neighbors[j]] >= 0
+                total += values[neighbors[j]]
+            if is_inner:
+                smoothed[i] = 0.25 * values[i] + 0.75 * total / (starts[i + 1] - starts[i])
+        values[band] = smoothed[band]
+    return band, values[band]
 
 
 @compiled
 def _block_links(  # type: ignore[no-untyped-def]
     members: Ints,
     blocks: Ints,
+    signs: Ints,
     first: Ints,
     second: Ints,
     neighbors: Ints,
@@ -133,13 +160,39 @@ def _block_links(  # type: ignore[no-untyped-def]
     starts: Ints,
     links: Ints,
 ):
-    """Blocks of a region whose first faces are side by side over the same second face, (l, 2)."""
+    """Blocks of a region whose first faces are side by side over the same second face, (l, 2).
+
+    Only those not much farther from a seam than the band in which it is straightened; signs: (p,) of pairs.
+    """
+    sides = np.zeros(len(neighbors), dtype=np.int8)  # of each first face: 1 with a positive pair, 2 negative
+    for i in members:
+        sides[first[i]] |= 1 if signs[i] > 0 else 2
+    distance = np.full(len(neighbors), -1, dtype=np.int64)
+    queue, size, reached = np.empty(len(neighbors), dtype=np.int64), 0, 0
+    for f in range(len(neighbors)):
+        around = sides[f]
+        for k in range(3):
+            if around and neighbors[f, k] >= 0:
+                around |= sides[neighbors[f, k]]
+        if around == 3:
+            distance[f] = 0
+            queue[size] = f
+            size += 1
+    while reached < size:
+        f = queue[reached]
+        reached += 1
+        for k in range(3):
+            target = neighbors[f, k]
+            if distance[f] < _BAND + 2 and target >= 0 and sides[target] and distance[target] < 0:
+                distance[target] = distance[f] + 1
+                queue[size] = target
+                size += 1
     result, size = np.empty((3 * len(members), 2), dtype=np.int64), 0
     begin, end = members[0], members[-1] + 1
     for i in members:
         for k in range(3):
             target = neighbors[first[i], k]
-            if target < 0:
+            if distance[first[i]] < 0 or target < 0 or distance[target] < 0:
                 continue
             j = pair_index(target, second[i], second, heads, starts, links)
             if begin <= j < end and j > i:
@@ -190,23 +243,25 @@ def _cut(
             parts[face].append((m + len(extra_faces), -sign))
             extra_faces.append(triangle)
             extra_sources.append(face)
-    first, second, new_signs = [pairs.first], [pairs.second], [signs.copy()]
+    # Of a cut face, the pairs of its first part replace those of the face, the others are added.
+    signs, added = signs.copy(), list[tuple[int, int, int]]()
     cut_faces = np.zeros(m, dtype=bool)
     cut_faces[list(cut)] = True
-    for i in np.flatnonzero(cut_faces[pairs.first] | cut_faces[pairs.second]):
-        f, g = int(pairs.first[i]), int(pairs.second[i])
+    touched = np.flatnonzero(cut_faces[pairs.first] | cut_faces[pairs.second])
+    columns = (touched, pairs.first[touched], pairs.second[touched], signs[touched], blocks[touched])
+    for i, f, g, old_sign, block in zip(*(column.tolist() for column in columns), strict=True):
+        is_cut_here = f in cut and cut[f][0] == block
         for part_f, sign_f in parts.get(f, [(f, 0)]):
             for part_g, _ in parts.get(g, [(g, 0)]):
-                is_cut_here = f in cut and cut[f][0] == blocks[i]
-                sign = sign_f if is_cut_here else int(signs[i])
+                sign = sign_f if is_cut_here else old_sign
                 if (part_f, part_g) == (f, g):
-                    new_signs[0][i] = sign
+                    signs[i] = sign
                 else:
-                    first.append(np.array([part_f], dtype=np.int32))
-                    second.append(np.array([part_g], dtype=np.int32))
-                    new_signs.append(np.array([sign], dtype=np.int8))
+                    added.append((part_f, part_g, sign))
     total = m + len(extra_faces)
-    low, high = low_and_high(np.concatenate(first), np.concatenate(second), np.concatenate(new_signs))
+    extra = np.array(added, dtype=np.int32).reshape(-1, 3)
+    first, second = np.concatenate([pairs.first, extra[:, 0]]), np.concatenate([pairs.second, extra[:, 1]])
+    low, high = low_and_high(first, second, np.concatenate([signs, extra[:, 2].astype(np.int8)]))
     levels, placed = face_levels(total, low, high)
     if not placed.all():
         return None
