@@ -1,10 +1,14 @@
-"""Poses of test shapes: random drags with the solver, and a rope that rolls itself into a trefoil."""
+"""Poses that overlap: random drags with the solver, and ropes tied into a trefoil, one with a seam."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from akap_editor.deform.akap.deformer import AkapDeformer
+from akap_editor.editor.document.crossings import overlaps_of
+from akap_editor.editor.document.document import Document, new_document
+from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.geometry.mesh import TriMesh
 
 
@@ -41,3 +45,19 @@ def trefoil(mesh: TriMesh, length: float, middle: float, share: float) -> np.nda
     offset, turn = mesh.vertices[:, 1] - middle, np.interp(at, arc, angle)
     along_x, along_y = np.interp(at, arc, axis_x), np.interp(at, arc, axis_y)
     return np.stack([along_x - np.sin(turn) * offset, along_y + np.cos(turn) * offset], axis=1)
+
+
+def rope_with_seam() -> Document:
+    """A rope of colors, tied into a trefoil; in one of its crossings both parts are in front of the other."""
+    image = np.full((60, 1000, 4), 255, dtype=np.uint8)
+    image[..., 0], image[..., 1] = np.arange(1000) // 4, 4 * np.arange(60)[:, None]
+    empty = new_document(make_drawing(image, vertices=300))
+    mesh = empty.drawing.mesh
+    pose = trefoil(mesh, 1000, 30, 1.0)
+    overlaps = overlaps_of(mesh, (), pose, empty.state.crossings)
+    mine = np.flatnonzero(overlaps.pairs.regions == 0)
+    first, second = overlaps.pairs.first[mine], overlaps.pairs.second[mine]
+    middles = mesh.vertices[mesh.faces].mean(axis=1)[:, 0]
+    left, right = np.argmin(middles[first]), np.argmax(middles[first])
+    crossings = np.array([[first[left], second[left]], [second[right], first[right]]], dtype=np.int32)
+    return empty.with_state(replace(empty.state, positions=pose, crossings=crossings))

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ...editor.document.crossings import overlaps_of
 from ...editor.document.document import Document
 from ...editor.framing import Color, crop_box
 from ...errors import FileError, InputError, file_errors, join_with_or
@@ -88,10 +87,8 @@ def _encode_svg(document: Document, stem: str, options: ExportOptions, painter: 
 
 
 def _encode_spine(document: Document, stem: str, _: ExportOptions, __: Painter | None) -> Files:
-    mesh, state = document.drawing.mesh, document.state
-    pairs = overlaps_of(mesh, state.pins, state.positions, state.crossings).low_and_high
-    baked = bake_animation(document)
-    return encode_spine(document.drawing, state.positions, stem, document.face_order, pairs, baked)
+    drawing, pose = document.drawing, document.state.positions
+    return encode_spine(drawing, pose, stem, document.draw_order, bake_animation(document))
 
 
 def _encode_glb(document: Document, stem: str, options: ExportOptions, _: Painter | None) -> Files:

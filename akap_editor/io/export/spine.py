@@ -10,8 +10,10 @@ from ...editor.document.drawing import Drawing
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
+from ...overlap.seams import CutMesh
 from .baked_animation import BakedAnimation, DrawingOrder
 from .component_runs import component_runs
+from .drawn_faces import DrawnFaces, drawn_faces
 from .texture import companion_stem, encode_texture, texture_name, y_up
 
 SPINE_VERSION = "4.2.00"
@@ -23,41 +25,43 @@ def encode_spine(
     drawing: Drawing,
     positions: Floats,
     stem: str,
-    order: Ints | None = None,
-    pairs: tuple[Ints, Ints] = (np.zeros(0, dtype=int), np.zeros(0, dtype=int)),
+    order: Ints | CutMesh | None = None,
     baked: BakedAnimation | None = None,
 ) -> dict[str, bytes]:
     """The contents of texture, atlas and JSON file, by name. Raises InputError if the mesh is too large.
 
     The skeleton has one bone; each component of the mesh is a slot with one unweighted mesh attachment, or
     several slots where it passes both behind and in front of another one. The setup pose is the rest pose,
-    the animation "pose" holds ``positions`` (n, 2) as a deform key. order: (m,) faces from back to front;
-    pairs: (p,) lower and upper faces that overlap, see `Overlaps.low_and_high`. baked: keyframes, which are
-    the animation "keyframes"; where they need several orders, there are slots for each of these.
+    the animation "pose" holds ``positions`` (n, 2) as a deform key. order: see `Document.draw_order`. baked:
+    keyframes, which are the animation "keyframes"; where they need several orders, there are slots for each
+    of these, and no faces are cut along seams.
     """
     texture, title = texture_name(stem), drawing.name or "drawing"
     region = texture.removesuffix(".png")
-    rest, mesh = y_up(drawing, drawing.mesh.vertices), drawing.mesh
-    order = np.arange(len(mesh.faces)) if order is None else order
-    orders = [DrawingOrder(order, *pairs)] if baked is None else baked.orders
-    parts = [_Part(mesh, number) for number in range(int(mesh.component.max()) + 1)]
+    drawn = drawn_faces(drawing, positions, order if baked is None else None)
+    rest, mesh = y_up(drawing, drawn.rest), drawing.mesh
+    if baked is None:
+        orders = [DrawingOrder(np.arange(len(drawn.faces)), *drawn.low_and_high)]
+    else:
+        orders = baked.orders
+    parts = [_Part(mesh, drawn, number) for number in range(int(mesh.component.max()) + 1)]
     slots: list[dict[str, str]] = []
     attachments, slot_parts = {}, []  # by slot
     slots_of_orders: list[list[str]] = []
     for number, each in enumerate(orders):
-        runs = component_runs(mesh.component[mesh.faces[:, 0]], each.order, each.low, each.high)
+        runs = component_runs(drawn.components, each.order, each.low, each.high)
         names = [_slot_name(title, len(slots) + k) for k in range(len(runs))]
         for name, (component, faces) in zip(names, runs, strict=True):
             shown = {"attachment": name} if number == 0 else {}
             slots.append({"name": name, "bone": "root", **shown})
             part = parts[component]
             slot_parts.append(part)
-            attachments[name] = {name: _attachment(drawing, part, faces, rest, region)}
+            attachments[name] = {name: _attachment(drawing, drawn, part, faces, region)}
         slots_of_orders.append(names)
     part_of = dict(zip(attachments, slot_parts, strict=True))
-    offsets = _Offsets(drawing, part_of)
+    offsets = _Offsets(drawing, rest, part_of)
     animations = {
-        "pose": {"attachments": {"default": offsets.timelines(slots_of_orders[0], [(0.0, positions)])}}
+        "pose": {"attachments": {"default": offsets.timelines(slots_of_orders[0], [(0.0, drawn.pose)])}}
     }
     if baked is not None:
         animations["keyframes"] = _animation(baked, slots_of_orders, offsets)
@@ -97,14 +101,16 @@ def _slot_name(title: str, number: int) -> str:
 
 
 class _Offsets:
-    """Deform keys of slots: where vertices are, relative to the rest pose. part_of: the part of each slot."""
+    """Deform keys of slots: where vertices are, relative to the rest pose.
 
-    def __init__(self, drawing: Drawing, part_of: dict[str, "_Part"]) -> None:
-        self._drawing, self._part_of = drawing, part_of
-        self._rest = y_up(drawing, drawing.mesh.vertices)
+    rest: (v, 2) vertices with y up; part_of: the part of each slot.
+    """
+
+    def __init__(self, drawing: Drawing, rest: Floats, part_of: dict[str, "_Part"]) -> None:
+        self._drawing, self._rest, self._part_of = drawing, rest, part_of
 
     def timelines(self, names: Sequence[str], keys: Sequence[tuple[float, Floats]]) -> dict[str, Any]:
-        """Deform timelines of slots with poses (n, 2) at times in seconds."""
+        """Deform timelines of slots with poses (v, 2) at times in seconds."""
         return {name: {name: {"deform": [self._key(name, *key) for key in keys]}} for name in names}
 
     def _key(self, name: str, time: float, pose: Floats) -> dict[str, Any]:
@@ -156,29 +162,33 @@ def _keys_in_spans(baked: BakedAnimation, spans: Sequence[tuple[float, float]]) 
 class _Part:
     """A component of a mesh, renumbered as Spine requires: the hull (outer contour) first, in order.
 
-    order: (p,) the mesh's vertex for each new number; hull: number of vertices of the hull; faces: (m, 3)
-    those of the whole mesh, −1 for vertices of other components; edges: (e, 2) the hull's edges first; both
-    in new numbers.
+    order: (p,) the drawn vertex for each new number; hull: number of vertices of the hull; faces: (q, 3) all
+    drawn faces, −1 for vertices of other components; edges: (e, 2) the hull's edges first; both in new
+    numbers.
     """
 
-    def __init__(self, mesh: TriMesh, number: int) -> None:
-        vertices = np.flatnonzero(mesh.component == number)
+    def __init__(self, mesh: TriMesh, drawn: DrawnFaces, number: int) -> None:
+        own = drawn.faces[drawn.components == number]
+        vertices = np.unique(own)
         loops = [loop for loop in mesh.boundary_loops if mesh.component[loop[0]] == number]
         hull = max(loops, key=lambda loop: abs(_area(mesh.vertices[loop])))
         self.hull = len(hull)
         self.order = np.concatenate([hull, np.setdiff1d(vertices, hull)])
-        new = np.full(len(mesh.vertices), -1)
+        new = np.full(len(drawn.rest), -1)
         new[self.order] = np.arange(len(self.order))
-        self.faces: Ints = new[mesh.faces]
+        self.faces: Ints = new[drawn.faces]
         ring = np.stack([np.arange(self.hull), np.roll(np.arange(self.hull), -1)], axis=1)
-        inner = np.sort(new[mesh.edges[mesh.component[mesh.edges[:, 0]] == number]], axis=1)
+        sides = np.concatenate([own[:, [0, 1]], own[:, [1, 2]], own[:, [2, 0]]])
+        inner = np.unique(np.sort(new[sides], axis=1), axis=0)
         known = {tuple(sorted(pair)) for pair in ring.tolist()}
         rest = [pair for pair in inner.tolist() if tuple(pair) not in known]
         self.edges: Ints = np.array([*ring.tolist(), *rest])
 
 
-def _attachment(drawing: Drawing, part: _Part, faces: Ints, rest: Floats, texture: str) -> dict[str, Any]:
-    """The mesh attachment of some faces of a component; rest (n, 2): vertices with y up."""
+def _attachment(
+    drawing: Drawing, drawn: DrawnFaces, part: _Part, faces: Ints, texture: str
+) -> dict[str, Any]:
+    """The mesh attachment of some drawn faces of a component."""
     if len(part.order) > MAX_ATTACHMENT_VERTICES:
         raise InputError(
             f"expected parts of at most {MAX_ATTACHMENT_VERTICES} vertices for Spine, got {len(part.order)}; "
@@ -188,9 +198,9 @@ def _attachment(drawing: Drawing, part: _Part, faces: Ints, rest: Floats, textur
     return {
         "type": "mesh",
         "path": texture,
-        "uvs": np.round(_flat(drawing.uv[part.order].astype(np.float64)), 6).tolist(),
+        "uvs": np.round(_flat(drawn.uv[part.order]), 6).tolist(),
         "triangles": part.faces[faces].ravel().tolist(),
-        "vertices": np.round(_flat(rest[part.order]), _DECIMALS).tolist(),
+        "vertices": np.round(_flat(y_up(drawing, drawn.rest)[part.order]), _DECIMALS).tolist(),
         "hull": part.hull,
         "edges": (2 * part.edges).ravel().tolist(),  # indices into the list of coordinates
         "width": width,

@@ -11,13 +11,15 @@ from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.document.pin import MAX_DEPTH, Pin
 from akap_editor.editor.editor import Editor
-from akap_editor.editor.session.edits import Remesh
+from akap_editor.editor.session.edits import Remesh, SetPose
 from akap_editor.editor.session.recording import parse_recording
 from akap_editor.editor.session.replay import replay
+from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import signed_areas
 from akap_editor.io.akap.project import load, save
 from akap_editor.io.images import read_image
+from tests.support.bends import rope_with_seam
 from tests.support.editor_driver import bits
 
 HEAD, NECK, END = (20.0, 40.0), (62.0, 40.0), (105.0, 40.0)
@@ -246,6 +248,26 @@ def test_crossings_are_saved_recorded_and_replayed(folded, drawing, tmp_path):
     opened.open(again)
     *_, last = replay(parse_recording(opened.session.recording.to_text()), again.drawing)
     np.testing.assert_array_equal(last.state.crossings, folded.state.crossings)
+
+
+def test_a_seam_is_the_same_after_saving_undo_and_replay(tmp_path):
+    document = rope_with_seam()
+    drawing, state = document.drawing, document.state
+    session = Session(new_document(drawing))
+    session.begin("Tie")
+    session.apply(SetPose(state.positions, state.crossings))
+    session.commit()
+    save(session.document, tmp_path / "rope.akap")
+    *_, replayed = replay(parse_recording(session.recording.to_text()), drawing)
+    session.undo()
+    assert session.document.draw_order is None
+    session.redo()
+    expected = document.draw_order
+    assert len(expected.edges) > 2
+    for other in (load(tmp_path / "rope.akap"), document.with_state(replayed.state), session.document):
+        found = other.draw_order
+        np.testing.assert_array_equal(found.faces, expected.faces)
+        np.testing.assert_array_equal(found.values(other.state.positions), expected.values(state.positions))
 
 
 def test_another_mesh_keeps_what_is_in_front(folded):

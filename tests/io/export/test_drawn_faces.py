@@ -17,6 +17,7 @@ from akap_editor.io.export.component_runs import component_runs
 from akap_editor.io.export.drawn_faces import DrawnFaces, drawn_faces, stacked
 from akap_editor.io.export.texture import y_up
 from akap_editor.overlap.seams import CutMesh
+from tests.support.bends import rope_with_seam
 
 Triangles = tuple[np.ndarray, np.ndarray]  # corners (q, 3, 2) from back to front, and their uv (q, 3, 2)
 
@@ -112,10 +113,12 @@ def probes(document: Document) -> np.ndarray:
 
 
 @pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("has_seam", [False, True])
 def test_files_show_what_the_window_shows(
-    suffix: str, drawn: Document, exported: Callable[..., Path]
+    has_seam: bool, suffix: str, drawn: Document, exported: Callable[..., Path]
 ) -> None:
-    document = woven(drawn)
+    document = rope_with_seam() if has_seam else woven(drawn)
+    assert isinstance(document.draw_order, CutMesh) == has_seam
     drawing, pose, points = document.drawing, document.state.positions, probes(document)
     shown = drawn_faces(drawing, pose, document.draw_order)
     expected = visible_uv((shown.pose[shown.faces], shown.uv[shown.faces]), points)
