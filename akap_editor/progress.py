@@ -1,14 +1,17 @@
 """Progress of long work: it announces its stages to whoever has started it and may cancel it there."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from typing import TypeVar
 
 from .errors import AkapError
 
 Listener = Callable[
     [float, str], None
 ]  # gets the share of the work that is done, 0 to 1, and what comes next
+
+T = TypeVar("T")
 
 _listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
 
@@ -43,3 +46,10 @@ def announce(share: float, text: str) -> None:
     listener = _listener.get()
     if listener is not None:
         listener(share, text)
+
+
+def announced(items: Sequence[T], text: str) -> Iterator[T]:
+    """Yield ``items`` and announce each as a stage; text: what is done with them."""
+    for number, item in enumerate(items):
+        announce(number / len(items), text)
+        yield item

@@ -1,7 +1,8 @@
 """Writes recordings and keyframes as animations."""
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,6 +22,7 @@ from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.animation.formats import (
     ANIMATION_FORMATS,
     MAX_PLAYS,
+    Shot,
     animation_format,
     animation_shots,
     replaced_files,
@@ -29,6 +31,7 @@ from ..io.animation.formats import (
 from ..io.atomic import noted_reads
 from ..io.open_document import open_document
 from ..io.outputs import refuse_replacing, refuse_source, same_file
+from ..progress import listening
 from .options import (
     FILE,
     append_formats,
@@ -186,9 +189,9 @@ def replay_recording(
     written_files = [output]
     with OffscreenRenderer() as renderer:
         shots = animation_shots(chosen, frames, renderer, size, background_color)
-        with progress_bar(shots, len(frames), "Drawing") as bar:
+        with _writing_bar(shots, len(frames), chosen.encoding_share) as counted:
             written = write_animation(
-                output, bar, fps, plays, sheet, overwrite=overwrite, quality=quality, hover=hover
+                output, counted, fps, plays, sheet, overwrite=overwrite, quality=quality, hover=hover
             )
         if pose is not None:
             picture = renderer.render(
@@ -203,6 +206,29 @@ def replay_recording(
     if pose is not None:
         click.echo(f"Wrote {display_text(pose)}, the last pose")
     click.echo(f"Wrote {display_text(output)}, {len(frames)} frames, {written}")
+
+
+@contextmanager
+def _writing_bar(shots: Iterable[Shot], count: int, encoding_share: float) -> Iterator[Iterator[Shot]]:
+    """A progress bar over drawing and encoding; gives the shots, which it counts.
+
+    encoding_share: of the time, after the last shot is drawn.
+    """
+    drawing_share, most = 1 - encoding_share, 1000
+    items: Iterable[Shot] | None = None
+    with progress_bar(items, most, "Writing") as bar:
+
+        def show(share: float, _: str = "") -> None:
+            bar.update(max(0, round(most * share) - bar.pos))
+
+        def counted() -> Iterator[Shot]:
+            for number, shot in enumerate(shots, start=1):
+                yield shot
+                show(drawing_share * number / count)
+
+        with listening(lambda share, _: show(drawing_share + encoding_share * share)):
+            yield counted()
+        show(1.0)
 
 
 def _check_number(option: str, value: float, low: float, high: float) -> None:

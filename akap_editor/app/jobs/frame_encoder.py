@@ -8,6 +8,7 @@ from typing import Protocol
 from ...errors import InputError
 from ...io.animation.formats import Shot
 from ...io.atomic import Write, write_atomic
+from ...progress import listening
 from .background_thread import BackgroundThread, Wake, no_window
 
 _MOST_QUEUED = 8  # pictures that may wait to be encoded: bounds the memory
@@ -31,7 +32,8 @@ class FrameEncoder:
         self._queue: Queue[Shot | None] = Queue(_MOST_QUEUED)
         self._is_cancelled = False
         self._thread = BackgroundThread("encoder", wake)
-        self._written = self._thread.submit(lambda: export(shots=self._shots(), write=self._write))
+        self._encoded = 0.0
+        self._written = self._thread.submit(self._run, export)
 
     def take(self, picture: Shot | None) -> Iterator[None]:
         """Add a picture, or None after the last one; yields as long as the queue is full.
@@ -53,6 +55,11 @@ class FrameEncoder:
             yield
 
     @property
+    def encoded(self) -> float:
+        """The share of the encoding that is done after the last picture, 0 to 1."""
+        return self._encoded
+
+    @property
     def said(self) -> str:
         """A few words on the file. Raises the exception of the export."""
         return self._written.result()
@@ -62,6 +69,15 @@ class FrameEncoder:
         self._is_cancelled = not self._written.done()
         next(self.take(None), None)  # if the queue is full, the thread is about to read it and sees the flag
         self._thread.shutdown(wait=False)
+
+    def _run(self, export: Export) -> str:
+        with listening(self._hear):
+            return export(shots=self._shots(), write=self._write)
+
+    def _hear(self, share: float, _: str) -> None:
+        self._check()
+        self._encoded = share
+        self._wake()
 
     def _shots(self) -> Iterator[Shot]:
         while (picture := self._queue.get()) is not None:

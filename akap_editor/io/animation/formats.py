@@ -34,7 +34,8 @@ class AnimationFormat:
     plays; is_video: whether the package av is needed, and width and height must be even; is_sheet: whether
     all frames are in one picture; is_still: whether only the last frame is written; is_page: whether it is a
     web page, which draws poses itself and can wait for the pointer; has_quality: whether it can be lossy;
-    max_fps: frames per second, at most. writer: see `write_animation`.
+    max_fps: frames per second, at most; encoding_share: about the share of the time of an export that is
+    still to come when the last frame is drawn; writer: see `write_animation`.
     """
 
     label: str
@@ -49,6 +50,7 @@ class AnimationFormat:
     is_page: bool = False
     has_quality: bool = False
     max_fps: float = 120.0
+    encoding_share: float = 0.05
 
 
 def _write_pictures(path: Path, frames: Iterable[Picture], *_: object) -> str:
@@ -74,6 +76,7 @@ ANIMATION_FORMATS = (
         write_webp,
         repeats=True,
         has_quality=True,
+        encoding_share=0.65,
     ),
     AnimationFormat(
         "GIF",
@@ -82,9 +85,15 @@ ANIMATION_FORMATS = (
         write_gif,
         repeats=True,
         max_fps=MAX_GIF_FPS,
+        encoding_share=0.5,
     ),
     AnimationFormat(
-        "APNG", ".apng", "An animation: all colors, soft edges, large.", write_apng, repeats=True
+        "APNG",
+        ".apng",
+        "An animation: all colors, soft edges, large.",
+        write_apng,
+        repeats=True,
+        encoding_share=0.4,
     ),
     AnimationFormat(
         "MP4",
@@ -102,6 +111,7 @@ ANIMATION_FORMATS = (
         write_player,
         repeats=True,
         is_page=True,
+        encoding_share=0.9,
     ),
     AnimationFormat("Pictures", "", "A folder with one PNG per frame.", _write_pictures),
     AnimationFormat(
@@ -110,6 +120,7 @@ ANIMATION_FORMATS = (
         "One PNG with all frames, and a JSON index, for games.",
         _write_sheet,
         is_sheet=True,
+        encoding_share=0.2,
     ),
     AnimationFormat("Picture", ".png", "The last frame as a PNG.", _write_last, is_still=True),
 )
@@ -169,7 +180,8 @@ def write_animation(
     order; plays: how often the animation is shown, 0 for forever; formats that do not repeat ignore it;
     write: writes a file when all of it is encoded; overwrite: replace files that ``path`` does not name, too,
     see `replaced_files`; quality: 1 to 100 for a lossy WebP, None for a lossless one; hover: let a web page
-    play only while the pointer is over it. Raises InputError for bad frames or arguments, and if the file
+    play only while the pointer is over it. What is done after the last frame is announced, see `progress`.
+    Raises InputError for bad frames or arguments, and if the file
     cannot be written.
     """
     path = Path(path)

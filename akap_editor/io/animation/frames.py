@@ -7,6 +7,7 @@ from ...errors import InputError
 from ...geometry.validation import as_picture
 from ..images import Picture
 
+ENCODING = "Encoding"  # what is announced while a file is made of all frames
 MAX_ANIMATION_PIXELS = 1_000_000_000  # of all frames together
 
 

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import GifImagePlugin, Image
 
+from ...progress import announce, announced, part
 from ..atomic import Write
 from ..images import Picture
 from .coverage import opaque_pixels
-from .frames import collect_frames, frame_durations
+from .frames import ENCODING, collect_frames, frame_durations
 from .palette import NearestColors, find_palette
 
 MAX_GIF_FPS = 50  # players show at most 50 frames per second of a GIF
@@ -49,17 +50,21 @@ def encode_gif(images: Sequence[Picture], durations: Sequence[int], plays: int) 
 
     plays: how often it is shown, 0 for forever.
     """
-    masks = [opaque_pixels(image) for image in images]
+    with part(0.0, 0.4):
+        masks = [opaque_pixels(image) for image in announced(images, ENCODING)]
+    announce(0.4, ENCODING)
     palette = find_palette(images, masks, _COLORS)
     nearest = NearestColors(palette)
-    indexed = (
-        np.where(mask, nearest.indices(image), np.uint8(_TRANSPARENT))
-        for image, mask in zip(images, masks, strict=True)
-    )
+    with part(0.6, 0.8):
+        indexed = [
+            np.where(mask, nearest.indices(image), np.uint8(_TRANSPARENT))
+            for image, mask in zip(announced(images, ENCODING), masks, strict=True)
+        ]
     height, width = images[0].shape[:2]
-    parts = [_header(width, height, palette, plays if len(images) > 1 else 1)]
-    parts += _frame_blocks(list(indexed), durations)
-    return b"".join([*parts, b";"])
+    blocks = [_header(width, height, palette, plays if len(images) > 1 else 1)]
+    with part(0.8, 1.0):
+        blocks += _frame_blocks(indexed, durations)
+    return b"".join([*blocks, b";"])
 
 
 def _header(width: int, height: int, palette: Picture, plays: int) -> bytes:
@@ -80,14 +85,15 @@ def _frame_blocks(indexed: Sequence[Picture], durations: Sequence[int]) -> Itera
     a rectangle that contains all of them.
     """
     canvas = np.full_like(indexed[0], _TRANSPARENT)
-    for number, (frame, duration) in enumerate(zip(indexed, durations, strict=True)):
+    frames = announced(indexed, ENCODING)
+    for number, (frame, duration) in enumerate(zip(frames, durations, strict=True)):
         following = indexed[number + 1] if number + 1 < len(indexed) else frame
         vanishing = (frame != _TRANSPARENT) & (following == _TRANSPARENT)
         left, top, right, bottom = box = _changed_box((frame != canvas) | vanishing)
         disposal = _CLEAR if vanishing.any() else _KEEP
-        part = frame[top:bottom, left:right].copy()
-        part[part == canvas[top:bottom, left:right]] = _TRANSPARENT
-        yield _frame_block(part, box, duration, disposal)
+        changed = frame[top:bottom, left:right].copy()
+        changed[changed == canvas[top:bottom, left:right]] = _TRANSPARENT
+        yield _frame_block(changed, box, duration, disposal)
         canvas = frame.copy()
         if disposal == _CLEAR:
             canvas[top:bottom, left:right] = _TRANSPARENT
@@ -101,7 +107,7 @@ def _changed_box(changed: NDArray[np.bool_]) -> Box:
     return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
 
 
-def _frame_block(part: Picture, box: Box, duration: int, disposal: int) -> bytes:
-    picture = Image.fromarray(part)
+def _frame_block(changed: Picture, box: Box, duration: int, disposal: int) -> bytes:
+    picture = Image.fromarray(changed)
     options = {"transparency": _TRANSPARENT, "duration": duration, "disposal": disposal, "interlace": 0}
     return b"".join(GifImagePlugin.getdata(picture, box[:2], **options))

@@ -20,10 +20,12 @@ from ...editor.framing import Color, output_size
 from ...errors import InputError
 from ...geometry.validation import Floats
 from ...overlap.seams import CutMesh
+from ...progress import announced
 from ...resources import resource
 from ..atomic import Write
 from ..images import Picture
 from ..painter import FramedPose
+from .frames import ENCODING
 
 MAX_TEXTURE_SIDE = 4096  # pixels: what practically every browser can draw
 STEP = 1 / 32  # pixels of the drawing: poses are rounded to it, or to more where they reach far
@@ -108,7 +110,7 @@ class _Contents:
         self._order_arrays: list[tuple[bytes, ...]] = []
         self._poses: list[list[Codes]] = []  # of each mesh
         self._found: dict[tuple[object, ...], int] = {}  # numbers of what is stored
-        for each in frames:
+        for each in announced(frames, ENCODING):
             self._add(each)
         self.flows = _flows(poses)
 

@@ -6,6 +6,7 @@ import pytest
 from akap_editor.errors import InputError
 from akap_editor.io.animation.formats import ANIMATION_FORMATS, animation_format, write_animation
 from akap_editor.io.images import read_image
+from akap_editor.progress import Cancelled, listening
 
 
 def dot(step, height=20, width=30):
@@ -72,3 +73,31 @@ def test_a_rate_out_of_range_is_refused(tmp_path, fps):
 def test_a_number_of_plays_out_of_range_is_refused(tmp_path):
     with pytest.raises(InputError, match="plays: expected a number from 0 to 65535, got -1"):
         write_animation(tmp_path / "a.gif", [dot(0)], 10, plays=-1)
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".webp", ".apng"])
+def test_encoding_after_the_last_frame_announces_how_far_it_is(tmp_path, suffix):
+    heard, drawn = [], []
+
+    def shots():
+        for step in range(6):
+            drawn.append(step)
+            yield dot(step)
+
+    with listening(lambda share, _: heard.append((share, len(drawn)))):
+        write_animation(tmp_path / f"a{suffix}", shots(), 10)
+    shares = [share for share, count in heard if count == 6]
+    assert len(shares) >= 6
+    assert shares == sorted(shares)
+    assert 0 <= shares[0] < 0.2
+    assert 0.6 < shares[-1] <= 1
+
+
+def test_encoding_ends_where_it_is_cancelled(tmp_path):
+    def cancel(share, _):
+        if share > 0.3:
+            raise Cancelled
+
+    with listening(cancel), pytest.raises(Cancelled):
+        write_animation(tmp_path / "a.webp", map(dot, range(6)), 10)
+    assert list(tmp_path.iterdir()) == []

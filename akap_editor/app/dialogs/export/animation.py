@@ -37,6 +37,7 @@ PREFERENCE = "animation"  # name of the stored options
 DIALOG_FORMATS = tuple(each for each in ANIMATION_FORMATS if not each.is_still)
 FRAME_RATES = (12, 24, 30, 60)
 LIMITS = {"fps": (1.0, 120.0), "size": (16, 8192), "speed": (0.01, 100.0)}
+_POSING_SHARE = 0.4  # of the time until the last frame is drawn
 _WIDTH, _HEIGHT, _LIST_WIDTH = 600, 346, 190  # design points
 
 T = TypeVar("T")
@@ -215,12 +216,14 @@ def export_animation(state: AppState, options: AnimationExportOptions, path: Pat
 def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, sheet: bool) -> Steps:
     """Compute the poses, then draw the pictures, which another thread encodes."""
     times = options.frame_times(*state.timeline.playback.played_range)
+    chosen = animation_format(path, sheet)
+    drawn = 1 - chosen.encoding_share
+    posed = _POSING_SHARE * drawn
     frames = []
     for number, time in enumerate(times):
         frames.append(frame_at(state, time))
-        yield Progress(0.3 * number / len(times), f"Posing frame {number + 1} of {len(times)}")
+        yield Progress(posed * number / len(times), f"Posing frame {number + 1} of {len(times)}")
     frames = options.playing_order(frames, frames[0], frames[-1])
-    chosen = animation_format(path, sheet)
     shots = animation_shots(
         chosen, frames, state.offscreen_renderer, options.size, options.visible_background
     )
@@ -236,13 +239,14 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
     encoder = FrameEncoder(export, state.wake)
     try:
         for number, shot in enumerate(shots):
-            share = 0.3 + 0.6 * number / len(frames)
+            share = posed + (drawn - posed) * number / len(frames)
             progress = Progress(share, f"Drawing frame {number + 1} of {len(frames)}")
             yield progress
             for _ in encoder.take(shot):
                 yield progress._replace(is_blocked=True)
         for _ in encoder.finish():
-            yield Progress(0.95, f"Writing {display_name(path)}", is_blocked=True)
+            share = drawn + chosen.encoding_share * encoder.encoded
+            yield Progress(share, f"Encoding {display_name(path)}", is_blocked=True)
     finally:
         encoder.close()
     state.notice = f"Exported {display_name(path)}, {len(frames)} frames, {encoder.said}"

@@ -166,6 +166,22 @@ def size_of(path):
         return f"{opened.size[0]} × {opened.size[1]} px"
 
 
+def test_the_progress_of_a_long_encoding_is_shown(keyed, tmp_path):
+    state, shares, texts = keyed.state, [], []
+    options = AnimationExportOptions("WebP", fps=10, size=60)
+    export_animation(state, options, tmp_path / "out.webp")
+    steps = None
+    while steps is None:  # the task begins after the next frame
+        keyed.frame()
+        steps = state.task and state.task.steps
+    for progress in steps:
+        shares.append(progress.share)
+        texts.append(progress.text)
+    assert shares == sorted(shares)
+    drawing = [share for share, text in zip(shares, texts, strict=True) if text.startswith("Drawing")]
+    assert all(share <= 0.35 for share in drawing), "most of the time is still to come"
+
+
 def test_a_web_page_can_wait_for_the_pointer(keyed, tmp_path):
     keyed.state.folder = tmp_path
     keyed.key(CTRL | SHIFT | imgui.Key.e)
@@ -267,7 +283,7 @@ def test_an_export_is_cancelled_while_all_of_it_is_encoded(keyed, tmp_path, monk
 
     monkeypatch.setattr(Image.Image, "save", slow)
     export_animation(keyed.state, AnimationExportOptions(), tmp_path / "out.webp")
-    while not at_work.is_set() or not keyed.state.task.progress.text.startswith("Writing"):
+    while not at_work.is_set() or not keyed.state.task.progress.text.startswith("Encoding"):
         keyed.frame()
     keyed.dialog("Exporting out.webp", "Cancel")
     assert keyed.state.task is None
