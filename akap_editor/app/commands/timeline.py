@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...editor.animation.keyframe_playback import TIME_STEP, KeyframePlayback
+from ...editor.animation.keyframe_playback import KeyframePlayback
+from ...editor.animation.keyframe_times import TIME_STEP
 from ...editor.animation.playback import Playback
 from ..app_state import AppState
 from ..dialogs.export.animation import ExportAnimationDialog
@@ -35,6 +36,11 @@ def has_keyframes(state: AppState) -> bool:
     """Whether the timeline is visible and shows keyframes."""
     has_any = bool(state.timeline.keyframe_playback.animation.keyframes)
     return has_drawing(state) and state.timeline.shows_keyframes and has_any
+
+
+def has_several_keyframes(state: AppState) -> bool:
+    """Whether the timeline is visible and shows two keyframes or more."""
+    return has_keyframes(state) and len(state.timeline.keyframe_playback.animation.keyframes) > 1
 
 
 def has_selected_keyframes(state: AppState) -> bool:
@@ -151,6 +157,16 @@ DUPLICATE_KEYFRAME = Command(
     "",
     has_keyframes,
 )
+REVERSE_KEYFRAMES = Command(
+    "Reverse Keyframes", _on_keyframes(KeyframePlayback.reverse_keyframes), (), "", has_several_keyframes
+)
+DUPLICATE_REVERSED = Command(
+    "Duplicate Keyframes Reversed",
+    _on_keyframes(lambda playback: playback.reverse_keyframes(copy=True)),
+    (),
+    "",
+    has_several_keyframes,
+)
 SELECT_ALL_KEYFRAMES = Command("Select All Keyframes", _on_keyframes(_select_all), (), "", has_keyframes)
 PREVIOUS_KEYFRAME = Command(
     "Previous Keyframe",
@@ -196,7 +212,8 @@ ANIMATION: tuple[Command | None, ...] = (
     *(PLAY, EXPORT_ANIMATION, None),
     *(STEP_BACK, STEP_FORWARD, SECOND_BACK, SECOND_FORWARD, GO_TO_START, GO_TO_END, None),
     *(SET_RANGE_START, SET_RANGE_END, CLEAR_RANGE, None),
-    *(ADD_KEYFRAME, DELETE_KEYFRAME, DUPLICATE_KEYFRAME, SELECT_ALL_KEYFRAMES, None),
+    *(ADD_KEYFRAME, DELETE_KEYFRAME, DUPLICATE_KEYFRAME, SELECT_ALL_KEYFRAMES),
+    *(REVERSE_KEYFRAMES, DUPLICATE_REVERSED, None),
     *(PREVIOUS_KEYFRAME, NEXT_KEYFRAME, MOVE_EARLIER, MOVE_LATER, None),
     *(ONION_SKIN, ZOOM_IN_TIMELINE, ZOOM_OUT_TIMELINE),
 )

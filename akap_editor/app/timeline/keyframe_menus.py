@@ -3,7 +3,8 @@
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...editor.animation.keyframe_playback import MAX_ONION_POSES, TIME_STEP, KeyframePlayback, OnionSkin
+from ...editor.animation.keyframe_playback import MAX_ONION_POSES, KeyframePlayback, OnionSkin
+from ...editor.animation.keyframe_times import TIME_STEP
 from ...editor.document.easing import EASING_LABELS, KEYFRAME_EASINGS
 from ...editor.document.keyframes import Keyframe
 from .. import widgets
@@ -61,6 +62,11 @@ def draw_keyframe_menu(state: AppState) -> None:
         state.run_reporting_errors(lambda: _update_keyframe(playback, keyframe.time))
     if imgui.menu_item("Duplicate", "Ctrl+Shift+K", False)[0]:
         state.run_reporting_errors(playback.duplicate_keyframes)
+    if len(playback.selected) > 1:
+        if imgui.menu_item("Reverse", "", False)[0]:
+            state.run_reporting_errors(playback.reverse_keyframes)
+        if imgui.menu_item("Duplicate Reversed", "", False)[0]:
+            state.run_reporting_errors(lambda: playback.reverse_keyframes(copy=True))
     if imgui.menu_item("Delete", "Shift+K", False)[0]:
         state.run_reporting_errors(playback.delete_keyframes)
 

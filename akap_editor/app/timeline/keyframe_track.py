@@ -6,7 +6,8 @@ from typing import Literal
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ...editor.animation.keyframe_playback import KeyframePlayback, stretch_times
+from ...editor.animation.keyframe_playback import KeyframePlayback
+from ...editor.animation.keyframe_times import stretch_times
 from ...editor.animation.playback import VisibleRange
 from ...editor.document.easing import EASING_LABELS
 from .. import widgets

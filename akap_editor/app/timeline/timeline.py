@@ -2,7 +2,8 @@
 
 from typing import Literal
 
-from ...editor.animation.keyframe_playback import TIME_STEP, KeyframePlayback
+from ...editor.animation.keyframe_playback import KeyframePlayback
+from ...editor.animation.keyframe_times import TIME_STEP
 from ...editor.animation.playback import Playback
 from ...editor.animation.session_playback import SessionPlayback
 from ...editor.document.named_poses import NamedPose

@@ -1,6 +1,6 @@
 """Playback and editing of the keyframes: scrub, play, select, drag, ease; and the onion skin."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from time import monotonic
 from typing import Literal
@@ -23,9 +23,9 @@ from ..session.session import Session
 from .crossing_blend import CrossingBlend
 from .frames import Frame
 from .keyframe_poses import KeyframePoses
+from .keyframe_times import mirror_easings, mirror_times
 from .playback import Playback, VisibleRange
 
-TIME_STEP = 0.05  # seconds: times snap to multiples of it, and keys move by it
 MAX_ONION_POSES = 6  # on each side
 _DUPLICATE_GAP = 0.5  # seconds between the last keyframe and duplicates
 _MIN_TOTAL_SECONDS = 2.0  # shown by the timeline, even if the animation is shorter
@@ -278,6 +278,24 @@ class KeyframePlayback(Playback):
             shift = self.duration + _DUPLICATE_GAP - times[0]
             self._move({time: _within_limits(time + shift) for time in times}, copy=True)
 
+    def reverse_keyframes(self, copy: bool = False) -> None:
+        """Play the selected keyframes, or all, backwards; copy: after the last one, and the others stay."""
+        animation = self.animation
+        times = sorted(self.selected) if len(self.selected) > 1 else list(animation.times)
+        if len(times) < 2:
+            return
+        start = self.duration + _DUPLICATE_GAP if copy else times[0]
+        moves = {old: _within_limits(new) for old, new in mirror_times(times, start).items()}
+        easings = mirror_easings([animation.easing_after(each) for each in animation.keyframes_at(times)])
+        edits = [
+            SetEasing([moves[time]], None if ease == animation.ease else ease)
+            for time, ease in zip(times, easings, strict=True)
+        ]
+        self._edit(_counted("Duplicate" if copy else "Reverse", times), MoveKeyframes(moves, copy), *edits)
+        self.selected = frozenset(moves.values())
+        if self.is_previewing:
+            self._show()
+
     def shift_keyframes(self, by: float) -> None:
         """Move the selected keyframes, or the one at the playhead, by seconds; the first not before 0."""
         times = self._affected_times()
@@ -364,16 +382,6 @@ def animation_frame(
     mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
     pose, crossings = animation_crossings(poses, blend or CrossingBlend(), mesh, pins, animation, time)
     return Frame(document.drawing, pose, draw_order(mesh, pins, pose, crossings))
-
-
-def stretch_times(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:
-    """Old times to new ones, when ``dragged`` moves ``to`` a time and the first or the last one stays."""
-    ascending = sorted(times)
-    fixed = ascending[-1] if dragged == ascending[0] else ascending[0]
-    span = dragged - fixed
-    scale = (to - fixed) / span if span else 1.0
-    min_scale = TIME_STEP / max(abs(span), TIME_STEP)
-    return {time: fixed + max(scale, min_scale) * (time - fixed) for time in ascending}
 
 
 def _within_limits(time: float) -> float:

@@ -68,6 +68,11 @@ class Animation:
         """The name of the easing from a keyframe to the next."""
         return keyframe.ease or self.ease
 
+    def keyframes_at(self, times: Iterable[float]) -> list[Keyframe]:
+        """The keyframes at some of the times of the animation."""
+        chosen = set(times)
+        return [keyframe for keyframe in self.keyframes if keyframe.time in chosen]
+
     def keyframes_around(self, time: float) -> tuple[Keyframe, Keyframe, float]:
         """The keyframes before and after a time, and the eased share of the motion between them, 0 to 1.
 

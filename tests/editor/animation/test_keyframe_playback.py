@@ -10,9 +10,9 @@ from akap_editor.editor import gestures
 from akap_editor.editor.animation.keyframe_playback import (
     KeyframePlayback,
     animation_frame,
-    stretch_times,
 )
 from akap_editor.editor.animation.keyframe_poses import KeyframePoses
+from akap_editor.editor.animation.keyframe_times import mirror_easings, stretch_times
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing
 from akap_editor.editor.document.remesh import remesh_drawing
@@ -178,6 +178,49 @@ def test_a_reopened_drawing_has_its_playhead_at_the_keyframe_that_it_shows(playb
 )
 def test_stretching_keeps_the_other_end(dragged, to, expected):
     assert tuple(stretch_times((0.0, 1.0, 2.0), dragged, to).values()) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("ease", ["none", "in", "out", "in-out", "smooth"])
+def test_reversed_keyframes_play_the_motion_backwards(playback, pinned, ease):
+    playback.selected = frozenset({0.0})
+    playback.set_easing(ease)
+    playback.set_keyframe(1.5, pinned.session.drawing.mesh.vertices)
+    playback.selected = frozenset()
+    moments = np.linspace(0, 1.5, 7)
+    forwards = [playback.pose(time) for time in moments]
+    depth = pinned.session.history.depth
+    playback.reverse_keyframes()
+    assert pinned.session.history.depth == depth + 1
+    assert times(pinned) == (0.0, 0.5, 1.5)
+    for time, pose in zip(moments, forwards[::-1], strict=True):
+        np.testing.assert_allclose(playback.pose(time), pose, atol=1e-6)
+    playback.reverse_keyframes()
+    for time, pose in zip(moments, forwards, strict=True):
+        np.testing.assert_allclose(playback.pose(time), pose, atol=1e-6)
+
+
+def test_duplicates_in_reverse_lead_back(playback, pinned):
+    poses = [each.positions for each in playback.animation.keyframes]
+    playback.selected = frozenset({0.0, 1.0})
+    playback.reverse_keyframes(copy=True)
+    assert times(pinned) == (0.0, 1.0, 1.5, 2.5)
+    assert playback.selected == {1.5, 2.5}
+    for each, pose in zip(playback.animation.keyframes, [*poses, *poses[::-1]], strict=True):
+        np.testing.assert_array_equal(each.positions, pose)
+
+
+def test_only_selected_keyframes_are_reversed(playback, pinned):
+    playback.set_keyframe(1.5, pinned.session.drawing.mesh.vertices)
+    before = {each.time: each.positions for each in playback.animation.keyframes}
+    playback.selected = frozenset({1.0, 1.5})
+    playback.reverse_keyframes()
+    after = {each.time: each.positions for each in playback.animation.keyframes}
+    for old, new in ((0.0, 0.0), (1.0, 1.5), (1.5, 1.0)):
+        np.testing.assert_array_equal(after[new], before[old])
+
+
+def test_easings_of_intervals_are_mirrored():
+    assert mirror_easings(["in", "out", "hold", "smooth"]) == ["smooth", "out", "in", "hold"]
 
 
 def test_playing_goes_on_and_starts_over(playback, pinned, clock):

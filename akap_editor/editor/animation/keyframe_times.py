@@ -1,0 +1,31 @@
+"""New times of keyframes that are stretched or reversed, and the easings that go with them."""
+
+from collections.abc import Iterable, Sequence
+
+TIME_STEP = 0.05  # seconds: times snap to multiples of it, and keys move by it
+_MIRRORED = {"in": "out", "out": "in"}  # easings of an interval that is played backwards; others stay
+
+
+def stretch_times(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:
+    """Old times to new ones, when ``dragged`` moves ``to`` a time and the first or the last one stays."""
+    ascending = sorted(times)
+    fixed = ascending[-1] if dragged == ascending[0] else ascending[0]
+    span = dragged - fixed
+    scale = (to - fixed) / span if span else 1.0
+    min_scale = TIME_STEP / max(abs(span), TIME_STEP)
+    return {time: fixed + max(scale, min_scale) * (time - fixed) for time in ascending}
+
+
+def mirror_times(times: Iterable[float], start: float) -> dict[float, float]:
+    """Old times to new ones in the reverse order, the first of which is ``start``."""
+    last = max(times := list(times))
+    return {time: start + last - time for time in times}
+
+
+def mirror_easings(easings: Sequence[str]) -> list[str]:
+    """The easings after keyframes that are played backwards, in their old order.
+
+    easings: those after them now; that after the last one leads on from the group, and does so afterwards.
+    """
+    backwards = [_MIRRORED.get(name, name) for name in easings[:-1]]
+    return [easings[-1], *backwards]
