@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..errors import SolverError
-from ..geometry.validation import Complexes, Floats, Ints
+from ..geometry.validation import Complexes, Floats, Indices, Ints
 from . import multifrontal
 from .dissection import Dissection
 from .fronts import SymbolicCholesky
@@ -23,6 +23,14 @@ class SymmetricPattern:
     def count(self) -> int:
         """The number of nonzeros."""
         return len(self.rows)
+
+    def neighbors(self) -> tuple[Indices, Indices]:
+        """The later neighbors of each of n vertices with two unknowns, as in `multifrontal.Matrix`."""
+        first = self.columns % 2 == 0
+        columns, rows = self.columns[first] // 2, self.rows[first] // 2
+        is_block = (self.rows[first] % 2 == 0) & (rows > columns)
+        starts = np.searchsorted(columns[is_block], np.arange(self.size // 2 + 1))
+        return starts.astype(np.uint32), rows[is_block].astype(np.uint32)
 
     def restrict(self, indices: Ints) -> tuple["SymmetricPattern", Ints]:
         """The pattern of the submatrix of some rows and columns, ascending ``indices``.

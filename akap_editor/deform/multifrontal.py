@@ -229,9 +229,9 @@ def _backward(rows: Any, own: int, size: int, x: Any) -> None:
 class Matrix(NamedTuple):  # numba's caches on disk refer to this name
     """A symmetric matrix with two unknowns for each vertex, by the columns of its lower triangle.
 
-    starts: (2n,) int32, the first nonzero of each column; vertices: (z,) int32 vertex of each nonzero's row;
-    nonzeros: (z,) float64. A column of x has the vertex's own 2 entries, one of y its last one; then both
-    have two entries for each neighbor, in the same order.
+    starts: (n + 1,) uint32, where the later neighbors of each vertex begin in vertices: (b,) uint32;
+    nonzeros: (3n + 4b,) float64, sorted by column. Vertex j has 3 of its own and 4 for each later neighbor:
+    first the column of x, with two entries of its own and two for each neighbor, then that of y, with one.
     """
 
     starts: Indices
@@ -253,7 +253,7 @@ class Preconditioner(NamedTuple):  # numba's caches on disk refer to this name
     front: Any
 
 
-@compiled
+@compiled_with_fast_sums
 def dot(a: Complexes, b: Complexes) -> float:
     """Re aᴴ b of two vectors (n,). BLAS would use threads, which wait for one another on a busy machine."""
     total = 0.0
@@ -262,19 +262,22 @@ def dot(a: Complexes, b: Complexes) -> float:
     return total
 
 
-@compiled
+@compiled_with_fast_sums
 def multiply(matrix: Matrix, values: Complexes, result: Complexes) -> None:
     """Set ``result`` (n,) to A x for x = ``values`` (n,)."""
     starts, vertices, nonzeros = matrix
     result[:] = 0
     for j in range(len(values)):
-        first, second, x = starts[2 * j], starts[2 * j + 1], values[j]  # columns of x and y
-        real = nonzeros[first] * x.real + nonzeros[first + 1] * x.imag
-        imaginary = nonzeros[first + 1] * x.real + nonzeros[second] * x.imag
-        shift = second - first - 1  # from an entry to the entry of the same row in the second column
-        for k in range(first + 2, second, 2):
+        begin, end, x = starts[j], starts[j + 1], values[j]
+        p = 3 * j + 4 * begin  # the first entry of the column of x; the neighbors' follow in both columns
+        q = p + 2 + 2 * (end - begin)  # of the column of y
+        real = nonzeros[p] * x.real + nonzeros[p + 1] * x.imag
+        imaginary = nonzeros[p + 1] * x.real + nonzeros[q] * x.imag
+        p, q = p + 2, q + 1
+        for k in range(begin, end):
             i = vertices[k]
-            a, b, c, d = nonzeros[k], nonzeros[k + 1], nonzeros[k + shift], nonzeros[k + shift + 1]
+            a, b, c, d = nonzeros[p], nonzeros[p + 1], nonzeros[q], nonzeros[q + 1]
+            p, q = p + 2, q + 2
             y = values[i]
             real += a * y.real + b * y.imag
             imaginary += c * y.real + d * y.imag
@@ -398,7 +401,7 @@ def _project_on_earlier(
             residual[k] -= share * second_image[k]
 
 
-@compiled
+@compiled_with_fast_sums
 def _multiply_pair(
     matrix: Matrix, values: Complexes, others: Complexes, result: Complexes, other_result: Complexes
 ) -> None:
@@ -406,14 +409,17 @@ def _multiply_pair(
     starts, vertices, nonzeros = matrix
     result[:], other_result[:] = 0, 0
     for j in range(len(values)):
-        first, second, x, u = starts[2 * j], starts[2 * j + 1], values[j], others[j]
-        a, b, d = nonzeros[first], nonzeros[first + 1], nonzeros[second]
+        begin, end, x, u = starts[j], starts[j + 1], values[j], others[j]
+        p = 3 * j + 4 * begin
+        q = p + 2 + 2 * (end - begin)
+        a, b, d = nonzeros[p], nonzeros[p + 1], nonzeros[q]
         x_real, x_imaginary = a * x.real + b * x.imag, b * x.real + d * x.imag
         u_real, u_imaginary = a * u.real + b * u.imag, b * u.real + d * u.imag
-        shift = second - first - 1
-        for k in range(first + 2, second, 2):
+        p, q = p + 2, q + 1
+        for k in range(begin, end):
             i = vertices[k]
-            a, b, c, d = nonzeros[k], nonzeros[k + 1], nonzeros[k + shift], nonzeros[k + shift + 1]
+            a, b, c, d = nonzeros[p], nonzeros[p + 1], nonzeros[q], nonzeros[q + 1]
+            p, q = p + 2, q + 2
             y, v = values[i], others[i]
             x_real += a * y.real + b * y.imag
             x_imaginary += c * y.real + d * y.imag

@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
-from akap_editor.deform.cholesky import CholeskyFactors
+from akap_editor.deform.cholesky import CholeskyFactors, SymmetricPattern
 from akap_editor.deform.dissection import dissect
 from akap_editor.deform.fronts import SymbolicCholesky
 from akap_editor.deform.multifrontal import Matrix, iterate, multiply
@@ -32,8 +32,7 @@ class Case:
         self.is_diagonal = rows == columns
         self.symbolic = SymbolicCholesky(rows, columns, 2, starts)
         self.size = 2 * n
-        self.starts = np.searchsorted(columns, np.arange(self.size + 1)).astype(np.uint32)
-        self.vertices = (rows // 2).astype(np.uint32)
+        self.neighbors = SymmetricPattern(rows, columns, self.size).neighbors()
         self.nonzeros = self.nonzeros_at(to_complex(self.mesh.vertices))
 
     def nonzeros_at(self, pose):
@@ -45,7 +44,7 @@ class Case:
         return csc_array(lower + lower.T - csc_array(np.diag(lower.diagonal())))
 
     def matrix(self, nonzeros):
-        return Matrix(self.starts, self.vertices, nonzeros)
+        return Matrix(*self.neighbors, nonzeros)
 
 
 def random_values(count, seed=0):

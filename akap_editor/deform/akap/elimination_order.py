@@ -18,9 +18,10 @@ class EliminationOrder:
     """
 
     def __init__(self, mesh: TriMesh) -> None:
-        self._vertices, self.starts = dissect(mesh.vertices, mesh.edges)
-        n, m = len(self._vertices), len(mesh.faces)
-        self._numbers = np.empty(n, dtype=np.int32)
+        order, self.starts = dissect(mesh.vertices, mesh.edges)
+        self._vertices = order.astype(np.intp)
+        n, m = len(order), len(mesh.faces)
+        self._numbers = np.empty(n, dtype=np.intp)
         self._numbers[self._vertices] = np.arange(n)
         self._faces = np.argsort(self._numbers[mesh.faces].max(axis=1), kind="stable")
         self._face_numbers = np.empty(m, dtype=np.int32)

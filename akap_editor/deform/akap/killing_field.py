@@ -87,13 +87,14 @@ class KillingSystem:
         """Choose the constraints C of eq. 3, k points, and the faces that rotate with pins."""
         self._points, self._rotation = points, rotation
         self._pin_components = self._mesh.component[self._mesh.faces[points.faces, 0]]
+        _, first, group = np.unique(self._pin_components, return_index=True, return_inverse=True)
+        self._first_pins = first[group]  # of each pin's component
         self._constrain(self._free_components(self._mesh.vertices))
 
     def _free_components(self, positions: Floats) -> NDArray[np.bool_]:
         """Which components (c,) need an anchor: those without two pins apart in the pose (n, 2)."""
         pins = self._mesh.evaluate(self._points, positions)
-        _, first, group = np.unique(self._pin_components, return_index=True, return_inverse=True)
-        apart = ((pins - pins[first][group]) ** 2).sum(axis=1) > self._same_place**2
+        apart = ((pins - pins[self._first_pins]) ** 2).sum(axis=1) > self._same_place**2
         free = np.ones(len(self._first_faces), dtype=bool)
         free[self._pin_components[apart]] = False
         if self._rotation is not None:

@@ -53,8 +53,7 @@ class PreconditionedCholesky:
     def __init__(self, pattern: SymmetricPattern, exact: bool, starts: Ints, confirm: bool = True) -> None:
         n = pattern.size // 2
         self.symbolic = SymbolicCholesky(pattern.rows, pattern.columns, 2, starts)
-        column_starts = np.searchsorted(pattern.columns, np.arange(pattern.size + 1)).astype(np.uint32)
-        self._matrix = Matrix(column_starts, (pattern.rows // 2).astype(np.uint32), np.empty(0))
+        self._matrix = Matrix(*pattern.neighbors(), np.empty(0))
         self._exact, self._confirm = exact, confirm
         self._is_small = n < MIN_SINGLE_VERTICES
         self._precision: Precision = np.float64 if exact or self._is_small else np.float32

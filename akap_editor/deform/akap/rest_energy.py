@@ -30,29 +30,28 @@ class SymmetricDirichlet:
 
     def __init__(self, mesh: TriMesh, stiffness: Floats | None = None) -> None:
         dx, dy, areas = hat_gradients(mesh.vertices, mesh.faces)
-        self._faces, self._count = mesh.faces.astype(np.uint32), len(mesh.vertices)
+        self._faces = mesh.faces.astype(np.uint32)
         self._hats = dx + 1j * dy  # gradients of the hat functions, (m, 3)
         self._weights = areas if stiffness is None else areas * stiffness
         self._areas = areas
 
-    def columns(self, positions: Complexes) -> Complexes:
-        """The columns of the Jacobians, (m, 2), of a pose (n,); linear in the pose."""
-        return _columns(positions, self._faces, self._hats)
+    def evaluate(self, positions: Complexes) -> tuple[float, Complexes, Complexes]:
+        """The energy of a pose (n,), its derivative by the vertices, (n,), and the columns (m, 2).
 
-    def value(self, columns: Complexes) -> float:
-        """The energy, square pixels, of a pose with these columns (m, 2); 4 Σ A_f at rest."""
-        return _value(columns, self._weights)
-
-    def gradient(self, columns: Complexes) -> Complexes:
-        """The derivative of the energy by the vertices, (n,), of a pose with these columns (m, 2)."""
-        return _gradient(columns, self._weights, self._faces, self._hats, self._count)
-
-    def step_to_first_flip(self, columns: Complexes, change: Complexes) -> float:
-        """The step length at which the first face flips; infinity if none does.
-
-        columns, change: (m, 2), those of the pose and of the direction (Smith and Schaefer 2015).
+        The energy is in square pixels, 4 Σ A_f at rest. If it is infinite, the derivative means nothing.
         """
-        return _step_to_first_flip(columns, change)
+        return _evaluate(positions, self._faces, self._hats, self._weights)
+
+    def direction(self, columns: Complexes, direction: Complexes) -> tuple[Complexes, float]:
+        """The columns of a direction (n,), (m, 2), and the step length at which the first face flips.
+
+        columns: (m, 2) of the pose. The step length is infinity if no face flips (Smith and Schaefer 2015).
+        """
+        return _direction(columns, direction, self._faces, self._hats)
+
+    def value(self, columns: Complexes, change: Complexes, step_length: float) -> float:
+        """The energy of the pose with the columns J + t D, for ``columns`` J and their ``change`` D, (m, 2)."""
+        return _value(columns, change, step_length, self._weights)
 
     def half_hessian(
         self,
@@ -86,53 +85,46 @@ def _square(a: complex) -> float:
 
 
 @compiled
-def _columns(positions: Complexes, faces: Indices, hats: Complexes) -> Complexes:
-    result = np.empty((len(faces), 2), dtype=np.complex128)
-    for f in range(len(faces)):
-        jx = jy = 0.0j
-        for k in range(3):
-            point = positions[faces[f, k]]
-            jx += hats[f, k].real * point
-            jy += hats[f, k].imag * point
-        result[f, 0], result[f, 1] = jx, jy
-    return result
+def _evaluate(
+    positions: Complexes, faces: Indices, hats: Complexes, weights: Floats
+) -> tuple[float, Complexes, Complexes]:
+    """As `SymmetricDirichlet.evaluate`, by ∂det/∂jx = −i jy and ∂det/∂jy = i jx.
 
-
-@compiled
-def _value(columns: Complexes, weights: Floats) -> float:
+    The three hat gradients of a face add up to zero, so that two of them and two edges do.
+    """
+    gradient, columns = np.zeros_like(positions), np.empty((len(faces), 2), dtype=np.complex128)
     total = 0.0
-    for f in range(len(columns)):
-        jx, jy = columns[f, 0], columns[f, 1]
-        determinant = _cross(jx, jy)
-        if not determinant > 0:
-            return np.inf
-        total += weights[f] * (_square(jx) + _square(jy)) * (1 + 1 / (determinant * determinant))
-    return total
-
-
-@compiled
-def _gradient(columns: Complexes, weights: Floats, faces: Indices, hats: Complexes, count: int) -> Complexes:
-    """The gradient (count,), by ∂det/∂jx = −i jy and ∂det/∂jy = i jx."""
-    result = np.zeros(count, dtype=np.complex128)
     for f in range(len(faces)):
-        jx, jy = columns[f, 0], columns[f, 1]
-        inverse = 1 / _cross(jx, jy)
+        i, j, k, a, b = faces[f, 0], faces[f, 1], faces[f, 2], hats[f, 0], hats[f, 1]
+        p, q = positions[i] - positions[k], positions[j] - positions[k]
+        jx, jy = a.real * p + b.real * q, a.imag * p + b.imag * q
+        columns[f, 0], columns[f, 1] = jx, jy
+        determinant, square = _cross(jx, jy), _square(jx) + _square(jy)
+        inverse = 1 / determinant
+        total += weights[f] * square * (1 + inverse * inverse) if determinant > 0 else np.inf
         along = 2 * weights[f] * (1 + inverse * inverse)
-        across = 2 * weights[f] * (_square(jx) + _square(jy)) * inverse * inverse * inverse
+        across = 2 * weights[f] * square * inverse * inverse * inverse
         of_jx = complex(along * jx.real - across * jy.imag, along * jx.imag + across * jy.real)
         of_jy = complex(along * jy.real + across * jx.imag, along * jy.imag - across * jx.real)
-        for k in range(3):
-            result[faces[f, k]] += hats[f, k].real * of_jx + hats[f, k].imag * of_jy
-    return result
+        of_p, of_q = a.real * of_jx + a.imag * of_jy, b.real * of_jx + b.imag * of_jy
+        gradient[i] += of_p
+        gradient[j] += of_q
+        gradient[k] -= of_p + of_q
+    return total, gradient, columns
 
 
 @compiled
-def _step_to_first_flip(columns: Complexes, change: Complexes) -> float:
-    """The least positive root t, over the faces, of the quadratic polynomials det(J + t D)."""
-    shortest = np.inf
-    for f in range(len(columns)):
+def _direction(
+    columns: Complexes, direction: Complexes, faces: Indices, hats: Complexes
+) -> tuple[Complexes, float]:
+    """The step length is the least positive root t, over the faces, of the polynomials det(J + t D)."""
+    change, shortest = np.empty_like(columns), np.inf
+    for f in range(len(faces)):
+        a, b, last = hats[f, 0], hats[f, 1], direction[faces[f, 2]]
+        p, q = direction[faces[f, 0]] - last, direction[faces[f, 1]] - last
+        dx, dy = a.real * p + b.real * q, a.imag * p + b.imag * q
+        change[f, 0], change[f, 1] = dx, dy
         jx, jy = columns[f, 0], columns[f, 1]
-        dx, dy = change[f, 0], change[f, 1]
         start, slope, square = _cross(jx, jy), _cross(dx, jy) + _cross(jx, dy), _cross(dx, dy)
         # The root nearest to zero as 2 c / (−b ± √(b² − 4ac)), which needs no division by a small a.
         discriminant = slope * slope - 4 * square * start
@@ -140,7 +132,19 @@ def _step_to_first_flip(columns: Complexes, change: Complexes) -> float:
             denominator = np.sqrt(discriminant) - slope
             if denominator > 0:
                 shortest = min(shortest, 2 * start / denominator)
-    return shortest
+    return change, shortest
+
+
+@compiled
+def _value(columns: Complexes, change: Complexes, step_length: float, weights: Floats) -> float:
+    total = 0.0
+    for f in range(len(columns)):
+        jx, jy = columns[f, 0] + step_length * change[f, 0], columns[f, 1] + step_length * change[f, 1]
+        determinant = _cross(jx, jy)
+        if not determinant > 0:
+            return np.inf
+        total += weights[f] * (_square(jx) + _square(jy)) * (1 + 1 / (determinant * determinant))
+    return total
 
 
 @compiled

@@ -43,6 +43,7 @@ class RestMemory:
         """Choose the pins, k points of the mesh, and the faces that rotate with them."""
         pinned = np.unique(self._mesh.component[self._mesh.faces[points.faces, :1]])
         self._is_unpinned = ~np.isin(self._mesh.component, pinned)
+        self._has_unpinned = bool(self._is_unpinned.any())
         self._rotation = rotation
 
     def descend(self, pose: Complexes, goals: PinGoals, max_step: float, is_moving: bool) -> Complexes:
@@ -53,30 +54,34 @@ class RestMemory:
         factors. If that is no good model, or if the drawing only settles, Newton's direction is taken.
         """
         energy, rotation = self._energy, self._rotation
-        columns, offsets = energy.columns(pose), self._system.at_pins(pose) - goals.positions
-        if energy.value(columns) == np.inf:  # another method has flipped faces
+        offsets = self._system.at_pins(pose) - goals.positions
+        start, gradient, columns = energy.evaluate(pose)
+        if start == np.inf:  # another method has flipped faces
             return pose
-        gradient = energy.gradient(columns) + 2 * self._system.pin_force(offsets)
+        start += self._system.pin_energy(offsets)
+        gradient += 2 * self._system.pin_force(offsets)
         if rotation is not None:
             residuals = rotation.face_rotations(pose) - np.exp(1j * goals.angles[rotation.pins])
+            start += rotation.residual_energy(residuals)
             gradient += 2 * rotation.residual_gradient(residuals)
-        gradient[self._is_unpinned] = 0.0
+        if self._has_unpinned:
+            gradient[self._is_unpinned] = 0.0
 
         def search(direction: Complexes) -> tuple[Complexes, float]:
             """The pose (n,) after a line search along a direction (n,), and the step length."""
-            change, pin_change = energy.columns(direction), self._system.at_pins(direction)
+            change, first_flip = energy.direction(columns, direction)
+            pin_change = self._system.at_pins(direction)
             rotation_change = rotation.face_rotations(direction) if rotation is not None else 0.0
 
             def value(step_length: float) -> float:
-                total = energy.value(columns + step_length * change)
+                total = energy.value(columns, change, step_length)
                 total += self._system.pin_energy(offsets + step_length * pin_change)
                 if rotation is not None:
                     total += rotation.residual_energy(residuals + step_length * rotation_change)
                 return total
 
             slope = dot(gradient, direction)
-            limit = min(max_step, _FLIP_MARGIN * energy.step_to_first_flip(columns, change))
-            step_length = line_search(value, value(0.0), slope, limit)
+            step_length = line_search(value, start, slope, min(max_step, _FLIP_MARGIN * first_flip))
             return pose + step_length * direction, step_length
 
         if is_moving:

@@ -17,10 +17,13 @@ class Energy:
         self.of = SymmetricDirichlet(mesh)
 
     def value(self, pose):
-        return self.of.value(self.of.columns(pose))
+        return self.of.evaluate(pose)[0]
 
     def gradient(self, pose):
-        return self.of.gradient(self.of.columns(pose))
+        return self.of.evaluate(pose)[1]
+
+    def columns(self, pose):
+        return self.of.evaluate(pose)[2]
 
 
 def noisy(mesh, seed, size=0.03):
@@ -72,8 +75,8 @@ def test_gradient_is_that_of_finite_differences(mesh):
 
 def hessian(mesh, pose, convex=False):
     """Twice what `half_hessian` gives, as a matrix (2n, 2n)."""
-    energy, blocks, size = SymmetricDirichlet(mesh), VertexBlocks(mesh), 2 * len(mesh.vertices)
-    nonzeros = 2 * energy.half_hessian(energy.columns(pose), convex, blocks)
+    energy, blocks, size = Energy(mesh), VertexBlocks(mesh), 2 * len(mesh.vertices)
+    nonzeros = 2 * energy.of.half_hessian(energy.columns(pose), convex, blocks)
     lower = coo_array((nonzeros, (blocks.rows, blocks.columns)), shape=(size, size)).toarray()
     return lower + np.tril(lower, -1).T
 
@@ -111,9 +114,9 @@ def test_hessian_at_rest_is_twice_the_killing_matrix(mesh):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_step_to_first_flip_ends_where_a_face_flips(mesh, seed):
-    energy, pose = SymmetricDirichlet(mesh), noisy(mesh, seed, 0.1)
+    energy, pose = Energy(mesh), noisy(mesh, seed, 0.1)
     change = to_complex(np.random.default_rng(seed).normal(size=mesh.vertices.shape))
-    step = energy.step_to_first_flip(energy.columns(pose), energy.columns(change))
+    _, step = energy.of.direction(energy.columns(pose), change)
     if step == np.inf:  # a single face may grow forever
         assert signed_areas(to_points(pose + 1e6 * change), mesh.faces).min() > 0
         return
@@ -122,9 +125,22 @@ def test_step_to_first_flip_ends_where_a_face_flips(mesh, seed):
 
 
 def test_change_that_flips_nothing_may_be_as_long_as_it_likes(mesh):
-    energy, rest = SymmetricDirichlet(mesh), to_complex(mesh.vertices)
+    energy, rest = Energy(mesh), to_complex(mesh.vertices)
     for change in (rest, 0 * rest, np.full_like(rest, 3 - 1j)):
-        assert energy.step_to_first_flip(energy.columns(rest), energy.columns(change)) > 1e12
+        assert energy.of.direction(energy.columns(rest), change)[1] > 1e12
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_value_along_a_direction_is_that_of_the_pose_there(mesh, seed):
+    energy, pose = Energy(mesh), noisy(mesh, seed)
+    direction = to_complex(np.random.default_rng(seed).normal(size=mesh.vertices.shape))
+    columns = energy.columns(pose)
+    change, first_flip = energy.of.direction(columns, direction)
+    for t in (0.0, 0.3 * min(first_flip, 1.0)):
+        expected = energy.value(pose + t * direction)
+        assert energy.of.value(columns, change, t) == pytest.approx(expected, rel=1e-9)
+    if first_flip < np.inf:
+        assert energy.of.value(columns, change, 1.001 * first_flip) == np.inf
 
 
 def parabola(start, least):
