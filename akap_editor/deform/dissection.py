@@ -35,12 +35,10 @@ def dissect(points: Floats, edges: Ints, smallest: int = 10) -> Dissection:
     Of all lines that leave a quarter of the vertices on either side, the one with the smallest separator
     wins.
     """
-    n = len(points)
-    neighbor_starts, neighbors = _neighbors(n, edges.astype(np.int32))
     angles = np.arange(_DIRECTIONS) * (np.pi / _DIRECTIONS)
     along = points @ np.stack([np.cos(angles), np.sin(angles)])
     sorted_vertices = np.argsort(along.T, axis=1, kind="stable").astype(np.int32)
-    return Dissection(*_dissect(sorted_vertices, neighbor_starts, neighbors, smallest))
+    return Dissection(*_dissect(sorted_vertices, edges.astype(np.int32), smallest))
 
 
 @compiled
@@ -63,20 +61,24 @@ def _neighbors(n: int, edges: Ints) -> tuple[Ints, Ints]:
 
 
 @compiled
-def _dissect(lists: Ints, neighbor_starts: Ints, neighbors: Ints, smallest: int) -> tuple[Ints, Ints]:
+def _dissect(lists: Ints, edges: Ints, smallest: int) -> tuple[Ints, Ints]:
     """The order and the starts of a `Dissection`.
 
     lists: (directions, n) the vertices sorted along each direction; overwritten. A region is the same range
     low:high of all lists. It is split stably, so that nothing is sorted again.
     """
     n = lists.shape[1]
+    neighbor_starts, neighbors = _neighbors(n, edges)
     order, starts = np.empty(n, dtype=np.int32), np.zeros(2 * n + 2, dtype=np.int32)
     region = np.zeros(n, dtype=np.int32)  # number of the region that a vertex is in
     rank, part = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int8)
     regions = count = 0
-    stack = [(0, n, 0)]  # low, high, and 1 if the range is a separator
-    while len(stack) > 0:
-        low, high, is_separator = stack.pop()
+    stack = np.empty((2 * n + 1, 3), dtype=np.int32)  # low, high, and 1 if the range is a separator
+    stack[0, 0], stack[0, 1], stack[0, 2] = 0, n, 0
+    depth = 1
+    while depth > 0:
+        depth -= 1
+        low, high, is_separator = stack[depth, 0], stack[depth, 1], stack[depth, 2] == 1
         if high == low:
             continue
         if is_separator or high - low <= smallest:
@@ -108,9 +110,10 @@ def _dissect(lists: Ints, neighbor_starts: Ints, neighbors: Ints, smallest: int)
         order[end:high] = lists[(direction + len(lists) // 2) % len(lists), end:high]
         for k in range(end, high):
             region[order[k]] = 0
-        stack.append((end, high, 1))
-        stack.append((middle, end, 0))
-        stack.append((low, middle, 0))
+        stack[depth, 0], stack[depth, 1], stack[depth, 2] = end, high, 1
+        stack[depth + 1, 0], stack[depth + 1, 1], stack[depth + 1, 2] = middle, end, 0
+        stack[depth + 2, 0], stack[depth + 2, 1], stack[depth + 2, 2] = low, middle, 0
+        depth += 3
     return order, starts[: count + 1].copy()
 
 

@@ -54,13 +54,12 @@ class SymbolicCholesky:
         starts = starts.astype(np.int32)
         count = len(starts) - 1
         column_starts = np.searchsorted(columns, np.arange(width * starts[-1] + 1)).astype(np.int32)
-        row_starts, front_rows, parents = _find_rows(width, starts, column_starts, rows)
+        row_starts, front_rows, parents, run_starts, runs, entries = _analyze(
+            width, starts, column_starts, rows
+        )
         children = np.argsort(parents, kind="stable").astype(np.int32)
         child_starts = np.searchsorted(parents[children], np.arange(count + 1)).astype(np.int32)
         orphans = child_starts[0]  # fronts without a parent, sorted first
-        run_starts, runs, entries = _find_places(
-            width, starts, row_starts, front_rows, parents, column_starts, rows
-        )
         own, below = (width * np.diff(ends).astype(np.int64) for ends in (starts, row_starts))
         sizes = own * (own + below) - own * (own - 1) // 2
         factor_starts = np.concatenate([[0], np.cumsum(sizes)])
@@ -74,6 +73,18 @@ class SymbolicCholesky:
         )  # fmt: skip
         self.factor_size = int(factor_starts[-1])
         self.largest_front = int((own + below).max())
+
+
+@compiled
+def _analyze(
+    width: int, starts: Ints, column_starts: Ints, rows: Ints
+) -> tuple[Ints, Ints, Ints, Ints, Ints, Ints]:
+    """All loops in one function: loading a compiled one takes milliseconds. See those that it calls."""
+    row_starts, front_rows, parents = _find_rows(width, starts, column_starts, rows)
+    run_starts, runs, entries = _find_places(
+        width, starts, row_starts, front_rows, parents, column_starts, rows
+    )
+    return row_starts, front_rows, parents, run_starts, runs, entries
 
 
 @compiled
@@ -162,7 +173,9 @@ def _find_places(
         run_starts[s + 1] = run_starts[s] + run_counts[s]
     runs = np.empty((run_starts[count], 3), dtype=np.int32)
     for s in range(count):
-        runs[run_starts[s] : run_starts[s + 1]] = all_runs[row_starts[s] : row_starts[s] + run_counts[s]]
+        for q in range(run_counts[s]):
+            for part in range(3):
+                runs[run_starts[s] + q, part] = all_runs[row_starts[s] + q, part]
     return run_starts, runs, entries
 
 
