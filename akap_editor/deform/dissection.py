@@ -83,7 +83,8 @@ def _dissect(lists: Ints, edges: Ints, smallest: int) -> tuple[Ints, Ints]:
             continue
         if is_separator or high - low <= smallest:
             if not is_separator:
-                order[low:high] = lists[0, low:high]
+                for k in range(low, high):
+                    order[k] = lists[0, k]
             count += 1
             starts[count] = high
             continue
@@ -107,8 +108,9 @@ def _dissect(lists: Ints, edges: Ints, smallest: int) -> tuple[Ints, Ints]:
         left, right = _split(lists[:, low:high], part)
         middle, end = low + left, low + left + right
         # along the cut, so that what a part touches of its separators are a few contiguous stretches
-        order[end:high] = lists[(direction + len(lists) // 2) % len(lists), end:high]
+        along = (direction + len(lists) // 2) % len(lists)
         for k in range(end, high):
+            order[k] = lists[along, k]
             region[order[k]] = 0
         stack[depth, 0], stack[depth, 1], stack[depth, 2] = end, high, 1
         stack[depth + 1, 0], stack[depth + 1, 1], stack[depth + 1, 2] = middle, end, 0
@@ -134,7 +136,8 @@ def _best_cut(
         vertices = lists[direction]
         for k in range(size):
             rank[vertices[k]] = k
-        lower[:], upper[:] = 0, 0
+        for k in range(size + 1):
+            lower[k] = upper[k] = 0
         for k in range(size):
             first = last = k
             for q in range(neighbor_starts[vertices[k]], neighbor_starts[vertices[k] + 1]):

@@ -94,7 +94,8 @@ def _find_rows(width: int, starts: Ints, column_starts: Ints, rows: Ints) -> tup
     n, count = starts[-1], len(starts) - 1
     front_of = np.empty(n, dtype=np.int32)
     for s in range(count):
-        front_of[starts[s] : starts[s + 1]] = s
+        for v in range(starts[s], starts[s + 1]):
+            front_of[v] = s
     parents, seen = np.full(count, -1, dtype=np.int32), np.full(n, -1, dtype=np.int32)
     first_child, sibling = np.full(count, -1, dtype=np.int32), np.full(count, -1, dtype=np.int32)
     row_starts, result = np.zeros(count + 1, dtype=np.int32), np.empty(16 * n, dtype=np.int32)
@@ -103,7 +104,8 @@ def _find_rows(width: int, starts: Ints, column_starts: Ints, rows: Ints) -> tup
         begin, last = end, starts[s + 1]
         if begin + n > len(result):
             longer = np.empty(2 * len(result) + n, dtype=np.int32)
-            longer[:begin] = result[:begin]
+            for k in range(begin):
+                longer[k] = result[k]
             result = longer
         for k in range(column_starts[width * starts[s]], column_starts[width * last]):
             v = rows[k] // width
@@ -120,12 +122,24 @@ def _find_rows(width: int, starts: Ints, column_starts: Ints, rows: Ints) -> tup
                     result[end] = v
                     end += 1
             child = sibling[child]
-        result[begin:end].sort()
+        _sort(result[begin:end])
         row_starts[s + 1] = end
         if end > begin:
             parent = front_of[result[begin]]
             parents[s], sibling[s], first_child[parent] = parent, first_child[parent], s
     return row_starts, result[:end].copy(), parents
+
+
+@compiled
+def _sort(values: Ints) -> None:
+    """Sort in place, by Shell's method: numba's own sort takes a second to compile."""
+    for gap in (1750, 701, 301, 132, 57, 23, 10, 4, 1):  # Ciura's sequence
+        for k in range(gap, len(values)):
+            value, at = values[k], k
+            while at >= gap and values[at - gap] > value:
+                values[at] = values[at - gap]
+                at -= gap
+            values[at] = value
 
 
 @compiled

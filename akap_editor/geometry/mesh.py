@@ -112,7 +112,9 @@ class TriMesh:
         object.__setattr__(mesh, "tied", self.tied)
         edges = np.sort(numbers[self.edges], axis=1)
         keys = edges @ np.array([len(numbers), 1], dtype=np.int64)
-        mesh.__dict__["edges"] = freeze(edges[np.argsort(keys)])  # cheaper than from the faces
+        mesh.__dict__["edges"] = freeze(edges[np.argsort(keys)])  # these are cheaper than from the faces
+        mesh.__dict__["_boundary_half_edges"] = numbers[self._boundary_half_edges]
+        mesh.__dict__["component"] = freeze(self.component[vertex_order])
         return mesh
 
     @cached_property
@@ -153,7 +155,7 @@ class TriMesh:
     @cached_property
     def boundary_vertices(self) -> Ints:
         """(b,) int32, ascending: vertices of all boundary loops (the paper's B in eq. 8)."""
-        return freeze(np.unique(np.concatenate(self.boundary_loops)).astype(np.int32))
+        return freeze(np.unique(self._boundary_half_edges[:, 0]).astype(np.int32))
 
     @cached_property
     def component(self) -> Ints:

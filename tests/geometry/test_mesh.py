@@ -331,3 +331,18 @@ def joining(gaps):
 
 def test_one_part_has_no_gaps():
     assert TriMesh(TRIANGLE, FACE).gaps.shape == (0, 2)
+
+
+def test_renumbered_mesh_is_that_made_anew(mesh):
+    generator = np.random.default_rng(5)
+    vertex_order, face_order = (generator.permutation(len(part)) for part in (mesh.vertices, mesh.faces))
+    found = mesh.renumber(vertex_order, face_order)
+    anew = TriMesh(found.vertices, found.faces)
+    assert (found.edges == anew.edges).all()
+    assert (found.boundary_vertices == anew.boundary_vertices).all()
+    assert {frozenset(loop.tolist()) for loop in found.boundary_loops} == {
+        frozenset(loop.tolist()) for loop in anew.boundary_loops
+    }
+    together = found.component[:, None] == found.component
+    assert (together == (anew.component[:, None] == anew.component)).all()
+    assert (found.component == mesh.component[vertex_order]).all()
