@@ -65,7 +65,7 @@ def measure(drag: Drag, bytes_per_second: float) -> dict[str, float]:
     killing = KillingMatrix(order.mesh)
     rows, columns = killing.blocks.rows, killing.blocks.columns
     nonzeros = killing.nonzeros(to_complex(order.mesh.vertices)) + (rows == columns)
-    factors = CholeskyFactors(SymbolicCholesky(rows, columns, 2, order.starts), np.float32)
+    factors = CholeskyFactors(SymbolicCholesky(rows, columns, 2, order.starts), np.float16)
     right = np.ones(2 * len(order.mesh.vertices))
     size = factors.values.nbytes
     row = {

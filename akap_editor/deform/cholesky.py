@@ -56,21 +56,24 @@ class SummedPattern(SymmetricPattern):
         return np.bincount(self._slots, weights=entries, minlength=self.count).astype(np.float64, copy=False)
 
 
-Precision = type[np.float32] | type[np.float64]
+Precision = type[np.float16] | type[np.float64]
+_MAX_HALF = 65504.0
 
 
 class CholeskyFactors:
     """The factors of matrices with one symbolic factorization: factorize often, solve more often.
 
-    precision: of the factors, float32 or float64.
+    precision: in which factors are kept. Those in float16 are computed in float32.
     """
 
     def __init__(self, symbolic: SymbolicCholesky, precision: Precision = np.float64) -> None:
+        self._is_half = precision is np.float16
+        self._type = np.float32 if self._is_half else np.float64
         self.fronts = symbolic.fronts
-        self.values = np.empty(symbolic.factor_size, dtype=precision)
-        self._front = np.empty(symbolic.largest_front**2, dtype=precision)
-        self._stack = np.empty(symbolic.stack_size, dtype=precision)
-        self._x = np.empty(int(self.fronts.starts[-1]), dtype=precision)
+        self.values = np.empty(symbolic.factor_size, dtype=np.uint16 if self._is_half else np.float64)
+        self._front = np.empty(symbolic.largest_front**2, dtype=self._type)
+        self._stack = np.empty(symbolic.stack_size, dtype=self._type)
+        self._x = np.empty(int(self.fronts.starts[-1]), dtype=self._type)
 
     def factorize(self, nonzeros: Floats) -> None:
         """Compute the factors of the matrix with these nonzeros (count,).
@@ -80,7 +83,14 @@ class CholeskyFactors:
         """
         if not np.isfinite(nonzeros).all():
             raise SolverError("the linear system has entries that are not finite")
-        if not multifrontal.factorize(self.fronts, nonzeros, self.values, self._front, self._stack):
+        min_pivot = 0.0
+        if self._is_half:  # no entry of U exceeds the root of A's largest, nor the inverse root of a pivot
+            if nonzeros.max() > _MAX_HALF**2:
+                raise SolverError("the linear system has entries that are too large for half precision")
+            min_pivot = _MAX_HALF**-2
+        if not multifrontal.factorize(
+            self.fronts, nonzeros, self.values, self._front, self._stack, min_pivot
+        ):
             raise SolverError("the linear system is singular: a face has collapsed or a part is free")
 
     def solve(self, right: Floats) -> Floats:
@@ -88,7 +98,7 @@ class CholeskyFactors:
 
         Raises SolverError if it is not finite.
         """
-        solution = right.astype(self.values.dtype)
+        solution = right.astype(self._type)
         multifrontal.solve(self.fronts, self.values, solution, self._front)
         if not np.isfinite(solution).all():
             raise SolverError("the linear system has no finite solution")

@@ -13,17 +13,17 @@ Method for Sparse Matrix Solution"). One front after another:
 Fronts are dense, so the inner loops run over contiguous rows. They are vectorized only where a slice starts
 at 0.
 
-Factors may have single precision: they take half the memory, which a solve has to stream through the caches
-twice, and serve as a preconditioner of conjugate gradients in double precision. All functions release
-Python's lock. Those that call one another are in this file, because numba's cache on disk does not see
-changes elsewhere.
+Factors may be computed in single precision and kept in half of it: they take a quarter of the memory, which
+a solve has to stream through the caches twice, and serve as a preconditioner of conjugate gradients in double
+precision. All functions release Python's lock. Those that call one another are in this file, because numba's
+cache on disk does not see changes elsewhere.
 """
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..geometry.jit import compiled, compiled_with_fast_sums
+from ..geometry.jit import compiled, compiled_with_fast_sums, packed, unpacked
 from ..geometry.validation import Complexes, Floats, Indices, Ints
 from .fronts import Fronts
 
@@ -33,12 +33,14 @@ _DEPENDENT = 1e-11  # share of its energy below which what a further basis vecto
 
 
 @compiled
-def factorize(fronts: Fronts, nonzeros: Floats, factor: Any, front: Any, stack: Any) -> bool:
-    """The numeric phase; whether all pivots were positive, so that the factors can be used.
+def factorize(
+    fronts: Fronts, nonzeros: Floats, factor: Any, front: Any, stack: Any, min_pivot: float
+) -> bool:
+    """The numeric phase; whether all pivots were above ``min_pivot``, so that the factors can be used.
 
     nonzeros: (z,) float64; factor: (factor_size,) receives the rows of U, with the inverse of each diagonal
     entry in its place; front: (largest_front²,) and stack: (stack_size,) are room for the work. The last
-    three have one type, float32 or float64.
+    three have one type, float32 or float64; or the factor is uint16 and keeps float32 as halves.
     """
     for s in range(len(fronts.starts) - 1):
         own = fronts.starts[s + 1] - fronts.starts[s]
@@ -50,13 +52,13 @@ def factorize(fronts: Fronts, nonzeros: Floats, factor: Any, front: Any, stack: 
             child = fronts.children[k]
             runs = fronts.runs[fronts.run_starts[child] : fronts.run_starts[child + 1]]
             _add_update(front, size, stack[fronts.update_starts[child] :], runs)
-        if not _eliminate(front, size, own):
+        if not _eliminate(front, size, own, min_pivot):
             return False
         to = fronts.factor_starts[s]
         for k in range(own):
             row, kept = front[k * size + k : (k + 1) * size], factor[to : to + size - k]
             for j in range(size - k):
-                kept[j] = row[j]
+                kept[j] = packed(row[j], kept)
             to += size - k
         to = fronts.update_starts[s]
         for k in range(own, size):
@@ -87,17 +89,17 @@ def _add_update(front: Any, size: int, update: Any, runs: Ints) -> None:
 
 
 @compiled_with_fast_sums
-def _eliminate(front: Any, size: int, own: int) -> bool:
+def _eliminate(front: Any, size: int, own: int, min_pivot: float) -> bool:
     """Eliminate the first ``own`` rows of the upper triangle of a front with ``size`` rows, in place.
 
     They become rows of U, with inverse diagonal entries, and the rest becomes the update. Whether all pivots
-    were positive.
+    were above ``min_pivot``.
     """
     for k0 in range(0, own, _PANEL):
         k1 = min(k0 + _PANEL, own)
         for k in range(k0, k1):
             row = front[k * size + k : (k + 1) * size]
-            if not row[0] > 0:
+            if not row[0] > min_pivot:
                 return False
             inverse = 1 / np.sqrt(row[0])
             for j in range(size - k):
@@ -174,21 +176,24 @@ def _forward(rows: Any, own: int, size: int, x: Any) -> None:
         if k + 4 <= own:
             b, c, d = at + length, at + 2 * length - 1, at + 3 * length - 3
             r0, r1, r2, r3 = rows[at:b], rows[b:c], rows[c:d], rows[d : d + length - 3]
-            x0 = x[k] * r0[0]
-            x1 = (x[k + 1] - r0[1] * x0) * r1[0]
-            x2 = (x[k + 2] - r0[2] * x0 - r1[1] * x1) * r2[0]
-            x3 = (x[k + 3] - r0[3] * x0 - r1[2] * x1 - r2[1] * x2) * r3[0]
+            x0 = x[k] * unpacked(r0[0])
+            x1 = (x[k + 1] - unpacked(r0[1]) * x0) * unpacked(r1[0])
+            x2 = (x[k + 2] - unpacked(r0[2]) * x0 - unpacked(r1[1]) * x1) * unpacked(r2[0])
+            x3 = x[k + 3] - unpacked(r0[3]) * x0 - unpacked(r1[2]) * x1 - unpacked(r2[1]) * x2
+            x3 *= unpacked(r3[0])
             x[k], x[k + 1], x[k + 2], x[k + 3] = x0, x1, x2, x3
             tail, t0, t1, t2, t3 = x[k + 4 : size], r0[4:], r1[3:], r2[2:], r3[1:]
             for j in range(length - 4):
-                tail[j] -= t0[j] * x0 + t1[j] * x1 + t2[j] * x2 + t3[j] * x3
+                tail[j] -= (unpacked(t0[j]) * x0 + unpacked(t1[j]) * x1) + (
+                    unpacked(t2[j]) * x2 + unpacked(t3[j]) * x3
+                )
             at, k = d + length - 3, k + 4
         else:
-            x0 = x[k] * rows[at]
+            x0 = x[k] * unpacked(rows[at])
             x[k] = x0
             tail, t0 = x[k + 1 : size], rows[at + 1 : at + length]
             for j in range(length - 1):
-                tail[j] -= t0[j] * x0
+                tail[j] -= unpacked(t0[j]) * x0
             at, k = at + length, k + 1
 
 
@@ -206,14 +211,15 @@ def _backward(rows: Any, own: int, size: int, x: Any) -> None:
             tail, t0, t1, t2, t3 = x[k + 4 : size], r0[4:], r1[3:], r2[2:], r3[1:]
             s0 = s1 = s2 = s3 = 0 * x[k]
             for j in range(length - 4):
-                s0 += t0[j] * tail[j]
-                s1 += t1[j] * tail[j]
-                s2 += t2[j] * tail[j]
-                s3 += t3[j] * tail[j]
-            x3 = (x[k + 3] - s3) * r3[0]
-            x2 = (x[k + 2] - s2 - r2[1] * x3) * r2[0]
-            x1 = (x[k + 1] - s1 - r1[1] * x2 - r1[2] * x3) * r1[0]
-            x0 = (x[k] - s0 - r0[1] * x1 - r0[2] * x2 - r0[3] * x3) * r0[0]
+                s0 += unpacked(t0[j]) * tail[j]
+                s1 += unpacked(t1[j]) * tail[j]
+                s2 += unpacked(t2[j]) * tail[j]
+                s3 += unpacked(t3[j]) * tail[j]
+            x3 = (x[k + 3] - s3) * unpacked(r3[0])
+            x2 = (x[k + 2] - s2 - unpacked(r2[1]) * x3) * unpacked(r2[0])
+            x1 = (x[k + 1] - s1 - unpacked(r1[1]) * x2 - unpacked(r1[2]) * x3) * unpacked(r1[0])
+            x0 = x[k] - s0 - unpacked(r0[1]) * x1 - unpacked(r0[2]) * x2 - unpacked(r0[3]) * x3
+            x0 *= unpacked(r0[0])
             x[k], x[k + 1], x[k + 2], x[k + 3] = x0, x1, x2, x3
         else:
             k -= 1
@@ -222,8 +228,8 @@ def _backward(rows: Any, own: int, size: int, x: Any) -> None:
             tail, t0 = x[k + 1 : size], rows[at + 1 : at + length]
             s0 = 0 * x[k]
             for j in range(length - 1):
-                s0 += t0[j] * tail[j]
-            x[k] = (x[k] - s0) * rows[at]
+                s0 += unpacked(t0[j]) * tail[j]
+            x[k] = (x[k] - s0) * unpacked(rows[at])
 
 
 class Matrix(NamedTuple):  # numba's caches on disk refer to this name
@@ -243,7 +249,7 @@ class Preconditioner(NamedTuple):  # numba's caches on disk refer to this name
     """R A₀⁻¹ Rᵀ with the factors of A₀, and room for one solve.
 
     rotation: (n,) unit complex numbers R; factor: of `factorize`; x: (2n,) and front: (largest_front,), of
-    the type of the factor.
+    the type in which the factor was computed.
     """
 
     fronts: Fronts

@@ -4,9 +4,9 @@ import numpy as np
 
 from ..geometry.mesh import TriMesh
 from .akap.deformer import AkapDeformer
-from .akap.preconditioned_cholesky import MIN_SINGLE_VERTICES
+from .akap.preconditioned_cholesky import MIN_HALF_VERTICES
 
-_SIDE = int(np.sqrt(MIN_SINGLE_VERTICES)) + 1  # vertices on a side of the larger square
+_SIDE = int(np.sqrt(MIN_HALF_VERTICES)) + 1  # vertices on a side of the larger square
 
 
 def precompile() -> None:
@@ -15,7 +15,7 @@ def precompile() -> None:
     Takes seconds on a machine's first run, and a fraction of a second later; may run in a thread of its own.
     Without it, the first steps take that time.
     """
-    for side in (3, _SIDE):  # factors in double and in single precision
+    for side in (3, _SIDE):  # factors in double and in half precision
         mesh = _square(side)
         deformer = AkapDeformer(mesh, memory=1.0)
         deformer.set_pins(mesh.locate([[10.0, 5.0], [60.0, 70.0]]))

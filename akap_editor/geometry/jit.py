@@ -5,10 +5,15 @@ Indices of vertices, edges and nonzeros are passed as uint32: for a signed type,
 negative indices, which count from the end.
 """
 
+import platform
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numba
+from llvmlite import ir
+from llvmlite.binding import get_host_cpu_features
+from numba.core import types
+from numba.extending import intrinsic
 
 F = TypeVar("F", bound=Callable[..., object])
 
@@ -34,3 +39,57 @@ def _compile(function: F, fastmath: bool | set[str]) -> F:
     except RuntimeError:  # neither the package's folder nor the user's cache is writable
         machine_code = numba.njit(function, **options)
     return machine_code
+
+
+_MIN_HALF = 2.0**-14  # smallest half that is not denormal
+_BIAS = 112  # difference between the biases of the exponents of float32 and halves
+_WORD, _SINGLE = ir.IntType(32), ir.FloatType()
+
+
+@intrinsic
+def packed(_: Any, value: Any, array: Any) -> Any:
+    """A number in the form in which ``array`` keeps it: float32 in an array of uint16 as an IEEE half.
+
+    Halves have 11 bits of precision. Numbers below 6e-5 become zero; those above 65504 must not occur.
+    """
+    if array.dtype != types.uint16:
+        return value(value, array), lambda _, __, ___, arguments: arguments[0]
+
+    def generate(_: Any, builder: Any, __: Any, arguments: Any) -> Any:
+        bits = builder.bitcast(arguments[0], _WORD)
+        magnitude = builder.and_(bits, _WORD(0x7FFFFFFF))
+        sign = builder.lshr(builder.xor(bits, magnitude), _WORD(16))
+        is_zero = builder.fcmp_ordered("<", builder.bitcast(magnitude, _SINGLE), _SINGLE(_MIN_HALF))
+        rounded = builder.add(magnitude, _WORD(0x1000 - (_BIAS << 23)))
+        half = builder.select(is_zero, _WORD(0), builder.lshr(rounded, _WORD(13)))
+        return builder.trunc(builder.or_(sign, half), ir.IntType(16))
+
+    return types.uint16(types.float32, array), generate
+
+
+def make_unpacked(by_hardware: bool) -> Any:
+    """`unpacked`, with the processor's own conversion or, on any processor, with integer operations."""
+
+    @intrinsic
+    def unpacked(_: Any, value: Any) -> Any:
+        """The number that an array keeps as ``value``: float32 if that is a half, see `packed`."""
+        if value != types.uint16:
+            return value(value), lambda _, __, ___, arguments: arguments[0]
+
+        def generate(_: Any, builder: Any, __: Any, arguments: Any) -> Any:
+            if by_hardware:
+                return builder.fpext(builder.bitcast(arguments[0], ir.HalfType()), _SINGLE)
+            bits = builder.zext(arguments[0], _WORD)
+            sign = builder.shl(builder.and_(bits, _WORD(0x8000)), _WORD(16))
+            magnitude = builder.shl(builder.and_(bits, _WORD(0x7FFF)), _WORD(13))
+            return builder.fmul(builder.bitcast(builder.or_(sign, magnitude), _SINGLE), _SINGLE(2.0**_BIAS))
+
+        return types.float32(types.uint16), generate
+
+    return unpacked
+
+
+# All processors since 2013 convert halves; a missing instruction would be a call of a missing function.
+unpacked = make_unpacked(
+    platform.machine().lower() in ("arm64", "aarch64") or get_host_cpu_features().get("f16c", False)
+)

@@ -1,4 +1,4 @@
-"""Compiled functions: the same results with and without a cache on disk."""
+"""Compiled functions: the same results with and without a cache on disk; numbers kept as halves."""
 
 import numba
 import numpy as np
@@ -36,3 +36,53 @@ def test_compiled_loops_give_the_same_numbers_and_divide_by_zero_as_numpy_does()
 
 def test_loops_are_compiled_where_nothing_can_be_kept(unwritable):
     assert jit.compiled(quotients)(ABOVE, BELOW).tolist() == [0.25, -1.5, np.inf]
+
+
+@jit.compiled
+def pack(values, result):
+    for k in range(len(values)):
+        result[k] = jit.packed(values[k], result)
+
+
+by_hardware, by_integers = jit.unpacked, jit.make_unpacked(False)
+
+
+@jit.compiled
+def unpack(values, result):
+    for k in range(len(values)):
+        result[k] = by_hardware(values[k])
+
+
+@jit.compiled
+def unpack_by_integers(values, result):
+    for k in range(len(values)):
+        result[k] = by_integers(values[k])
+
+
+@pytest.mark.parametrize("unpack", [unpack, unpack_by_integers])
+def test_halves_are_those_of_numpy(unpack):
+    generator = np.random.default_rng(1)
+    sizes = 10 ** generator.uniform(np.log10(6.2e-5), np.log10(65000), 1000)
+    values = (sizes * generator.choice([-1, 1], 1000)).astype(np.float32)
+    halves, result = np.zeros(1000, np.uint16), np.zeros(1000, np.float32)
+    pack(values, halves)
+    unpack(halves, result)
+    expected = values.astype(np.float16).astype(np.float32)
+    assert (np.abs(result - values) <= 2.0**-11 * np.abs(values)).all()
+    assert (result == expected).mean() > 0.99  # ties are rounded away from zero
+
+
+@pytest.mark.parametrize("unpack", [unpack, unpack_by_integers])
+def test_what_is_too_small_becomes_zero(unpack):
+    halves, result = np.ones(4, np.uint16), np.ones(4, np.float32)
+    pack(np.array([0, 1e-9, -6e-5, 1e-40], np.float32), halves)
+    unpack(halves, result)
+    assert (result == 0).all()
+
+
+def test_other_numbers_are_kept_as_they_are():
+    values, kept, result = np.array([1 / 3, -1e-300, 1e300]), np.zeros(3), np.zeros(3)
+    pack(values, kept)
+    unpack(kept, result)
+    assert (kept == values).all()
+    assert (result == values).all()

@@ -35,7 +35,7 @@ def linear_flow(positions: Complexes, field: Complexes, t: float = 1.0) -> Compl
 
 @compiled
 def spiral_factor(s: Complexes) -> Complexes:
-    """φ(s) = (eˢ − 1) / s, φ(0) = 1, for rates s (e,): with velocity u, a spiral of rate s moves by φ(s) u."""
+    """φ(s) = (eˢ − 1) / s, φ(0) = 1, for rates s (e,): a spiral of rate s with velocity u moves by φ(s) u."""
     result = np.empty_like(s)
     x, y, real, imaginary = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
     for begin in range(0, len(s), _BLOCK):

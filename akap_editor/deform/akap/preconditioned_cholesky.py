@@ -5,8 +5,8 @@ vertex by the rotation R since then. So R A₀⁻¹ Rᵀ is an excellent precond
 many poses. Which earlier pose was factorized changes the cost of a solution, and the solution within its
 tolerance.
 
-Factors of large meshes have single precision, which halves the memory that a solve reads. Residuals and
-solutions have double precision.
+Factors of large meshes are kept in half precision, which quarters the memory that a solve reads. Residuals
+and solutions have double precision.
 """
 
 from threading import Thread
@@ -25,8 +25,8 @@ MAX_WASTED_ITERATIONS = 2
 MAX_WASTED_ITERATIONS_OF_SMALL = 8  # small meshes factorize at once: a thread would cost more than it saves
 _FACTORIZATION_DELAY = 1  # poses for which the old factors serve while new ones are made beside
 _MAX_ITERATIONS = 12  # of one solution; without convergence the current matrix is factorized
-MIN_SINGLE_VERTICES = 1500  # factors of fewer vertices fit into the caches in double precision, too
-_EXACT_ITERATIONS = 4  # that reach double precision from the factors of the very matrix
+MIN_HALF_VERTICES = 1500  # factors of fewer vertices fit into the caches in double precision, too
+_EXACT_ITERATIONS = 5  # that reach double precision from the factors of the very matrix
 _WARM_STARTS = 2  # earlier solutions from which the next one starts
 # The contraction is 1 to 2 % after a factorization, and then grows from pose to pose.
 _CONTRACTION_GROWTH, _CONTRACTION_SAFETY = 1.3, 3.0
@@ -55,8 +55,8 @@ class PreconditionedCholesky:
         self.symbolic = SymbolicCholesky(pattern.rows, pattern.columns, 2, starts)
         self._matrix = Matrix(*pattern.neighbors(), np.empty(0))
         self._exact, self._confirm = exact, confirm
-        self._is_small = n < MIN_SINGLE_VERTICES
-        self._precision: Precision = np.float64 if exact or self._is_small else np.float32
+        self._is_small = n < MIN_HALF_VERTICES
+        self._precision: Precision = np.float64 if exact or self._is_small else np.float16
         self._factors = CholeskyFactors(self.symbolic, self._precision)
         self._spare: CholeskyFactors | None = None  # made beside, or used before
         self._job: _FactorizationThread | None = None
@@ -110,7 +110,7 @@ class PreconditionedCholesky:
         if solution is None and not self._is_exact:  # too far from an isometry
             self.factorize()
             solution = self._iterate(right, tolerance, warm_start_key)
-        if solution is None and self._precision is np.float32:  # too ill-conditioned for it
+        if solution is None and self._precision is np.float16:  # too ill-conditioned for it
             self._use_double_precision()
             self.factorize()
             solution = self._iterate(right, tolerance, warm_start_key)

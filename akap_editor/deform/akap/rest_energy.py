@@ -50,7 +50,7 @@ class SymmetricDirichlet:
         return _direction(columns, direction, self._faces, self._hats)
 
     def value(self, columns: Complexes, change: Complexes, step_length: float) -> float:
-        """The energy of the pose with the columns J + t D, for ``columns`` J and their ``change`` D, (m, 2)."""
+        """The energy of the pose with the columns J + t D: ``columns`` J and ``change`` D are (m, 2)."""
         return _value(columns, change, step_length, self._weights)
 
     def half_hessian(

@@ -178,9 +178,9 @@ def test_a_bend_is_the_same_with_few_factorizations_as_with_many(memory):
 
 
 @pytest.fixture
-def single_precision(monkeypatch):
+def half_precision(monkeypatch):
     """Also for the factors of a small mesh."""
-    monkeypatch.setattr(preconditioned_cholesky, "MIN_SINGLE_VERTICES", 0)
+    monkeypatch.setattr(preconditioned_cholesky, "MIN_HALF_VERTICES", 0)
 
 
 def drag_of_bar(memory=1.0, stiffness=None, exact=False):
@@ -197,8 +197,8 @@ def drag_of_bar(memory=1.0, stiffness=None, exact=False):
     return poses
 
 
-@pytest.mark.usefixtures("single_precision")
-def test_solutions_with_single_precision_are_as_near_as_asked_for(system):
+@pytest.mark.usefixtures("half_precision")
+def test_solutions_with_half_precision_are_as_near_as_asked_for(system):
     solver = prepared(system)
     for seed, angle in enumerate([0.05, 0.1, 0.2, 0.4, 0.8]):
         positions, frame = bent(system.mesh, angle)
@@ -208,14 +208,14 @@ def test_solutions_with_single_precision_are_as_near_as_asked_for(system):
         assert np.abs(found - solved(system, positions, right)).max() < 1e-9
 
 
-@pytest.mark.usefixtures("single_precision")
+@pytest.mark.usefixtures("half_precision")
 def test_factors_of_the_very_matrix_give_double_precision(system):
     right = right_side(system, 7)
     found, expected = prepared(system).solve(right, 1e-3), solved(system, system.mesh.vertices, right)
     assert np.abs(found - expected).max() < 1e-12 * np.abs(expected).max()
 
 
-@pytest.mark.usefixtures("single_precision")
+@pytest.mark.usefixtures("half_precision")
 @pytest.mark.parametrize("slow_calls", [range(0), range(2, 100), range(2, 100, 3)])
 def test_poses_do_not_depend_on_how_fast_factors_are_made_beside(monkeypatch, slow_calls):
     expected = drag_of_bar()
@@ -232,9 +232,9 @@ def test_poses_do_not_depend_on_how_fast_factors_are_made_beside(monkeypatch, sl
     assert len(calls) > 4
 
 
-@pytest.mark.usefixtures("single_precision")
+@pytest.mark.usefixtures("half_precision")
 @pytest.mark.parametrize("memory", [0.0, 1.0])
-def test_stiffness_beyond_single_precision_is_solved_in_double(memory):
+def test_stiffness_beyond_half_precision_is_solved_in_double(memory):
     """A stiff half and a soft rest, a factor of 10⁹ apart."""
     mesh = shapes.SHAPES["bar"]
     is_left = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] < mesh.vertices[:, 0].mean()
@@ -245,7 +245,7 @@ def test_stiffness_beyond_single_precision_is_solved_in_double(memory):
     assert all(np.isfinite(pose).all() for pose in ours)
 
 
-@pytest.mark.usefixtures("single_precision")
+@pytest.mark.usefixtures("half_precision")
 def test_pins_that_change_during_a_factorization_beside_do_no_harm(system):
     """`invalidate` discards factors that are being made for the matrix with the old pins."""
     solver = prepared(system)
