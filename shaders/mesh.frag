@@ -4,6 +4,7 @@
 uniform sampler2D picture;
 uniform float opacity;
 uniform vec4 tint;
+uniform bool inverted;  // opacity minus color in place of the color, for blending that multiplies
 
 in vec2 uv;
 
@@ -13,4 +14,5 @@ void main() {
     color = texture(picture, uv);
     color.rgb = mix(color.rgb, tint.rgb * color.a, tint.a);
     color *= opacity;
+    if (inverted) color.rgb = color.a - color.rgb;
 }

@@ -5,6 +5,7 @@
 uniform sampler2D picture;
 uniform float opacity;
 uniform vec4 tint;
+uniform bool inverted;  // opacity minus color in place of the color, for blending that multiplies
 
 in vec2 uv;
 
@@ -74,4 +75,5 @@ void main() {
     color = sharp_sample();
     color.rgb = mix(color.rgb, tint.rgb * color.a, tint.a);
     color *= opacity;
+    if (inverted) color.rgb = color.a - color.rgb;
 }

@@ -7,12 +7,20 @@ from pathlib import Path
 from ..display_text import display_name, file_stem
 from ..editor import gestures
 from ..editor.document.document import Document, new_document
-from ..editor.document.drawing import apply_mask, remove_background_and_mesh
+from ..editor.document.drawing import (
+    Meshing,
+    apply_mask,
+    make_drawing,
+    mask_layers,
+    mesh_layered_drawing,
+    remove_background_and_mesh,
+)
 from ..errors import file_errors
 from ..io.akap.pose import POSE_SUFFIX, load_pose, save_pose
 from ..io.akap.recording import RECORDING_SUFFIX, write_recording
 from ..io.images import read_image, read_mask
 from ..io.open_document import PICTURE_SUFFIXES
+from ..layers.drawing_layer import as_layered_picture, flat_picture
 from ..meshing.faint import fitting_threshold
 from . import files
 from .app_state import AppState
@@ -58,11 +66,50 @@ def cut_out(document: Document, mask: Path) -> Document:
     picture = drawing.image if drawing.original is None else drawing.original
     visible = read_mask(mask)
     with file_errors("use", mask):
+        if drawing.layers:
+            layered = as_layered_picture(drawing.layers, drawing.layer_order, drawing.size)
+            cut = mesh_layered_drawing(mask_layers(layered, visible), drawing.meshing, drawing.name)
+            return replace(new_document(cut), sources=(*document.sources, mask))
         image = apply_mask(picture, visible)
         threshold = fitting_threshold(image[..., 3], drawing.meshing.threshold)  # the mask may be faint
         meshing = replace(drawing.meshing, background=None, threshold=threshold)
         masked = new_document(remove_background_and_mesh(image, meshing, drawing.name))
     return replace(masked, sources=(*document.sources, mask))
+
+
+# -- layers -------------------------------------------------------------------------------------------------
+
+
+def has_layers(state: AppState) -> bool:
+    """Whether the drawing has layers."""
+    return state.document is not None and bool(state.document.drawing.layers)
+
+
+def merge_layers(state: AppState) -> None:
+    """Replace the drawing by one of its merged visible layers; confirm unsaved changes first."""
+    document = state.document
+    if document is None:
+        return
+
+    def show(merged: Document) -> None:
+        files.show_document(state, merged)
+        state.notice = "The visible layers were merged into one drawing"
+
+    task = background_task("Merging the layers", partial(merged_document, document), show, state.wake)
+    files.confirm_unsaved(state, lambda: state.begin_task(task))
+
+
+def merged_document(document: Document) -> Document:
+    """A new document of the visible layers of ``document`` as one picture, without pins, at rest.
+
+    Raises InputError if nothing is visible.
+    """
+    drawing = document.drawing
+    image = flat_picture(drawing.layers, drawing.layer_order, drawing.size)
+    meshing = drawing.meshing or Meshing()
+    threshold = fitting_threshold(image[..., 3], meshing.threshold)
+    merged = make_drawing(image, None, meshing.vertices, meshing.expand, threshold, name=drawing.name)
+    return replace(new_document(merged), sources=document.sources)
 
 
 # -- poses --------------------------------------------------------------------------------------------------

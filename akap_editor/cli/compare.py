@@ -1,6 +1,7 @@
 """Compares deformation methods on recordings and writes a report."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from ..deform.methods import compared_methods, parse_method
 from ..display_text import display_text
-from ..editor.document.drawing import Drawing, make_drawing
+from ..editor.document.drawing import Drawing, Meshing, make_drawing, remesh_layered_drawing
 from ..editor.session.recording import Recording
 from ..errors import InputError, file_errors
 from ..geometry.distortion import distortion
@@ -98,7 +99,12 @@ def _run_methods(
 
     runs, finer = [], []
     mesher = None if drawing.meshing is None else nearest_mesher(drawing.meshing.mesher)
-    others = [make_drawing(drawing.image, vertices=size, name=drawing.name, mesher=mesher) for size in sizes]
+    if drawing.layers:
+        made = drawing.meshing or Meshing()
+        others = [remesh_layered_drawing(drawing, replace(made, vertices=size)) for size in sizes]
+    else:
+        image, name = drawing.image, drawing.name
+        others = [make_drawing(image, vertices=size, name=name, mesher=mesher) for size in sizes]
     for spec in specs:
         with file_errors(f"replay with {spec}", path):
             runs.append(run(recording, drawing, spec))

@@ -14,7 +14,7 @@ from ..io.open_document import open_document
 from ..io.outputs import unused_path
 from ..resources import bundled_drawings, resource
 from . import replay
-from .options import FILE, bundled, check_threshold, mesher_option, threshold_option
+from .options import FILE, bundled, check_threshold, merge_layers_option, mesher_option, threshold_option
 
 FIRST_DRAWING = "elephant"
 OUTPUT_FOLDER = Path("out")
@@ -36,16 +36,21 @@ def _complete(context: click.Context, parameter: click.Parameter, incomplete: st
     help=f"Open a drawing that comes with the program instead of FILE, e.g. {FIRST_DRAWING}.",
 )
 @threshold_option
+@merge_layers_option
 @mesher_option
 def edit(
     file: Path | None,
     mask: Path | None,
     name: str | None = None,
     threshold: float | None = None,
+    merge_layers: bool = False,
     mesher: str | None = None,
 ) -> None:
     """Open FILE in a window: a picture, also in layers (PSD, ORA, a folder of PNG pictures), a flat
     OBJ or OFF mesh, a drawing saved as .akap, or a recording, which is then on the timeline.
+
+    The layers of a picture stay layers, each of which bends on its own; --merge-layers makes one drawing
+    of them.
 
     Without FILE, the start page shows bundled drawings and recent files, and accepts dropped files.
 
@@ -63,7 +68,9 @@ def edit(
         ):
             recording = source
         elif source is not None:
-            document = open_document(source, mask, check_threshold(threshold), mesher or _preferred_mesher())
+            document = open_document(
+                source, mask, check_threshold(threshold), mesher or _preferred_mesher(), merge_layers
+            )
     except InputError as error:
         problem = error
     try:

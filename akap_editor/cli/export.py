@@ -19,6 +19,7 @@ from .options import (
     export_options,
     framing_options,
     make_folder_of,
+    merge_layers_option,
     mesher_option,
     output_files,
     overwrite_option,
@@ -59,12 +60,15 @@ def export_file(
     threshold: float | None = None,
     overwrite: bool = False,
     mesher: str | None = None,
+    merge_layers: bool = False,
 ) -> ExportResult:
     """Export a drawing or picture. Raises InputError."""
     from ..render.offscreen import OffscreenRenderer
 
     chosen = format_of(output)
-    document = open_document(file, threshold=check_threshold(threshold), mesher=mesher)
+    document = open_document(
+        file, threshold=check_threshold(threshold), mesher=mesher, merge_layers=merge_layers
+    )
     refuse_source(output, document.sources, overwrite)  # before anything is printed
     for note in opening_notes(document):
         click.echo(f"akap-editor: {note}", err=True)
@@ -110,6 +114,7 @@ def print_results(results: list[ExportResult], as_json: bool) -> None:
 )
 @framing_options
 @threshold_option
+@merge_layers_option
 @mesher_option
 @overwrite_option
 @click.option("--rest", is_flag=True, help="Export the rest pose.")
@@ -128,6 +133,7 @@ def export_command(
     background: str | None,
     crop: str | None,
     threshold: float | None,
+    merge_layers: bool,
     mesher: str | None,
     overwrite: bool,
     rest: bool,
@@ -153,7 +159,7 @@ def export_command(
     options = replace(export_options(scale, background, crop, rest), textured=textured, z_order=z_order)
     refuse_unnamed(outputs, output, files, overwrite)
     results = [
-        export_file(file, target, options, threshold, overwrite, mesher)
+        export_file(file, target, options, threshold, overwrite, mesher, merge_layers)
         for file, target in zip(files, outputs, strict=True)
     ]
     print_results(results, as_json)

@@ -54,6 +54,12 @@ threshold_option = click.option(
 )
 
 
+merge_layers_option = click.option(
+    "--merge-layers",
+    is_flag=True,
+    help="Merge the visible layers of a picture in layers into one drawing.",
+)
+
 mesher_option = click.option(
     "--mesher",
     type=click.Choice(list(MESHERS)),

@@ -15,6 +15,7 @@ from .options import (
     export_options,
     framing_options,
     json_option,
+    merge_layers_option,
     output_files,
     overwrite_option,
     refuse_unnamed,
@@ -38,6 +39,7 @@ STDOUT = Path("-")
 )
 @framing_options
 @threshold_option
+@merge_layers_option
 @overwrite_option
 @json_option
 def render(
@@ -47,30 +49,33 @@ def render(
     background: str | None,
     crop: str | None,
     threshold: float | None,
+    merge_layers: bool,
     overwrite: bool,
     as_json: bool,
 ) -> None:
     """Write the pose of FILE, a saved drawing or a picture, as a PNG picture."""
     options = export_options(scale, background, crop)
     if output == STDOUT:
-        _write_to_stdout(files, options, threshold)
+        _write_to_stdout(files, options, threshold, merge_layers)
         return
     outputs = output_files(files, output, ".png")
     if outputs == [output]:
         check_png(output)
     refuse_unnamed(outputs, output, files, overwrite)
     results = [
-        export_file(file, target, options, threshold, overwrite)
+        export_file(file, target, options, threshold, overwrite, merge_layers=merge_layers)
         for file, target in zip(files, outputs, strict=True)
     ]
     print_results(results, as_json)
 
 
-def _write_to_stdout(files: tuple[Path, ...], options: ExportOptions, threshold: float | None) -> None:
+def _write_to_stdout(
+    files: tuple[Path, ...], options: ExportOptions, threshold: float | None, merge_layers: bool
+) -> None:
     """Write the picture of one file to stdout. Raises InputError."""
     if len(files) > 1:
         raise InputError(f"--output: expected a folder for the pictures of {len(files)} files, got -")
     with TemporaryDirectory() as folder:
         picture = Path(folder) / "pose.png"
-        export_file(files[0], picture, options, threshold)
+        export_file(files[0], picture, options, threshold, merge_layers=merge_layers)
         sys.stdout.buffer.write(picture.read_bytes())

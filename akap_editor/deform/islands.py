@@ -169,8 +169,7 @@ def _gaps_of_islands(mesh: TriMesh, pinned: list[int]) -> dict[int, tuple[int, i
     pinned: the components with pins. A gap is a vertex of a pinned component and one of an island.
     """
     gaps: dict[int, list[tuple[float, int, int]]] = defaultdict(list)
-    for i, j in mesh.gaps.tolist():
-        width = float(np.hypot(*(mesh.vertices[i] - mesh.vertices[j])))
+    for (i, j), width in zip(mesh.gaps.tolist(), mesh.gap_widths.tolist(), strict=True):
         gaps[int(mesh.component[i])].append((width, i, j))
         gaps[int(mesh.component[j])].append((width, j, i))
     first_gaps: dict[int, tuple[int, int]] = {}

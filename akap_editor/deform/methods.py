@@ -18,6 +18,7 @@ from ..geometry.validation import as_instance
 from .akap.deformer import AkapDeformer
 from .deformer import Deformer
 from .islands import IslandDeformer
+from .layer_groups import LayerGroupDeformer
 from .rivals.arap import ArapDeformer
 from .rivals.cauchy_green import CauchyGreenDeformer
 from .rivals.igarashi import IgarashiDeformer
@@ -345,7 +346,8 @@ def get_method(name: str) -> Method:
 def make_deformer(method: str, mesh: TriMesh, /, **parameters: Any) -> Deformer:
     """Make the deformer of a method for a mesh at rest, with parameters by keyword.
 
-    If the components of the mesh are tied, those without a pin move with the others (`IslandDeformer`).
+    If the components of the mesh are tied, those without a pin move with the others (`IslandDeformer`). Of a
+    mesh in layers, each component with pins is deformed on its own (`LayerGroupDeformer`).
     Raises InputError for an unknown method or parameter, or a value out of range.
     """
     chosen, known = get_method(method), default_parameters(method)
@@ -353,7 +355,10 @@ def make_deformer(method: str, mesh: TriMesh, /, **parameters: Any) -> Deformer:
         _check_known(method, name, known)
     as_instance(mesh, "mesh", TriMesh)
     constructor: Callable[..., Deformer] = chosen.deformer
-    deformer = constructor(mesh, **parameters)
+    if mesh.layers is not None:
+        deformer: Deformer = LayerGroupDeformer(mesh, constructor, **parameters)
+    else:
+        deformer = constructor(mesh, **parameters)
     return IslandDeformer(mesh, deformer) if mesh.tied and mesh.component.any() else deformer
 
 

@@ -7,7 +7,8 @@ from PIL import Image
 
 from ..errors import InputError, file_errors
 from ..io.akap.archive import Archive
-from ..io.akap.project import MAX_PICTURE_BYTES, PROJECT_SUFFIX, THUMBNAIL_ENTRY
+from ..io.akap.layer_entries import MAX_PICTURE_BYTES
+from ..io.akap.project import PROJECT_SUFFIX, THUMBNAIL_ENTRY
 from ..io.akap.recording import RECORDING_SUFFIX, bundled_drawing, decode_recording, drawing_inside
 from ..io.atomic import read_file
 from ..io.images import Picture, decode_image

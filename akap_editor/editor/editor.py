@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Literal
 
 from ..errors import SolverError
-from ..geometry.mesh import TriMesh
 from ..geometry.validation import Floats
 from .camera import ZOOM_STEP, Camera, Point, fit, shift_into
 from .document.document import Document
+from .document.drawing import Drawing, visible_point
 from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
 from .gestures import NudgeSeries, T
 from .pin_trails import Trails
@@ -61,7 +61,7 @@ class Editor:
         self._fitted: Camera | None = None
         self._clock = clock
         self._nudges = NudgeSeries(clock)
-        self._last_hit_test: tuple[TriMesh, Floats, Point, bool] | None = None  # mesh, pose, point, result
+        self._last_hit_test: tuple[Drawing, Floats, Point, bool] | None = None  # with its arguments
 
     # -- document ------------------------------------------------------------------------------------------
 
@@ -348,10 +348,11 @@ class Editor:
         """Whether the drawing is under a point of the screen. Caches the last result."""
         if self.session is None:
             return False
-        mesh, pose = self.session.drawing.mesh, self.session.state.positions
+        drawing, pose = self.session.drawing, self.session.state.positions
         point, last = self.camera.to_drawing(position), self._last_hit_test
-        if last is None or last[0] is not mesh or last[1] is not pose or last[2] != point:
-            last = self._last_hit_test = mesh, pose, point, mesh.find(point, pose) is not None
+        if last is None or last[0] is not drawing or last[1] is not pose or last[2] != point:
+            hit = visible_point(drawing, point, pose, self.session.document.face_order, unlocked=True)
+            last = self._last_hit_test = drawing, pose, point, hit is not None
         return last[3]
 
     @property

@@ -9,6 +9,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
+from .layer_ties import layer_ties
 from .validation import Floats, Ints, as_indices, as_instance, as_points, freeze
 
 _ROUNDING = 1e-12  # barycentric weight below zero that still counts as on the face
@@ -52,17 +53,20 @@ NO_POINTS = MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
 class TriMesh:
     """A triangle mesh in its rest pose, in drawing units: image pixels, x right, y down.
 
-    vertices: (n, 2) float64, each used by a face, no two at one place.
+    vertices: (n, 2) float64, each used by a face, no two of a layer at one place.
     faces: (m, 3) int32, each with a positive signed area, at most one on each side of an edge. No two faces
     meet in a vertex only, because they could rotate freely about it.
     tied: whether a component without pins moves with the nearest one that has pins, see `deform.islands`;
     otherwise it stays where it is.
+    layers: (n,) int32 the layer of each vertex, from 0, the hindmost first; None if all lie on one sheet. A
+    face has its corners on one layer.
     Arrays are read-only. Raises InputError if one of these conditions is violated.
     """
 
     vertices: Floats
     faces: Ints
     tied: bool = False
+    layers: Ints | None = None
 
     def __post_init__(self) -> None:
         vertices = as_points(self.vertices, "vertices")
@@ -77,14 +81,20 @@ class TriMesh:
         unused = np.setdiff1d(np.arange(len(vertices)), faces)
         if len(unused):
             raise InputError(f"vertices: expected each to belong to a face, but vertex {unused[0]} does not")
-        order = np.lexsort(vertices.T)
-        same = (vertices[order[1:]] == vertices[order[:-1]]).all(axis=1)
+        object.__setattr__(self, "vertices", freeze(vertices))
+        object.__setattr__(self, "faces", freeze(faces))
+        if self.layers is not None:
+            object.__setattr__(self, "layers", freeze(_as_layers(self.layers, vertices, faces)))
+        self._check_places()
+        self._check_edges()
+
+    def _check_places(self) -> None:
+        places = self.vertices if self.layers is None else np.column_stack([self.vertices, self.layers])
+        order = np.lexsort(places.T)
+        same = (places[order[1:]] == places[order[:-1]]).all(axis=1)
         if same.any():
             first = int(np.argmax(same))
             raise InputError(f"vertices: {order[first]} and {order[first + 1]} are at the same place")
-        object.__setattr__(self, "vertices", freeze(vertices))
-        object.__setattr__(self, "faces", freeze(faces))
-        self._check_edges()
 
     def _check_edges(self) -> None:
         n = len(self.vertices)
@@ -163,6 +173,13 @@ class TriMesh:
         return freeze(connected_components(self.edge_graph, directed=False)[1].astype(np.int32))
 
     @cached_property
+    def face_layers(self) -> Ints:
+        """(m,) int32: the layer of each face; 0 if the mesh has no layers."""
+        if self.layers is None:
+            return freeze(np.zeros(len(self.faces), dtype=np.int32))
+        return freeze(self.layers[self.faces[:, 0]])
+
+    @cached_property
     def edge_graph(self) -> csr_array:
         """(n, n) symmetric: lengths of the rest edges in pixels, a graph for `scipy.sparse.csgraph`."""
         return self._graph(self.edges)
@@ -175,6 +192,8 @@ class TriMesh:
     def _graph(self, edges: Ints) -> csr_array:
         n, (i, j) = len(self.vertices), edges.T
         lengths = np.abs((self.vertices[i] - self.vertices[j]).view(np.complex128)[:, 0])
+        if self.layers is not None:  # a graph has no edges of length 0, which gaps between layers may have
+            lengths = np.maximum(lengths, np.finfo(np.float64).tiny)
         return csr_array((np.tile(lengths, 2), (np.r_[i, j], np.r_[j, i])), shape=(n, n))
 
     @cached_property
@@ -182,12 +201,14 @@ class TriMesh:
         """(g, 2) int32, the narrowest first: the nearest vertices of each two adjacent components.
 
         Only edges of the Delaunay triangulation are candidates: it joins each set of points to the point
-        nearest to the set.
+        nearest to the set. With layers, components are joined where they overlap instead, see `layer_ties`.
         """
         from scipy.spatial import Delaunay
 
         if not self.component.any():
             return np.zeros((0, 2), dtype=np.int32)
+        if self.layers is not None:
+            return self._ties[0]
         boundary = self.boundary_vertices
         centered = self.vertices[boundary] - self.vertices[boundary].mean(axis=0)
         corners = boundary[Delaunay(centered).simplices]
@@ -197,6 +218,20 @@ class TriMesh:
         pairs = pairs[np.argsort(widths, kind="stable")]
         _, first = np.unique(self.component[pairs], axis=0, return_index=True)
         return freeze(pairs[np.sort(first)])
+
+    @cached_property
+    def gap_widths(self) -> Floats:
+        """(g,) the distance over each of the `gaps` in pixels; with layers, see `layer_ties`."""
+        if self.layers is not None and self.component.any():
+            return self._ties[1]
+        (x, y), (u, v) = (self.vertices[ends].T for ends in self.gaps.T)
+        return freeze(np.hypot(x - u, y - v))
+
+    @cached_property
+    def _ties(self) -> tuple[Ints, Floats]:
+        assert self.layers is not None
+        pairs, widths = layer_ties(self.vertices, self.layers, self.component, self.boundary_loops)
+        return freeze(pairs), freeze(widths)
 
     @cached_property
     def rest_areas(self) -> Floats:
@@ -213,11 +248,18 @@ class TriMesh:
     ) -> MeshPoints | None:
         """The point of the mesh that is visible at ``point`` (2,), or None if no face covers it.
 
-        positions: (n, 2) the pose, by default at rest; order: (m,) the faces in the order in which they are
-        drawn, by default by index: the last one that covers the point is visible. Raises InputError.
+        positions: (n, 2) the pose, by default at rest; order: the faces in the order in which they are drawn,
+        by default all by index: the last one that covers the point is visible. Raises InputError.
         """
+        found = self.find_all(point, positions, order)
+        return MeshPoints(found.faces[-1:], found.weights[-1:]) if len(found) else None
+
+    def find_all(
+        self, point: ArrayLike, positions: ArrayLike | None = None, order: Ints | None = None
+    ) -> MeshPoints:
+        """All points of the mesh at ``point`` (2,), from back to front; for the arguments see `find`."""
         q = as_points([point], "point", 1)[0]  # type: ignore[arg-type]
-        return self._find(q, self._as_pose(positions), order)
+        return self._find_all(q, self._as_pose(positions), order)
 
     def _as_pose(self, positions: ArrayLike | None) -> Floats:
         return self.vertices if positions is None else as_points(positions, "positions", len(self.vertices))
@@ -227,7 +269,7 @@ class TriMesh:
         """(3, m) the transposed faces, in the layout and dtype that numpy indexes with fastest."""
         return np.ascontiguousarray(self.faces.T, dtype=np.intp)
 
-    def _find(self, point: Floats, pose: Floats, order: Ints | None = None) -> MeshPoints | None:
+    def _find_all(self, point: Floats, pose: Floats, order: Ints | None = None) -> MeshPoints:
         margin = _ROUNDING * np.abs(point).max()
         sides = np.zeros(len(pose), dtype=np.uint8)  # bits: left, right, above, below the point
         for axis in (0, 1):
@@ -237,31 +279,39 @@ class TriMesh:
         candidates = np.flatnonzero((sides.take(a) | sides.take(b) | sides.take(c)) == 0b1111)
         weights = barycentric(pose[self.faces[candidates]], point)
         hits = np.flatnonzero(weights.min(axis=1) >= -_ROUNDING)
-        if not len(hits):
-            return None
-        if order is not None:
-            rank = np.empty(len(order), dtype=np.int64)
+        if order is not None and len(hits):
+            rank = np.full(len(self.faces), -1, dtype=np.int64)  # faces that are not drawn keep −1
             rank[order] = np.arange(len(order))
-            hits = hits[np.argsort(rank[candidates[hits]])]
-        return MeshPoints(candidates[hits[-1:]], weights[hits[-1:]])
+            ranks = rank[candidates[hits]]
+            hits = hits[np.argsort(ranks)][int((ranks < 0).sum()) :]
+        return MeshPoints(candidates[hits], weights[hits])
 
-    def locate(self, points: ArrayLike, positions: ArrayLike | None = None) -> MeshPoints:
+    def locate(
+        self, points: ArrayLike, positions: ArrayLike | None = None, layers: ArrayLike | None = None
+    ) -> MeshPoints:
         """The points of the mesh that are visible at ``points`` (k, 2), see `find`.
 
-        positions: (n, 2) the pose, by default at rest. Raises InputError for a point outside the mesh.
+        positions: (n, 2) the pose, by default at rest; layers: (k,) the layer on which each point is to lie,
+        −1 for the foremost one there. Raises InputError for a point outside the mesh, or outside its layer.
         """
-        pose = self._as_pose(positions)
+        pose, q_layers = self._as_pose(positions), None
+        wanted = as_points(points, "points")
+        if layers is not None:
+            q_layers = np.broadcast_to(np.asarray(layers, dtype=np.int64), len(wanted))
         faces, weights = [], []
-        for index, q in enumerate(as_points(points, "points")):
-            hit = self._find(q, pose)
-            if hit is None:
+        for index, q in enumerate(wanted):
+            hit = self._find_all(q, pose)
+            if q_layers is not None and q_layers[index] >= 0:
+                mine = self.face_layers[hit.faces] == q_layers[index]
+                hit = MeshPoints(hit.faces[mine], hit.weights[mine])
+            if not len(hit):
                 nearest = pose[int(np.argmin(((pose - q) ** 2).sum(axis=1)))]
                 raise InputError(
                     f"points: point {index} at ({q[0]:g}, {q[1]:g}) lies outside the drawing; "
                     f"the nearest vertex is at ({nearest[0]:.1f}, {nearest[1]:.1f})"
                 )
-            faces.append(hit.faces[0])
-            weights.append(hit.weights[0])
+            faces.append(hit.faces[-1])
+            weights.append(hit.weights[-1])
         return MeshPoints(np.array(faces, dtype=np.int32), np.array(weights).reshape(-1, 3))
 
     def evaluate(self, points: MeshPoints, values: Floats) -> Floats:
@@ -275,6 +325,17 @@ class TriMesh:
             came = values.shape if isinstance(values, np.ndarray) else type(values).__name__
             raise InputError(f"values: expected an array of shape {self.vertices.shape}, got {came}")
         return np.einsum("kc,kcd->kd", points.weights, values[self.faces[points.faces]])
+
+
+def _as_layers(value: ArrayLike, vertices: Floats, faces: Ints) -> Ints:
+    """The layers (n,) of vertices. Raises InputError for other shapes, or a face on two of them."""
+    layers = as_indices(value, "layers", None, len(vertices)).astype(np.int32)
+    if len(layers) != len(vertices):
+        raise InputError(f"layers: expected one for each of {len(vertices)} vertices, got {len(layers)}")
+    torn = (layers[faces] != layers[faces[:, :1]]).any(axis=1)
+    if torn.any():
+        raise InputError(f"layers: expected faces on one layer, but face {int(np.argmax(torn))} is on two")
+    return layers
 
 
 def barycentric(corners: Floats, point: Floats) -> Floats:

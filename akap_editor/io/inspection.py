@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..editor.document.drawing import Drawing
 from ..errors import InputError
 from ..geometry.distortion import distortion
 from ..layers.composite import composite, hidden_layers
+from ..layers.drawing_layer import shown_layers
 from ..layers.layered_picture import LayeredPicture
 from ..meshing.faint import fitting_threshold
 from ..meshing.picture_mesh import mesh_picture
@@ -139,6 +141,7 @@ def _inspect_drawing(data: bytes) -> tuple[Facts, list[str]]:
         "vertices": len(drawing.mesh.vertices),
         "faces": len(drawing.mesh.faces),
         "parts": int(drawing.mesh.component.max()) + 1,
+        **_drawing_layer_facts(drawing),
         "pins": len(state.pins),
         "poses": len(state.poses),
         "keyframes": len(state.animation.keyframes),
@@ -148,6 +151,13 @@ def _inspect_drawing(data: bytes) -> tuple[Facts, list[str]]:
         "flipped faces": measured.flipped,
     }
     return facts, []
+
+
+def _drawing_layer_facts(drawing: Drawing) -> Facts:
+    if not drawing.layers:
+        return {}
+    hidden = int((~shown_layers(drawing.layers)).sum())
+    return {"layers": len(drawing.layers), "hidden layers": hidden}
 
 
 def _inspect_pose(data: bytes) -> tuple[Facts, list[str]]:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ..display_text import display_name
 from ..editor.document.document import Document, new_document
@@ -9,13 +10,15 @@ from ..editor.document.drawing import apply_mask, make_drawing
 from ..editor.session.replay import Replay
 from ..errors import FileError, InputError, file_errors
 from ..layers.composite import composite
+from ..layers.layered_picture import Layer
+from ..layers.merging import movable_layers
 from ..meshing.faint import DEFAULT_THRESHOLD, faint_share
 from ..progress import announce, part
 from .akap.project import PROJECT_SUFFIX, load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
 from .atomic import as_path, noted_reads
 from .images import Picture, read_image, read_mask
-from .layers.open_layers import is_layered, merging_notes, open_layers
+from .layers.open_layers import is_layered, left_out_notes, merging_notes, open_layers
 from .mesh_files.mesh_drawing import read_mesh
 from .mesh_files.obj_off import PARSERS
 
@@ -30,23 +33,26 @@ def open_document(
     mask: str | Path | None = None,
     threshold: float | None = None,
     mesher: str | None = None,
+    merge_layers: bool = False,
 ) -> Document:
     """Open a file as a document; the ending of its name decides how.
 
     .akap: the saved document; .akaprec: the document at the end of the recording; .obj, .off: a flat mesh,
-    see `read_mesh`; any other: a picture, which is cut out along its alpha and meshed. The visible layers of
-    a picture in layers (.psd, .psb, .ora, a folder of PNG pictures, see `open_layers`) are merged.
+    see `read_mesh`; any other: a picture, which is cut out along its alpha and meshed. A picture in layers
+    (.psd, .psb, .ora, a folder of PNG pictures, see `open_layers`) becomes a drawing in layers.
     mask: a picture that is bright, or opaque, where the picture is to be visible; threshold: share of full
     opacity at which the picture ends, None for one that suits it; mesher: of a picture; for both see
-    `make_drawing`.
+    `make_drawing`; merge_layers: merge the visible layers into one picture.
     Raises InputError, which names the file, or SolverError if a recording cannot be replayed.
     """
     with noted_reads() as files:
-        document = _open(as_path(path), mask, threshold, mesher)
+        document = _open(as_path(path), mask, threshold, mesher, merge_layers)
     return replace(document, sources=tuple(files))
 
 
-def _open(path: Path, mask: str | Path | None, threshold: float | None, mesher: str | None) -> Document:
+def _open(
+    path: Path, mask: str | Path | None, threshold: float | None, mesher: str | None, merge_layers: bool
+) -> Document:
     announce(0.0, "Reading the file")
     suffix = path.suffix.lower()
     if mask is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
@@ -59,6 +65,8 @@ def _open(path: Path, mask: str | Path | None, threshold: float | None, mesher: 
         return _open_recording(path)
     if suffix in MESH_SUFFIXES:
         return new_document(read_mesh(path))
+    if is_layered(path) and not merge_layers:
+        return _open_layered(path, mask, threshold, mesher)
     image, notes = read_picture(path)
     shown = read_mask(mask) if mask is not None else None
     with file_errors("open", path):
@@ -67,6 +75,33 @@ def _open(path: Path, mask: str | Path | None, threshold: float | None, mesher: 
         with part(0.5 if is_layered(path) else 0.25, 1.0):
             drawing = make_drawing(image, threshold=threshold, name=path.stem, mesher=mesher)
         return replace(new_document(drawing), notes=notes)
+
+
+def _open_layered(
+    path: Path, mask: str | Path | None, threshold: float | None, mesher: str | None
+) -> Document:
+    """A document of a picture in layers; of one with a single layer, a flat one."""
+    with part(0.0, 0.4):
+        layered = open_layers(path)
+    shown = read_mask(mask) if mask is not None else None
+    notes = left_out_notes(layered)
+    movable = movable_layers(layered)
+    with file_errors("open", path):
+        with part(0.4, 1.0):
+            options: dict[str, Any] = {"threshold": threshold, "name": path.stem, "mesher": mesher}
+            if len(movable) > 1:
+                notes.insert(0, _layer_note(movable))
+                drawing = make_drawing(None, shown, layers=layered, **options)
+            else:
+                drawing = make_drawing(composite(layered), shown, **options)
+        return replace(new_document(drawing), notes=tuple(notes))
+
+
+def _layer_note(layers: list[Layer]) -> str:
+    """A sentence about the layers of a drawing."""
+    hidden = sum(not layer.visible for layer in layers)
+    some = "" if not hidden else f", {hidden} of them hidden"
+    return f"Opened {len(layers)} layers{some}; Merge Layers in the File menu makes one drawing of them"
 
 
 def read_picture(path: str | Path) -> tuple[Picture, tuple[str, ...]]:
@@ -91,6 +126,8 @@ def opening_notes(document: Document, setting: str = THRESHOLD_OPTION) -> list[s
     drawing = document.drawing
     if document.path is not None or drawing.meshing is None:
         return []
+    if drawing.layers:
+        return list(document.notes)
     alpha, threshold, notes = drawing.image[..., 3], drawing.meshing.threshold, list(document.notes)
     most = int(alpha.max())
     if most <= 255 * DEFAULT_THRESHOLD and threshold < DEFAULT_THRESHOLD:

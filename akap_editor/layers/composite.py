@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..progress import announce
-from .layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup
+from .layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
 
 Samples = NDArray[np.float32]  # (h, w, 4) premultiplied, 0 to 1
 Box = tuple[int, int, int, int]  # left, top, right, bottom on the canvas
@@ -22,12 +22,12 @@ STRIP_PIXELS = 2**16  # composed at once, which the processor's cache holds
 
 
 @dataclass
-class _Node:
+class Node:
     """A layer, or a group with its children, and what is clipped to it; both from the bottom to the top."""
 
     content: Layer | LayerGroup
-    children: list["_Node"] = field(default_factory=list)
-    clipped: list["_Node"] = field(default_factory=list)
+    children: list["Node"] = field(default_factory=list)
+    clipped: list["Node"] = field(default_factory=list)
 
     @cached_property
     def box(self) -> Box:
@@ -43,7 +43,7 @@ def composite(layered: LayeredPicture) -> NDArray[np.uint8]:
 
     Colors are mixed in sRGB, as drawing programs do unless they are told otherwise.
     """
-    nodes = _arrange(layered.layers)
+    nodes = arrange(layered.layers)
     width, height = layered.size
     result = np.empty((height, width, 4), np.uint8)
     rows = max(1, STRIP_PIXELS // width)
@@ -56,6 +56,18 @@ def composite(layered: LayeredPicture) -> NDArray[np.uint8]:
     return result
 
 
+def node_picture(node: Node) -> tuple[NDArray[np.uint8], tuple[int, int]] | None:
+    """The picture (h, w, 4) uint8 of a node with what is clipped to it, and its offset on the canvas.
+
+    The node's own opacity, blending and visibility do not count. None if all of it is transparent.
+    """
+    left, top, *_ = node.box
+    samples = _source(node, node.box)
+    for above in node.clipped:
+        _clip(above, samples, node.box)
+    return trimmed(_straight(samples), (left, top))
+
+
 def hidden_layers(layered: LayeredPicture) -> list[Layer]:
     """The layers that `composite` does not draw, from the bottom to the top.
 
@@ -63,21 +75,21 @@ def hidden_layers(layered: LayeredPicture) -> list[Layer]:
     """
     shown: set[int] = set()
 
-    def walk(nodes: list[_Node]) -> None:
+    def walk(nodes: list[Node]) -> None:
         for node in nodes:
             if node.content.visible:
                 shown.add(id(node.content))
                 walk(node.children)
                 walk(node.clipped)
 
-    walk(_arrange(layered.layers))
+    walk(arrange(layered.layers))
     return [layer for layer in layered.layers if id(layer) not in shown]
 
 
-def _arrange(layers: Sequence[Layer]) -> list[_Node]:
+def arrange(layers: Sequence[Layer]) -> list[Node]:
     """The tree of groups and layers."""
-    root: list[_Node] = []
-    open_groups: list[_Node] = []
+    root: list[Node] = []
+    open_groups: list[Node] = []
     for layer in layers:
         kept = 0
         for node, group in zip(open_groups, layer.groups, strict=False):
@@ -86,14 +98,14 @@ def _arrange(layers: Sequence[Layer]) -> list[_Node]:
             kept += 1
         del open_groups[kept:]
         for group in layer.groups[kept:]:
-            node = _Node(group)
+            node = Node(group)
             _append(open_groups[-1].children if open_groups else root, node)
             open_groups.append(node)
-        _append(open_groups[-1].children if open_groups else root, _Node(layer))
+        _append(open_groups[-1].children if open_groups else root, Node(layer))
     return root
 
 
-def _append(siblings: list[_Node], node: _Node) -> None:
+def _append(siblings: list[Node], node: Node) -> None:
     """Add a node on top of its siblings, or to what is clipped to the topmost."""
     if node.content.clipping and siblings:
         siblings[-1].clipped.append(node)
@@ -101,7 +113,7 @@ def _append(siblings: list[_Node], node: _Node) -> None:
         siblings.append(node)
 
 
-def _draw(nodes: list[_Node], backdrop: Samples, box: Box) -> None:
+def _draw(nodes: list[Node], backdrop: Samples, box: Box) -> None:
     """Draw the nodes on a part of the canvas, ``box``, whose samples are ``backdrop``."""
     for node in nodes:
         content = node.content
@@ -125,7 +137,7 @@ def _draw(nodes: list[_Node], backdrop: Samples, box: Box) -> None:
         _blend(source, part, content.blend)
 
 
-def _source(node: _Node, box: Box) -> Samples:
+def _source(node: Node, box: Box) -> Samples:
     """The samples of a node alone, without its own opacity and without what is clipped to it."""
     left, top, right, bottom = box
     if isinstance(node.content, LayerGroup):
@@ -139,7 +151,7 @@ def _source(node: _Node, box: Box) -> Samples:
     return samples
 
 
-def _clip(node: _Node, base: Samples, box: Box) -> None:
+def _clip(node: Node, base: Samples, box: Box) -> None:
     """Draw a node on ``base`` without changing its opacity."""
     content, inner = node.content, _common_box(node.box, box)
     if not content.visible or inner is None:

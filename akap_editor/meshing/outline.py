@@ -25,6 +25,10 @@ _NOTCH = 0.5  # pixels: half the side of the square cut out where rings meet in 
 Polygons = NDArray[np.object_]  # of shapely polygons
 
 
+class NoOutlineError(InputError):
+    """Nothing of a picture is large and opaque enough to be cut out."""
+
+
 @dataclass(frozen=True, eq=False)
 class Outline:
     """The outline of one part of a drawing, in pixels.
@@ -96,14 +100,14 @@ def cut_out(
     Strokes thinner than `MIN_STROKE_WIDTH` become thicker. Parts smaller than `MIN_PART_AREA` or
     `MIN_PART_SHARE` are left out, unless the expansion joins them to others; holes smaller than
     `MIN_HOLE_AREA` are filled. Rings never meet, not even in a point.
-    Raises InputError if nothing is visible, or for arguments out of range.
+    Raises NoOutlineError if nothing is visible, or for arguments out of range.
     """
     alpha = as_channel(alpha, "alpha")
-    _check_lengths(threshold, expand, tolerance)
+    check_lengths(threshold, expand, tolerance)
     height, width = alpha.shape
     rings = contours(alpha, 255 * threshold)
     if not rings:
-        raise InputError(
+        raise NoOutlineError(
             f"the picture is fully transparent: expected a drawing, but none of its {width}×{height} pixels "
             f"is more than {threshold:.0%} opaque"
         )
@@ -111,7 +115,7 @@ def cut_out(
     drawn = polygons_of(rings, max(MIN_HOLE_AREA, np.pi * expand**2))
     specks = _specks(drawn, 2 * expand)
     if specks.all():
-        raise InputError(
+        raise NoOutlineError(
             f"the picture is too small to bend: expected a part of at least {MIN_PART_AREA:g} square pixels, "
             f"got {width}×{height} pixels with {int((alpha > 255 * threshold).sum())} of them visible, "
             f"in {len(drawn)} pieces"
@@ -137,7 +141,8 @@ def _topology(cut: CutOut, max_points: float) -> tuple[int, int]:
     return len(cut.parts), int((np.array(areas) > smallest).sum())
 
 
-def _check_lengths(threshold: float, expand: float, tolerance: float) -> None:
+def check_lengths(threshold: float, expand: float, tolerance: float = 0.0) -> None:
+    """Raise InputError if lengths in pixels or a threshold are out of range."""
     if as_number(threshold, "threshold", 0, 1) in (0, 1):
         raise InputError(f"threshold: expected a share between 0 and 1, got {threshold:g}")
     for name, value in (("expand", expand), ("tolerance", tolerance)):

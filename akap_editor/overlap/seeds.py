@@ -14,21 +14,21 @@ def overlap_seeds(topology: Topology, pose: Floats) -> Ints:
 
     Without flipped faces, an overlap within a component begins where the rim crosses itself, or at a vertex
     of the rim whose faces wind around it more than once, as in an elbow folded shut. A component can also lie
-    wholly inside another one.
+    wholly inside another one. Faces of different layers do not count: the order of the layers decides there.
     """
     t = topology
-    seeds = _rim_crossings(pose, t.rim, t.rim_faces)
+    seeds = _rim_crossings(pose, t.rim, t.rim_faces, t.layers)
     wound = _wound_vertices(pose, t.faces, t.rim_faces, t.rim_previous, t.fans, t.fan_edges)
     if len(wound):
         seeds = np.concatenate([seeds, wound])
     if len(t.loops) > 1 and t.components.any():
-        inside = _enclosed_loops(pose, t.faces, t.rim, t.rim_faces, t.components, t.loops)
+        inside = _enclosed_loops(pose, t.faces, t.rim, t.rim_faces, t.components, t.layers, t.loops)
         seeds = np.concatenate([seeds, inside])
     return seeds
 
 
 @compiled
-def _rim_crossings(pose: Floats, rim: Ints, rim_faces: Ints) -> Ints:
+def _rim_crossings(pose: Floats, rim: Ints, rim_faces: Ints, layers: Ints) -> Ints:
     """Faces of rim edges that cross, (s, 2): edges sorted by their left ends, swept from left to right."""
     count = len(rim)
     left, right = np.empty(count), np.empty(count)
@@ -47,6 +47,8 @@ def _rim_crossings(pose: Floats, rim: Ints, rim_faces: Ints) -> Ints:
             if low[j] > high[i] or high[j] < low[i]:
                 continue
             e, g = order[i], order[j]
+            if layers[rim_faces[e]] != layers[rim_faces[g]]:
+                continue
             p, q, r, s = rim[e, 0], rim[e, 1], rim[g, 0], rim[g, 1]
             if r in (p, q) or s in (p, q):
                 continue
@@ -87,7 +89,7 @@ def _wound_vertices(
 
 @compiled
 def _enclosed_loops(
-    pose: Floats, faces: Ints, rim: Ints, rim_faces: Ints, components: Ints, loops: Ints
+    pose: Floats, faces: Ints, rim: Ints, rim_faces: Ints, components: Ints, layers: Ints, loops: Ints
 ) -> Ints:
     """Face of a boundary loop and face of another component around a vertex of that loop, (s, 2)."""
     found, size = np.empty((64, 2), dtype=np.int32), 0
@@ -107,7 +109,7 @@ def _enclosed_loops(
         if not met:
             continue
         for f in range(len(faces)):
-            if components[f] == own:
+            if components[f] == own or layers[f] != layers[rim_faces[e]]:
                 continue
             ax, bx, cx = pose[faces[f, 0], 0], pose[faces[f, 1], 0], pose[faces[f, 2], 0]
             if (ax < x and bx < x and cx < x) or (ax > x and bx > x and cx > x):

@@ -17,7 +17,8 @@ class Topology:
     rim: (b, 2) directed edges without a neighbor; rim_faces: (b,) their faces; rim_previous: (b,) the rim
     edge that ends where each one starts; fans: (c, 2) faces and corners at the vertices of the rim;
     fan_edges: (c,) the rim edge that starts at each of them; components: (m,) the connected component of each
-    face; loops: (l,) one rim edge of each boundary loop.
+    face; layers: (m,) its layer, whose faces alone it can cross; loops: (l,) one rim edge of each boundary
+    loop.
     """
 
     faces: Ints
@@ -28,6 +29,7 @@ class Topology:
     fans: Ints
     fan_edges: Ints
     components: Ints
+    layers: Ints
     loops: Ints
 
 
@@ -56,6 +58,7 @@ def mesh_topology(mesh: TriMesh) -> Topology:
         np.stack(np.divmod(corner, 3), axis=1),
         leaving[start[corner]],
         mesh.component[faces[:, 0]],
+        mesh.face_layers,
         np.array([leaving[loop[0]] for loop in mesh.boundary_loops]),
     )
     return Topology(*(np.ascontiguousarray(array, dtype=np.int32) for array in arrays))

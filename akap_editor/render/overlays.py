@@ -132,7 +132,7 @@ class FaceColorPainter:
     ) -> None:
         """Draw ``mesh``, made with `program`; its picture is bound to texture unit 0.
 
-        order: (m,) the faces in the order in which ``mesh`` draws them, by default that of the mesh.
+        order: the faces in the order in which ``mesh`` draws them, by default that of the mesh.
         """
         self._upload(face_colors, order)
         assert self._levels is not None
@@ -141,7 +141,7 @@ class FaceColorPainter:
         self._scale.use(2)
         self.program["view"] = view
         self.program["translucent"] = face_colors.translucent
-        mesh.render()
+        mesh.render(vertices=-1 if order is None else 3 * len(order))
 
     def release(self) -> None:
         """Free every OpenGL object."""

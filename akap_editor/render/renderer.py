@@ -11,7 +11,9 @@ from ..editor.document.drawing import Drawing
 from ..editor.framing import Color
 from ..errors import InputError
 from ..geometry.validation import Floats, Ints
+from ..layers.drawing_layer import shown_layers
 from ..overlap.seams import CutMesh
+from .layer_runs import BLEND_PASSES, OVER, LayerRun, layer_runs
 from .overlays import NO_OVERLAYS, FaceColorPainter, LinePainter, Overlays, Reference, Rgba
 from .shaders import View, load_program
 
@@ -58,6 +60,8 @@ class Renderer:
         self._premultiply_pass = ctx.vertex_array(self._premultiply, [])
         self._checker = ctx.vertex_array(self._checker_program, [])
         self._drawing: Drawing | None = None
+        self._runs: tuple[LayerRun, ...] = ()
+        self._cut_runs: tuple[LayerRun, ...] = ()
         self._positions: Floats | None = None
         self._order: Ints | None = None
         self._cut: CutMesh | None = None
@@ -77,7 +81,7 @@ class Renderer:
         expected = drawing.mesh.vertices.shape
         if positions.shape != expected:
             raise InputError(f"positions: expected shape {expected}, got {positions.shape}")
-        if drawing is not self._drawing:
+        if not self._has_uploaded(drawing):
             self._upload_drawing(drawing)
         if positions is not self._positions:
             self._position_buffer.orphan()  # otherwise the driver waits until the last frame is drawn
@@ -92,7 +96,28 @@ class Renderer:
             faces = drawing.mesh.faces if order is None else drawing.mesh.faces[order]
             self._face_buffer.orphan()
             self._face_buffer.write(faces.astype(np.uint32))
-            self._order = order
+        if order is not self._order or drawing is not self._drawing or cut is not None:
+            self._arrange_layers(drawing, order, cut)
+        self._order, self._drawing = order, drawing
+
+    def _has_uploaded(self, drawing: Drawing) -> bool:
+        """Whether mesh and texture are those of a drawing; its layer list may differ."""
+        old = self._drawing
+        return old is not None and all(
+            a is b for a, b in ((old.mesh, drawing.mesh), (old.image, drawing.image), (old.uv, drawing.uv))
+        )
+
+    def _arrange_layers(self, drawing: Drawing, order: Ints | None, cut: CutMesh | None) -> None:
+        """Divide the faces into runs, and leave out the edges of hidden layers."""
+        face_layers, layers = drawing.face_layers, drawing.layers
+        self._runs = layer_runs(face_layers if order is None else face_layers[order], layers)
+        self._cut_runs = () if cut is None else layer_runs(face_layers[cut.sources], layers)
+        edges = drawing.mesh.edges
+        if layers:
+            assert drawing.mesh.layers is not None
+            edges = edges[shown_layers(layers)[drawing.mesh.layers[edges[:, 0]]]]
+            self._edge_buffer.write(edges.astype(np.uint32))
+        self._edge_count = len(edges)
 
     def _upload_cut(self, drawing: Drawing, positions: Floats, cut: CutMesh) -> None:
         """Upload a mesh cut along seams; it differs in every pose, so nothing of it is kept."""
@@ -138,26 +163,28 @@ class Renderer:
         if self._drawing is None:
             return
         self._ctx.enable_only(moderngl.BLEND)
-        self._ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA  # "over" for premultiplied colors
+        self._ctx.blend_func = OVER
         if background.checker is not None:
             self._draw_checker(background.checker, background.cell, self._drawing.size, size, view)
         if overlays.reference is not None:
             self._draw_reference(overlays.reference, self._drawing.size, view)
         self._texture.use(0)
         if overlays.rest_pose_opacity > 0:
-            self._draw_textured(self._rest_mesh, overlays.rest_pose_opacity, view)
+            self._draw_textured(self._rest_mesh, overlays.rest_pose_opacity, view, runs=self._runs)
         for pose in overlays.onion_poses:
             self._onion_buffer.orphan()
             self._onion_buffer.write(np.ascontiguousarray(pose.positions, dtype=np.float32))
-            self._draw_textured(self._onion_mesh, pose.opacity, view, pose.tint)
+            self._draw_textured(self._onion_mesh, pose.opacity, view, pose.tint, self._runs)
         if overlays.face_colors is not None:
             self._face_colors.draw(self._face_color_mesh, overlays.face_colors, self._order, view)
+        elif self._cut is None:
+            self._draw_textured(self._mesh, 1.0, view, runs=self._runs)
         else:
-            self._draw_textured(self._mesh if self._cut is None else self._cut_mesh, 1.0, view)
+            self._draw_textured(self._cut_mesh, 1.0, view, runs=self._cut_runs)
         if overlays.mesh_lines:
             self._edge_program["view"] = view
             self._edge_program["viewport"] = size
-            self._edges.render(moderngl.LINES)
+            self._edges.render(moderngl.LINES, vertices=2 * self._edge_count)
         self._lines.draw(overlays.lines, size, view)
 
     def release(self) -> None:
@@ -198,12 +225,23 @@ class Renderer:
         opacity: float,
         view: View,
         tint: Rgba = NO_TINT,
+        runs: tuple[LayerRun, ...] | None = None,
     ) -> None:
-        """Draw a mesh with the texture that is bound to unit 0."""
+        """Draw a mesh with the texture that is bound to unit 0, run by run; without runs all of it."""
         self._mesh_program["view"] = view
-        self._mesh_program["opacity"] = opacity
         self._mesh_program["tint"] = tint
-        mesh.render()
+        self._mesh_program["inverted"] = False
+        self._mesh_program["opacity"] = opacity
+        if runs is None:
+            mesh.render()
+        for run in runs or ():
+            self._mesh_program["opacity"] = opacity * run.opacity
+            for blending in BLEND_PASSES[run.blend]:
+                self._ctx.blend_func = blending.func
+                self._mesh_program["inverted"] = blending.inverted
+                mesh.render(vertices=3 * run.count, first=3 * run.first)
+        self._mesh_program["inverted"] = False
+        self._ctx.blend_func = OVER
 
     def _draw_reference(self, reference: Reference, frame: tuple[int, int], view: View) -> None:
         """Draw the picture in the middle of the frame, as large as it fits."""
@@ -238,7 +276,7 @@ class Renderer:
         uv = ctx.buffer(drawing.uv)
         rest = ctx.buffer(mesh.vertices.astype(np.float32))
         faces = self._face_buffer = ctx.buffer(mesh.faces.astype(np.uint32))
-        edges = ctx.buffer(mesh.edges.astype(np.uint32))
+        edges = self._edge_buffer = ctx.buffer(mesh.edges.astype(np.uint32))
         positions = (self._position_buffer, "2f", "in_position")
         corners = (uv, "2f", "in_uv")
         self._mesh = ctx.vertex_array(self._mesh_program, [positions, corners], faces)
@@ -258,7 +296,6 @@ class Renderer:
             edges,
             self._texture,
         ]
-        self._drawing = drawing
 
     def _release_drawing(self) -> None:
         for item in self._drawing_objects:

@@ -325,23 +325,25 @@ def test_a_dropped_picture_opens(pinned, tmp_path, image):
 
 
 @pytest.mark.parametrize("name", ["puppet.psd", "puppet.ora", "puppet"])
-def test_pictures_in_layers_open_as_one_drawing_with_a_notice(pinned, tmp_path, name):
+def test_pictures_in_layers_open_with_their_layers_and_a_notice(pinned, tmp_path, name):
     body = filled(60, 30, 200, 30, 30)
     path = tmp_path / name
     if name.endswith(".psd"):
-        path.write_bytes(psd_bytes(lambda psd: add_layer(psd, "body", body, 10, 10), (90, 60)))
+        path.write_bytes(psd_bytes(lambda psd: [add_layer(psd, x, body, 10, 10) for x in "ab"], (90, 60)))
     elif name.endswith(".ora"):
         path.write_bytes(
-            ora_bytes("<layer name='body' src='a.png' x='10'/>", {"a.png": body}, "w='90' h='60'")
+            ora_bytes("<layer name='body' src='a.png' x='10'/>" * 2, {"a.png": body}, "w='90' h='60'")
         )
     else:
         path.mkdir()
-        write_png(path / "1 body.png", body)
+        for number in (1, 2):
+            write_png(path / f"{number} body.png", body)
     pinned.drop(path)
     finish(pinned)
     assert not pinned.state.error
     assert pinned.document.drawing.name == "puppet"
-    assert pinned.state.notice.startswith("1 layer was merged into one drawing")
+    assert pinned.state.notice.startswith("Opened 2 layers; Merge Layers in the File menu")
+    assert len(pinned.document.drawing.layers) == 2
     assert path in pinned.state.preferences.recent
     path_of_damage = tmp_path / "damaged.psd"
     path_of_damage.write_bytes(b"8BPS")

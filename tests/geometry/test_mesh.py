@@ -346,3 +346,48 @@ def test_renumbered_mesh_is_that_made_anew(mesh):
     together = found.component[:, None] == found.component
     assert (together == (anew.component[:, None] == anew.component)).all()
     assert (found.component == mesh.component[vertex_order]).all()
+
+
+# --- layers ---
+
+TWO = np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)] * 2)
+ONE_FACE_EACH = np.array([(0, 1, 2), (3, 4, 5)])
+
+
+def test_vertices_of_different_layers_may_be_at_one_place():
+    mesh = TriMesh(TWO, ONE_FACE_EACH, layers=[0, 0, 0, 1, 1, 1])
+    assert mesh.face_layers.tolist() == [0, 1]
+    with pytest.raises(InputError, match="at the same place"):
+        TriMesh(TWO, ONE_FACE_EACH)
+
+
+@pytest.mark.parametrize(
+    ("layers", "message"),
+    [
+        ([0, 0, 0, 1, 1], "expected one for each of 6 vertices, got 5"),
+        ([0, 0, 1, 1, 1, 0], "expected faces on one layer, but face 0 is on two"),
+        ([0, 0, 0, -1, -1, -1], "expected indices from 0 to 5, got -1"),
+        ([0.0] * 6, "expected integer indices"),
+    ],
+)
+def test_layers_that_do_not_fit_are_refused(layers, message):
+    with pytest.raises(InputError, match=message):
+        TriMesh(TWO, ONE_FACE_EACH, layers=layers)
+
+
+def test_points_are_located_on_the_layer_that_is_asked_for():
+    mesh = TriMesh(TWO + np.array([(0, 0)] * 3 + [(1, 0)] * 3), ONE_FACE_EACH, layers=[0, 0, 0, 1, 1, 1])
+    points = [(1.5, 1.0)] * 3
+    assert mesh.locate(points, layers=[0, 1, -1]).faces.tolist() == [0, 1, 1]
+    with pytest.raises(InputError, match="lies outside the drawing"):
+        mesh.locate([(0.1, 0.1)], layers=[1])
+
+
+@pytest.mark.parametrize(("order", "found"), [(None, [0, 1]), ([1, 0], [1, 0]), ([0], [0]), ([], [])])
+def test_all_faces_at_a_point_are_found_from_back_to_front_without_those_that_are_not_drawn(order, found):
+    mesh = TriMesh(TWO, ONE_FACE_EACH, layers=[0, 0, 0, 1, 1, 1])
+    order = None if order is None else np.array(order, dtype=np.int64)
+    assert mesh.find_all((1.0, 1.0), order=order).faces.tolist() == found
+    front = mesh.find((1.0, 1.0), order=order)
+    assert (front is None) == (not found)
+    assert front is None or front.faces.tolist() == found[-1:]

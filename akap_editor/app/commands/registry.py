@@ -55,6 +55,7 @@ OPEN_BUNDLED = Submenu(
     "Open Bundled Drawing", lambda state: [(path.stem.capitalize(), path) for path in bundled_drawings()]
 )
 CUT_OUT = Command("Cut Out with Mask...", file_commands.choose_mask, (), "", file_commands.can_mask)
+MERGE_LAYERS = Command("Merge Layers", file_commands.merge_layers, (), "", file_commands.has_layers)
 CLOSE = Command("Close", files.close_document, (CTRL | Key.w,), "", has_drawing)
 SAVE = Command("Save", files.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, has_drawing)
 SAVE_AS = Command("Save As...", files.save_as, (CTRL | SHIFT | Key.s,), "", has_drawing)
@@ -300,7 +301,7 @@ MENUS: tuple[Menu, ...] = (
     (
         "File",
         (
-            *(OPEN, OPEN_RECENT, OPEN_BUNDLED, CUT_OUT, CLOSE, None),
+            *(OPEN, OPEN_RECENT, OPEN_BUNDLED, CUT_OUT, MERGE_LAYERS, CLOSE, None),
             *(SAVE, SAVE_AS, None),
             *(EXPORT_POSE_FILE, APPLY_POSE_FILE, None),
             *(EXPORT, SAVE_RECORDING, None),

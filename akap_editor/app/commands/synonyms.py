@@ -3,6 +3,7 @@
 SYNONYMS = {
     "Open": "import load picture image",
     "Cut Out with Mask": "matte background remove alpha",
+    "Merge Layers": "flatten image combine",
     "Save Recording": "record session macro",
     "Export": "export png svg gltf obj spine image picture render save for web",
     "Export Animation": "export gif video mp4 webm movie webp apng render sprite sheet frames",

@@ -147,7 +147,7 @@ class KeyframePlayback(Playback):
         session, pose = self._editor.session, self._pose_and_crossings(time)
         assert session is not None
         assert pose is not None, "expected keyframes"
-        order = draw_order(session.drawing.mesh, session.present.pins, *pose)
+        order = draw_order(session.drawing, session.present.pins, *pose)
         return Frame(session.drawing, pose[0], order)
 
     def onion_poses(self) -> tuple[list[Floats], list[Floats]]:
@@ -381,7 +381,7 @@ def animation_frame(
     """The frame of a document's animation at a time; there must be keyframes."""
     mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
     pose, crossings = animation_crossings(poses, blend or CrossingBlend(), mesh, pins, animation, time)
-    return Frame(document.drawing, pose, draw_order(mesh, pins, pose, crossings))
+    return Frame(document.drawing, pose, draw_order(document.drawing, pins, pose, crossings))
 
 
 def _within_limits(time: float) -> float:

@@ -61,7 +61,7 @@ def _state_frame(drawing: Drawing, state: EditState, pose: Floats) -> Frame:
     mesh, crossings = drawing.mesh, state.crossings
     if pose is not state.positions:
         crossings = crossings_in_pose(mesh, state.pins, state.positions, crossings, pose)
-    return Frame(drawing, pose, draw_order(mesh, state.pins, pose, crossings))
+    return Frame(drawing, pose, draw_order(drawing, state.pins, pose, crossings))
 
 
 class Motion:

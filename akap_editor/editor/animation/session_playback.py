@@ -180,7 +180,7 @@ class SessionPlayback(Playback):
         crossings = state.crossings
         if pose is not state.positions:
             crossings = crossings_in_pose(mesh, state.pins, state.positions, crossings, pose)
-        return Frame(snapshot.drawing, pose, draw_order(mesh, state.pins, pose, crossings))
+        return Frame(snapshot.drawing, pose, draw_order(snapshot.drawing, state.pins, pose, crossings))
 
     def _pose(self, time: float) -> Floats:
         index = self._index(time)

@@ -1,8 +1,10 @@
 """Which part of a drawing passes in front where the pose overlaps itself, and the depths of pins."""
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from threading import Lock
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +13,7 @@ from scipy.sparse.csgraph import dijkstra
 from ...errors import InputError
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.validation import Floats, Ints, as_indices, freeze
+from ...layers.drawing_layer import stacked_faces
 from ...overlap.overlaps import (
     NO_CROSSINGS,
     Overlaps,
@@ -21,6 +24,7 @@ from ...overlap.overlaps import (
 )
 from ...overlap.rules import Rules
 from ...overlap.seams import CutMesh, cut_along_seams
+from .drawing import Drawing
 from .pin import MAX_DEPTH, Pin
 
 LEVELS_PER_DEPTH = 4  # faces of one level keep the order of the mesh, so that a limb is drawn as a whole
@@ -55,7 +59,7 @@ class _IdentityCache:
                 del self._entries[next(iter(self._entries))]
 
 
-_overlaps, _orders, _cuts = _IdentityCache(), _IdentityCache(), _IdentityCache()
+_overlaps, _orders, _cuts, _stacks = (_IdentityCache() for _ in range(4))
 
 
 def as_crossings(value: ArrayLike, face_count: int = MAX_FACES) -> Ints:
@@ -185,24 +189,55 @@ def overlap_order(mesh: TriMesh, pins: Sequence[Pin], overlaps: Overlaps) -> Int
     return found
 
 
-def face_order(mesh: TriMesh, pins: Sequence[Pin], positions: Floats, crossings: Ints) -> Ints | None:
-    """Indices of the faces from back to front in a pose (n, 2); None stands for the order of the mesh."""
-    return overlap_order(mesh, pins, overlaps_of(mesh, pins, positions, crossings))
+def face_order(drawing: Drawing, pins: Sequence[Pin], positions: Floats, crossings: Ints) -> Ints | None:
+    """Indices of the faces from back to front in a pose (n, 2); None stands for the order of the mesh.
+
+    Faces of hidden layers are left out.
+    """
+    mesh = drawing.mesh
+    order = overlap_order(mesh, pins, overlaps_of(mesh, pins, positions, crossings))
+    return _stacked(order, drawing)
 
 
 def draw_order(
-    mesh: TriMesh, pins: Sequence[Pin], positions: Floats, crossings: Ints
+    drawing: Drawing, pins: Sequence[Pin], positions: Floats, crossings: Ints
 ) -> Ints | CutMesh | None:
     """What is drawn in a pose (n, 2), from back to front: `face_order`, or the mesh cut along its seams."""
+    mesh = drawing.mesh
     overlaps = overlaps_of(mesh, pins, positions, crossings)
     order = overlap_order(mesh, pins, overlaps)
     if order is None or not overlaps.has_seam:
-        return order
+        return _stacked(order, drawing)
     found = _cuts.get(overlaps, order)
     if found is None:
         found = cut_along_seams(mesh, overlaps, order) or order
         _cuts.put(found, overlaps, order)
     assert isinstance(found, CutMesh | np.ndarray)
+    return _stacked(found, drawing)
+
+
+@overload
+def _stacked(order: Ints | None, drawing: Drawing) -> Ints | None: ...
+@overload
+def _stacked(order: Ints | CutMesh | None, drawing: Drawing) -> Ints | CutMesh | None: ...
+def _stacked(order: Ints | CutMesh | None, drawing: Drawing) -> Ints | CutMesh | None:
+    """What is drawn within each layer, stacked layer by layer without hidden ones; cached by identity."""
+    if not drawing.layers:
+        return order
+    arguments = order, drawing.mesh, drawing.layers, drawing.layer_order
+    found = _stacks.get(*arguments)
+    if found is None:
+        layers, layer_order = drawing.layers, drawing.layer_order
+        if isinstance(order, CutMesh):
+            faces = stacked_faces(None, drawing.face_layers[order.sources], layers, layer_order)
+            faces = np.arange(len(order.faces)) if faces is None else faces
+            kept = _stacked(order.order, drawing)
+            assert kept is not None
+            found = replace(order, order=kept, faces=order.faces[faces], sources=order.sources[faces])
+        else:
+            found = stacked_faces(order, drawing.face_layers, layers, layer_order)
+        _stacks.put(found, *arguments)
+    assert found is None or isinstance(found, CutMesh | np.ndarray)
     return found
 
 
@@ -257,12 +292,19 @@ def _face_order(mesh: TriMesh, pins: _PinDepths) -> Ints:
 def _vertex_depths(mesh: TriMesh, pins: _PinDepths) -> Floats:
     """Depth of each vertex, (n,): mean of the pins' depths with weights 1/d², d the geodesic distance.
 
+    Pins count within their layers only, because the order of the layers decides between them; vertices of
+    layers without pins get 0.
+
     Inverse distance weighting: Shepard, "A two-dimensional interpolation function for irregularly-spaced
     data", 1968.
     """
     distances = np.stack([_point_distances(mesh, face, weights) for face, weights, _ in pins])
     weights = 1.0 / np.maximum(distances, _PIN_RADIUS * mesh.length) ** 2
-    depths: Floats = np.array([depth for *_, depth in pins]) @ weights / weights.sum(axis=0)
+    if mesh.layers is not None:
+        weights *= mesh.layers == mesh.face_layers[[face for face, *_ in pins]][:, None]
+    sums = weights.sum(axis=0)
+    blended = np.array([depth for *_, depth in pins]) @ weights
+    depths: Floats = np.divide(blended, sums, out=np.zeros_like(sums), where=sums > 0)
     return depths
 
 

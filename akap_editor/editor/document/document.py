@@ -100,13 +100,13 @@ class Document:
     def face_order(self) -> Ints | None:
         """Indices of the faces from back to front, (m,) int; None stands for the order of the mesh."""
         state = self.state
-        return face_order(self.drawing.mesh, state.pins, state.positions, state.crossings)
+        return face_order(self.drawing, state.pins, state.positions, state.crossings)
 
     @property
     def draw_order(self) -> Ints | CutMesh | None:
         """What is drawn, from back to front: `face_order`, or the mesh cut along its seams."""
         state = self.state
-        return draw_order(self.drawing.mesh, state.pins, state.positions, state.crossings)
+        return draw_order(self.drawing, state.pins, state.positions, state.crossings)
 
     def with_state(self, state: EditState) -> "Document":
         """This document with another state and the next revision."""

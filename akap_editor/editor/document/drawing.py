@@ -1,17 +1,23 @@
-"""Drawings: a picture and the mesh that carries it."""
+"""Drawings: a picture, or several in layers, and the mesh that carries them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ...display_text import display_text
 from ...errors import InputError
-from ...geometry.mesh import TriMesh
-from ...geometry.validation import as_channel, as_instance, as_picture, as_points, freeze
+from ...geometry.mesh import MeshPoints, TriMesh
+from ...geometry.validation import Floats, Ints, as_channel, as_instance, as_picture, as_points, freeze
+from ...layers.atlas import pack
+from ...layers.drawing_layer import Artwork, DrawingLayer
+from ...layers.layered_picture import Layer, LayeredPicture
+from ...layers.merging import movable_layers
 from ...meshing.background import remove_background
-from ...meshing.faint import fitting_threshold
+from ...meshing.faint import DEFAULT_THRESHOLD, MIN_VISIBLE, fitting_threshold
+from ...meshing.layer_mesh import mesh_layers
 from ...meshing.meshers import check_mesher, default_mesher, nearest_mesher
 from ...meshing.picture_mesh import mesh_picture
 from ...progress import announce, part
@@ -46,6 +52,10 @@ class Drawing:
     those that cannot be shown are escaped; meshing: how the mesh was made,
     None if unknown; original: (h, w, 4) uint8, the picture before its background was removed, None if it
     was not. Raises InputError on wrong shapes or dtypes.
+
+    A drawing in layers: layers: one for each number in ``mesh.layers``; layer_order: these numbers from back
+    to front; canvas: width and height in pixels. Its image is a texture that holds the pictures of all
+    layers, see `Artwork.corner`. Without layers these are empty, and the image is the canvas.
     """
 
     image: NDArray[np.uint8]
@@ -54,17 +64,40 @@ class Drawing:
     name: str = "untitled"
     meshing: Meshing | None = None
     original: NDArray[np.uint8] | None = None
+    layers: tuple[DrawingLayer, ...] = ()
+    layer_order: tuple[int, ...] = ()
+    canvas: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         image = as_picture(self.image, "image")
         as_instance(self.mesh, "mesh", TriMesh)
         name = display_text(as_instance(self.name, "name", str))[:MAX_NAME]
-        uv = as_points(self.uv, "uv", len(self.mesh.vertices)).astype(np.float32)
+        uv = self.uv
+        if not (uv.dtype == np.float32 and not uv.flags.writeable and uv.shape == self.mesh.vertices.shape):
+            uv = freeze(as_points(uv, "uv", len(self.mesh.vertices)).astype(np.float32))
         if image.flags.writeable or not image.flags.owndata:
             image = freeze(image.copy())
         object.__setattr__(self, "image", image)
         object.__setattr__(self, "name", name)
-        object.__setattr__(self, "uv", freeze(uv))
+        object.__setattr__(self, "uv", uv)
+        self._check_layers()
+
+    def _check_layers(self) -> None:
+        count = len(self.layers)
+        used = 0 if self.mesh.layers is None else int(self.mesh.layers.max()) + 1
+        if used != count or len(set(self.face_layers.tolist())) != max(count, 1):
+            raise InputError(f"layers: expected one for each layer of the mesh, {used}, got {count}")
+        if sorted(self.layer_order) != list(range(count)):
+            raise InputError(f"layer_order: expected each of {count} layers once, got {self.layer_order}")
+        if (self.canvas is None) != (not count):
+            raise InputError("canvas: expected a size for a drawing in layers, and none for another one")
+        object.__setattr__(self, "layers", tuple(self.layers))
+        object.__setattr__(self, "layer_order", tuple(self.layer_order))
+
+    @property
+    def face_layers(self) -> Ints:
+        """(m,) the layer of each face; 0 without layers."""
+        return self.mesh.face_layers
 
     @cached_property
     def is_opaque(self) -> bool:
@@ -73,12 +106,14 @@ class Drawing:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height of the picture in pixels."""
+        """Width and height of the picture, or of the canvas of all layers, in pixels."""
+        if self.canvas is not None:
+            return self.canvas
         return self.image.shape[1], self.image.shape[0]
 
 
 def make_drawing(
-    image: NDArray[np.uint8],
+    image: NDArray[np.uint8] | None = None,
     mask: NDArray[np.uint8] | None = None,
     vertices: int = Meshing.vertices,
     expand: float = Meshing.expand,
@@ -86,21 +121,39 @@ def make_drawing(
     background: float | None = Meshing.background,
     name: str = "untitled",
     mesher: str | None = None,
+    layers: LayeredPicture | None = None,
 ) -> Drawing:
-    """Cut a picture out along its alpha and triangulate it.
+    """Cut a picture, or each layer of one in layers, out along its alpha and triangulate it.
 
     image: (h, w, 4) uint8 RGBA, straight alpha; mask: (h, w) uint8, 255 where the picture is fully visible;
     threshold: None for 0.5, or less if the picture is faint, see `fitting_threshold`; the drawing's
-    ``meshing`` holds it; mesher: "triangle", "pythoncdt", or None for the default one; for the other
-    arguments see `Meshing`. The parts of the mesh are tied: a part without pins moves with the nearest part
-    that has one. Raises InputError on bad arguments, or if nothing of the picture is visible.
+    ``meshing`` holds it; mesher: "triangle", "pythoncdt", or None for the default one; layers: in place of
+    ``image``, see `open_layers`; they have no background to remove. For the other arguments see `Meshing`.
+    The parts of the mesh are tied: a part without pins moves with the nearest part that has one, and a layer
+    without pins with the layer it lies on. Raises InputError on bad arguments, or if nothing of the picture
+    is visible.
+
+    >>> from akap_editor import make_drawing, open_layers                                # doctest: +SKIP
+    >>> drawing = make_drawing(layers=open_layers("puppet.psd"))                         # doctest: +SKIP
+    >>> [layer.name for layer in drawing.layers]                                         # doctest: +SKIP
+    ['body', 'skull', 'eye left']
     """
+    if (image is None) == (layers is None):
+        raise InputError("image: expected either a picture or layers")
+    if layers is not None and background is not None:
+        raise InputError("background: expected None for a picture in layers")
+    mesher = check_mesher(mesher)
+    if layers is not None:
+        layered = as_instance(layers, "layers", LayeredPicture)
+        level = DEFAULT_THRESHOLD if threshold is None else threshold  # faint layers get their own
+        meshing = Meshing(vertices, expand, level, background, mesher)
+        return mesh_layered_drawing(layered if mask is None else mask_layers(layered, mask), meshing, name)
     image = as_picture(image, "image")
     if mask is not None:
         image = apply_mask(image, mask)
     if threshold is None:
         threshold = fitting_threshold(image[..., 3])
-    meshing = Meshing(vertices, expand, threshold, background, check_mesher(mesher))
+    meshing = Meshing(vertices, expand, threshold, background, mesher)
     return remove_background_and_mesh(image, meshing, name)
 
 
@@ -134,6 +187,132 @@ def mesh_drawing(
     height, width = image.shape[:2]
     uv = (mesh.vertices / [width, height]).astype(np.float32)
     return Drawing(image, mesh, uv, name, meshing, original)
+
+
+def mesh_layered_drawing(layered: LayeredPicture, meshing: Meshing, name: str) -> Drawing:
+    """Make a drawing of a picture in layers, see `movable_layers`.
+
+    Raises InputError if nothing of it is left.
+    """
+    movable = movable_layers(layered)
+    if not movable:
+        raise InputError("the layers are fully transparent: expected a drawing")
+    pictures, offsets = [layer.picture for layer in movable], [layer.offset for layer in movable]
+    texture, corners = pack(pictures, meshing.expand)
+    artworks = [
+        _artwork(texture, picture.shape[:2], offset, corner)
+        for picture, offset, corner in zip(pictures, offsets, corners, strict=True)
+    ]
+    layers = tuple(
+        DrawingLayer(
+            artwork,
+            layer.name,
+            tuple(group.name for group in layer.groups),
+            layer.opacity,
+            layer.blend,
+            layer.visible,
+        )
+        for layer, artwork in zip(movable, artworks, strict=True)
+    )
+    return _mesh_artworks(texture, layers, tuple(range(len(layers))), layered.size, meshing, name)
+
+
+def remesh_layered_drawing(drawing: Drawing, meshing: Meshing) -> Drawing:
+    """Make another mesh of a drawing in layers, with the same pictures and the same layer list."""
+    artworks = [layer.artwork for layer in drawing.layers]
+    texture, corners = pack([artwork.picture for artwork in artworks], meshing.expand)
+    layers = tuple(
+        replace(layer, artwork=_artwork(texture, artwork.picture.shape[:2], artwork.offset, corner))
+        for layer, artwork, corner in zip(drawing.layers, artworks, corners, strict=True)
+    )
+    return _mesh_artworks(texture, layers, drawing.layer_order, drawing.size, meshing, drawing.name)
+
+
+def _artwork(
+    texture: NDArray[np.uint8], shape: tuple[int, ...], offset: tuple[int, int], corner: tuple[int, int]
+) -> Artwork:
+    """The picture of a layer as a view of the texture, so that it is in memory once."""
+    (x, y), (height, width) = corner, shape
+    return Artwork(texture[y : y + height, x : x + width], offset, corner)
+
+
+def _mesh_artworks(
+    texture: NDArray[np.uint8],
+    layers: tuple[DrawingLayer, ...],
+    layer_order: tuple[int, ...],
+    canvas: tuple[int, int],
+    meshing: Meshing,
+    name: str,
+) -> Drawing:
+    """The drawing of layers whose pictures are in a texture (h, w, 4) uint8."""
+    meshing = replace(meshing, mesher=nearest_mesher(meshing.mesher))
+    mesh = mesh_layers(
+        [layer.artwork.picture[..., 3] for layer in layers],
+        [layer.artwork.offset for layer in layers],
+        meshing.vertices,
+        meshing.expand,
+        meshing.threshold,
+        meshing.mesher,
+    )
+    shifts = texture_shifts(layers)[mesh.layers]
+    uv = ((mesh.vertices + shifts) / [texture.shape[1], texture.shape[0]]).astype(np.float32)
+    return Drawing(texture, mesh, uv, name, meshing, None, layers, layer_order, canvas)
+
+
+def texture_shifts(layers: Sequence[DrawingLayer]) -> Floats:
+    """From the place of each layer on the canvas to that in the texture, (l, 2) pixels."""
+    artworks = [layer.artwork for layer in layers]
+    return np.array([np.subtract(each.corner, each.offset) for each in artworks], dtype=np.float64)
+
+
+def mask_layers(layered: LayeredPicture, mask: NDArray[np.uint8]) -> LayeredPicture:
+    """Multiply the alpha of all layers by a mask (h, w) uint8 of the size of the canvas.
+
+    Raises InputError on a mask of another size.
+    """
+    mask = as_channel(mask, "mask")
+    width, height = layered.size
+    if mask.shape != (height, width):
+        raise InputError(
+            f"mask: expected the size of the picture, {width} x {height} pixels, "
+            f"got {mask.shape[1]} x {mask.shape[0]}"
+        )
+
+    def masked(layer: Layer) -> Layer:
+        left, top, right, bottom = layer.box
+        own = np.zeros((bottom - top, right - left), np.uint8)
+        x, y = max(left, 0), max(top, 0)
+        part_of_mask = mask[y : max(bottom, 0), x : max(right, 0)]
+        own[y - top :, x - left :][: part_of_mask.shape[0], : part_of_mask.shape[1]] = part_of_mask
+        return replace(layer, picture=apply_mask(layer.picture, own))
+
+    return replace(layered, layers=tuple(masked(layer) for layer in layered.layers))
+
+
+def visible_point(
+    drawing: Drawing, point: ArrayLike, positions: Floats, order: Ints | None, unlocked: bool = False
+) -> MeshPoints | None:
+    """The point of a drawing that is seen at ``point`` (2,) in a pose (n, 2); None if none is.
+
+    Where the foremost layer is transparent, it is one of a layer behind; if all are, the foremost one.
+    order: see `Document.face_order`; unlocked: pass through locked layers.
+    """
+    if not drawing.layers:
+        return drawing.mesh.find(point, positions, order)
+    hits = drawing.mesh.find_all(point, positions, order)
+    numbers = drawing.face_layers[hits.faces]
+    if unlocked:
+        free = np.array([not drawing.layers[number].locked for number in numbers], dtype=bool)
+        hits, numbers = MeshPoints(hits.faces[free], hits.weights[free]), numbers[free]
+    if not len(hits):
+        return None
+    uv = np.einsum("kc,kcd->kd", hits.weights, drawing.uv[drawing.mesh.faces[hits.faces]].astype(float))
+    height, width = drawing.image.shape[:2]
+    x, y = np.floor(uv * [width, height]).astype(int).T
+    alpha = drawing.image[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1), 3]
+    seen = np.flatnonzero(alpha >= MIN_VISIBLE)
+    chosen = int(seen[-1]) if len(seen) else len(hits) - 1
+    return MeshPoints(hits.faces[chosen : chosen + 1], hits.weights[chosen : chosen + 1])
 
 
 def apply_mask(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> NDArray[np.uint8]:

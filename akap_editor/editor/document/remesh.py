@@ -15,7 +15,14 @@ from ...overlap.overlaps import transferred_overlaps
 from ...progress import announce
 from .crossings import overlaps_of
 from .document import EditState
-from .drawing import Drawing, Meshing, mesh_drawing, remove_background_and_mesh
+from .drawing import (
+    Drawing,
+    Meshing,
+    mesh_drawing,
+    remesh_layered_drawing,
+    remove_background_and_mesh,
+    texture_shifts,
+)
 from .keyframes import Keyframe
 from .named_poses import NamedPose
 from .pin import Pin
@@ -34,12 +41,17 @@ def remesh_drawing(drawing: Drawing, meshing: Meshing) -> Drawing:
     may be so for a mesh from a file or after a new rest pose.
     """
     current = drawing.meshing or Meshing()
-    offset = np.abs(drawing.uv * np.array(drawing.size) - drawing.mesh.vertices).max()
+    places = drawing.uv * np.array(drawing.image.shape[1::-1])
+    if drawing.layers:
+        places = places - texture_shifts(drawing.layers)[drawing.mesh.layers]
+    offset = np.abs(places - drawing.mesh.vertices).max()
     if offset > _MAX_UV_OFFSET:
         raise InputError(
             f"the mesh of {drawing.name} cannot be made anew: expected one that lies on its picture, "
             f"but a vertex is {offset:.1f} pixels away from its place there"
         )
+    if drawing.layers:
+        return remesh_layered_drawing(drawing, meshing)
     if meshing.background == current.background:
         return mesh_drawing(drawing.image, meshing, drawing.name, drawing.original)
     image = drawing.original if drawing.original is not None else drawing.image
@@ -57,7 +69,7 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
     announce(0.0, "Transferring pins and poses")
     new_mesh = drawing.mesh
     is_at_rest = np.array_equal(state.positions, mesh.vertices)
-    positions = new_mesh.vertices if is_at_rest else map_points(new_mesh.vertices, mesh, state.positions)
+    positions = new_mesh.vertices if is_at_rest else _map_vertices(new_mesh, mesh, state.positions)
     if _has_flipped(positions, new_mesh) and not _has_flipped(state.positions, mesh):
         positions = _unflip_faces(positions, new_mesh)
         if _has_flipped(positions, new_mesh):
@@ -65,11 +77,12 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
                 f"the drawing is bent too sharply for a mesh of {len(new_mesh.vertices)} vertices: "
                 "expected a pose that it can follow; bend it less first"
             )
-    faces = _nearest_on_mesh(new_mesh.vertices[new_mesh.faces].mean(axis=1), mesh)[0]
+    centers = new_mesh.vertices[new_mesh.faces].mean(axis=1)
+    faces = _nearest_on_mesh(centers, mesh, _layers_of(new_mesh.face_layers, mesh))[0]
     stiffness = None if state.stiffness is None else state.stiffness[faces]
 
     def map_pose(pose: Floats) -> Floats:
-        return map_points(new_mesh.vertices, mesh, pose)
+        return _map_vertices(new_mesh, mesh, pose)
 
     poses_to_map = 1 + len(state.poses) + len(state.animation.keyframes)
     mapped_poses = count(1)
@@ -103,12 +116,23 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
     )
 
 
-def map_points(points: Floats, mesh: TriMesh, pose: Floats) -> Floats:
+def _map_vertices(new_mesh: TriMesh, mesh: TriMesh, pose: Floats) -> Floats:
+    """A pose (n, 2) of ``mesh`` on another mesh of the same layers."""
+    return map_points(new_mesh.vertices, mesh, pose, _layers_of(new_mesh.layers, mesh))
+
+
+def _layers_of(layers: Ints | None, mesh: TriMesh) -> Ints | None:
+    """Layers of points, if those of ``mesh`` are to be told apart."""
+    return None if mesh.layers is None else layers
+
+
+def map_points(points: Floats, mesh: TriMesh, pose: Floats, layers: Ints | None = None) -> Floats:
     """Map points (k, 2) of the rest pose of ``mesh`` to its ``pose`` (n, 2).
 
-    The map is linear on each face. A point outside the mesh moves rigidly with the nearest face.
+    layers: (k,) those of the mesh on which the points lie, None for any. The map is linear on each face. A
+    point outside the mesh moves rigidly with the nearest face.
     """
-    faces, nearest, weights = _nearest_on_mesh(points, mesh)
+    faces, nearest, weights = _nearest_on_mesh(points, mesh, layers)
     rest_corners, corners = mesh.vertices[mesh.faces[faces]], pose[mesh.faces[faces]]
     is_outside = np.abs(points - nearest).max(axis=1) > 0
     mapped = np.einsum("kc,kcd->kd", weights, corners)
@@ -120,15 +144,21 @@ def map_points(points: Floats, mesh: TriMesh, pose: Floats) -> Floats:
     return mapped
 
 
-def _nearest_on_mesh(points: Floats, mesh: TriMesh) -> tuple[Ints, Floats, Floats]:
-    """Points of the rest pose that are nearest to ``points`` (k, 2).
+def _nearest_on_mesh(
+    points: Floats, mesh: TriMesh, layers: Ints | None = None
+) -> tuple[Ints, Floats, Floats]:
+    """Points of the rest pose that are nearest to ``points`` (k, 2), on the layers (k,) if they are given.
 
     Returns their faces (k,), their positions (k, 2), and their barycentric weights (k, 3).
     """
     corners = mesh.vertices[mesh.faces]
     triangles = shapely.polygons(corners)
     shapely_points = shapely.points(points)
-    faces = shapely.STRtree(triangles).nearest(shapely_points)
+    faces = np.zeros(len(points), dtype=np.int64)
+    for layer in [None] if layers is None else np.unique(layers).tolist():
+        mine = slice(None) if layer is None else layers == layer
+        own = np.arange(len(triangles)) if layer is None else np.flatnonzero(mesh.face_layers == layer)
+        faces[mine] = own[shapely.STRtree(triangles[own]).nearest(shapely_points[mine])]
     lines = shapely.shortest_line(triangles[faces], shapely_points)
     nearest = shapely.get_coordinates(lines).reshape(-1, 2, 2)[:, 0]
     is_inside = shapely.intersects(triangles[faces], shapely_points)
@@ -143,7 +173,8 @@ def _transfer_pins(state: EditState, mesh: TriMesh, new_mesh: TriMesh) -> tuple[
     if not state.pins:
         return ()
     rest_positions = mesh.evaluate(state.points, mesh.vertices)
-    faces, nearest, weights = _nearest_on_mesh(rest_positions, new_mesh)
+    layers = None if new_mesh.layers is None else mesh.face_layers[state.points.faces]
+    faces, nearest, weights = _nearest_on_mesh(rest_positions, new_mesh, layers)
     distances = np.linalg.norm(rest_positions - nearest, axis=1)
     return tuple(
         replace(pin, face=int(face), weights=row)

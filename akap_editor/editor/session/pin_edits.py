@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..document.crossings import check_depths, depth_at
+from ..document.drawing import visible_point
 from ..document.pin import Pin, check_pins
 from ..document.pin_angles import with_held_angles
 from .edits import SetPins, SetTargets
@@ -22,7 +23,9 @@ def add_pin(session: Session, position: tuple[float, float]) -> int | None:
     """
     session.finish_step()
     mesh, pins = session.drawing.mesh, session.state.pins
-    point = mesh.find(position, session.state.positions, session.document.face_order)
+    point = visible_point(
+        session.drawing, position, session.state.positions, session.document.face_order, unlocked=True
+    )
     if point is None:
         return None
     pin_id = 1 + max((pin.id for pin in pins), default=0)

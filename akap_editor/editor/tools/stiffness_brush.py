@@ -7,6 +7,7 @@ import numpy as np
 
 from ...geometry.validation import Floats
 from ..camera import Point
+from ..document.drawing import visible_point
 from ..document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS, apply_stroke, stroke_coverage
 from ..events import PointerEvent
 from ..session.edits import PaintStiffness
@@ -145,7 +146,9 @@ class Painting(Tool):
         """The point (2,) of the rest pose that is seen at a point of the screen; None outside the drawing."""
         session = self.session
         mesh, center = session.drawing.mesh, self.context.camera.to_drawing(position)
-        point = mesh.find(center, session.state.positions, session.document.face_order)
+        point = visible_point(
+            session.drawing, center, session.state.positions, session.document.face_order, unlocked=True
+        )
         return None if point is None else np.round(mesh.evaluate(point, mesh.vertices)[0], 3)
 
     def release(self, event: PointerEvent) -> None:

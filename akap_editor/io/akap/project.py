@@ -16,6 +16,7 @@ from ...editor.document.drawing import Drawing, Meshing
 from ...errors import FileError, InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
+from ...layers.drawing_layer import flat_picture
 from ...meshing.meshers import TRIANGLE, check_known
 from ..atomic import as_path, read_file, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
@@ -30,6 +31,7 @@ from .json_records import (
     refuse_newer,
     require,
 )
+from .layer_entries import MAX_PICTURE_BYTES, describe_layers, layer_picture_entries, read_layers
 from .pose_entries import keyframe_entries, named_pose_entries, read_keyframes, read_named_poses
 from .state_records import (
     check_crossings,
@@ -43,7 +45,8 @@ from .state_records import (
 PROJECT_SUFFIX = ".akap"
 MIMETYPE = b"application/x-akap"
 DOCUMENT_FORMAT = "akap"
-DOCUMENT_VERSION = 1
+DOCUMENT_VERSION = 2
+FLAT_VERSION = 1  # of drawings without layers, which older programs open
 STIFFNESS_ENTRY = "stiffness"  # a factor for each face
 THUMBNAIL_ENTRY = "thumbnail.png"  # a small copy of the picture
 ORIGINAL_ENTRY = "original.png"  # the picture before its background was removed
@@ -51,7 +54,6 @@ ORIGINAL_ENTRY = "original.png"  # the picture before its background was removed
 MAX_DOCUMENT_VERTICES = 1_000_000
 MAX_DOCUMENT_FACES = 2_000_000
 MAX_DOCUMENT_BYTES = 2**24
-MAX_PICTURE_BYTES = 2**29
 THUMBNAIL_SIDE = 256
 
 
@@ -183,12 +185,22 @@ _encoded_pictures: WeakKeyDictionary[Drawing, list[ArchiveEntry]] = WeakKeyDicti
 
 
 def _picture_entries(drawing: Drawing) -> list[ArchiveEntry]:
+    if drawing.layers:
+        return [*layer_picture_entries(drawing), *_layered_thumbnail(drawing)]
     if drawing not in _encoded_pictures:
         pictures = {"picture.png": drawing.image, THUMBNAIL_ENTRY: _thumbnail(drawing.image)}
         if drawing.original is not None:
             pictures[ORIGINAL_ENTRY] = drawing.original
         entries = [(name, encode_png(picture), False) for name, picture in pictures.items()]
         _encoded_pictures[drawing] = entries
+    return _encoded_pictures[drawing]
+
+
+def _layered_thumbnail(drawing: Drawing) -> list[ArchiveEntry]:
+    if drawing not in _encoded_pictures:
+        step = _thumbnail_step(drawing.size)
+        picture = flat_picture(drawing.layers, drawing.layer_order, drawing.size, step)
+        _encoded_pictures[drawing] = [(THUMBNAIL_ENTRY, encode_png(_thumbnail(picture)), False)]
     return _encoded_pictures[drawing]
 
 
@@ -204,7 +216,7 @@ def _describe(document: Document) -> Json:
     width, height = drawing.size
     return {
         "format": DOCUMENT_FORMAT,
-        "version": DOCUMENT_VERSION,
+        "version": DOCUMENT_VERSION if drawing.layers else FLAT_VERSION,
         "program": program_name(),
         "name": drawing.name,
         "picture": {"width": width, "height": height},
@@ -216,6 +228,7 @@ def _describe(document: Document) -> Json:
         },
         "pins": [pin.to_json() for pin in document.state.pins],
         "settings": document.state.settings.to_json(),
+        **describe_layers(drawing),
         **write_crossings(document.state.crossings),
     }
 
@@ -235,10 +248,15 @@ def _describe_meshing(drawing: Drawing) -> Json:
 
 
 def _thumbnail(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    step = 1 + max(image.shape[:2]) // (4 * THUMBNAIL_SIDE)  # a quick first reduction of large pictures
+    step = _thumbnail_step(image.shape[:2])
     picture = Image.fromarray(np.ascontiguousarray(image[::step, ::step]))
     picture.thumbnail((THUMBNAIL_SIDE, THUMBNAIL_SIDE))
     return np.asarray(picture)
+
+
+def _thumbnail_step(size: tuple[int, ...]) -> int:
+    """Of a picture of this size, every how many pixels count: a quick first reduction of large ones."""
+    return 1 + max(size) // (4 * THUMBNAIL_SIDE)
 
 
 # -- reading -------------------------------------------------------------------------------------------------
@@ -273,8 +291,15 @@ def _decode(archive: Archive) -> Document:
     state = EditState(pins, positions, settings, None, poses, stiffness, animation, crossings)
     vertices = archive.read_array("mesh/vertices", "<f8", n, 2)
     _check_vertices(vertices)
-    trimesh = TriMesh(vertices, archive.read_array("mesh/faces", "<i4", m, 3), tied)
-    uv = archive.read_array("mesh/uv", "<f4", n, 2)
+    faces, uv = archive.read_array("mesh/faces", "<i4", m, 3), archive.read_array("mesh/uv", "<f4", n, 2)
+    if version > FLAT_VERSION and "layers" in record:
+        texture, layers, order, vertex_layers = read_layers(archive, record, n)
+        layered_mesh = TriMesh(vertices, faces, tied, vertex_layers)
+        drawing = Drawing(
+            texture, layered_mesh, uv, name, meshing, None, layers, order, canvas=(width, height)
+        )
+        return Document(drawing, state)
+    trimesh = TriMesh(vertices, faces, tied)
     image, original = _picture(archive, "picture.png", width, height), None
     if meshing is not None and meshing.background is not None:
         original = _picture(archive, ORIGINAL_ENTRY, width, height)

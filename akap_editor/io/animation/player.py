@@ -19,6 +19,7 @@ from ...editor.document.drawing import Drawing
 from ...editor.framing import Color, output_size
 from ...errors import InputError
 from ...geometry.validation import Floats
+from ...layers.drawing_layer import faded_texture
 from ...overlap.seams import CutMesh
 from ...progress import announced
 from ...resources import resource
@@ -127,7 +128,9 @@ class _Contents:
         drawing, pose, order = each.frame
         mesh = self._number(self._drawings, drawing, "mesh", id(drawing))
         if mesh == len(self.meshes):
-            picture = self._number(self.pictures, drawing.image, "picture", id(drawing.image))
+            opacities = tuple(layer.opacity for layer in drawing.layers)
+            image = faded_texture(drawing.image, drawing.layers)
+            picture = self._number(self.pictures, image, "picture", id(drawing.image), opacities)
             vertices = len(drawing.mesh.vertices)
             self.meshes.append({"picture": picture, "vertices": vertices, "poseCount": 0})
             self._poses.append([])

@@ -11,6 +11,7 @@ from ...editor.animation.keyframe_poses import KeyframePoses
 from ...editor.document.crossings import depth_order, overlaps_of
 from ...editor.document.document import Document
 from ...geometry.validation import Floats, Ints
+from ...layers.drawing_layer import stacked_faces
 from ...overlap.circles import face_levels
 
 TOLERANCE = 0.25  # pixels by which a pose may be off between two that are kept
@@ -110,6 +111,7 @@ class _Orders:
 
     def __init__(self, document: Document) -> None:
         mesh, state = document.drawing.mesh, document.state
+        self._drawing = document.drawing
         self._count = len(mesh.faces)
         depths = depth_order(mesh, state.pins)
         self._rank = np.arange(self._count)
@@ -135,7 +137,12 @@ class _Orders:
         for codes in self._pairs:
             low, high = self._low_and_high(codes)
             levels, _ = face_levels(self._count, low, high)
-            result.append(DrawingOrder(np.lexsort((self._rank, levels)), low, high))
+            order: Ints = np.lexsort((self._rank, levels))
+            if self._drawing.layers:
+                layers, layer_order = self._drawing.layers, self._drawing.layer_order
+                stacked = stacked_faces(order, self._drawing.face_layers, layers, layer_order)
+                order = order if stacked is None else stacked
+            result.append(DrawingOrder(order, low, high))
         return result
 
     def _codes(self, low: Ints, high: Ints) -> Ints:

@@ -24,8 +24,10 @@ def component_runs(components: Ints, order: Ints, low: Ints, high: Ints) -> list
     for lower, upper in zip(low.tolist(), high.tolist(), strict=True):
         above[lower].append(upper)
     free: dict[int, list[int]] = {}  # ranks of the faces that may be drawn now, by component
-    means = np.bincount(components, rank) / np.bincount(components)
-    for component in np.argsort(means, kind="stable").tolist():  # from back to front
+    counts = np.bincount(components)
+    means = np.bincount(components, rank) / np.maximum(counts, 1)
+    order_of_components = np.argsort(means, kind="stable").tolist()
+    for component in [number for number in order_of_components if counts[number]]:  # from back to front
         free[component] = sorted(rank[f] for f in np.flatnonzero(components == component) if not waiting[f])
     runs: list[tuple[int, Ints]] = []
     while any(free.values()):

@@ -1,12 +1,14 @@
 """The faces of a drawing as they are drawn: from back to front, cut along seams, stacked in z."""
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from ...editor.document.drawing import Drawing
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
+from ...layers.drawing_layer import DrawingLayer
 from ...overlap.circles import face_levels
 from ...overlap.face_pairs import overlapping_faces
 from ...overlap.seams import CutMesh
@@ -20,7 +22,7 @@ class DrawnFaces:
     """What a file holds of a mesh.
 
     rest, pose: (v, 2) vertices in pixels, y down; uv: (v, 2) texture coordinates; faces: (q, 3) from back to
-    front; components: (q,) the component of each face; z: (v,) levels, the higher the nearer, 0 unless
+    front; components, layers: (q,) of each face; z: (v,) levels, the higher the nearer, 0 unless
     `stacked`; sources: (v,) which vertices of the drawing, with those along seams, these are.
     """
 
@@ -31,11 +33,32 @@ class DrawnFaces:
     components: Ints
     z: Ints
     sources: Ints
+    layers: Ints
+
+    def layer_runs(self, drawing: Drawing) -> list[tuple[DrawingLayer | None, Ints]]:
+        """Layers with the numbers of their faces, from back to front; without layers None with all faces."""
+        numbers = np.arange(len(self.faces))
+        if not drawing.layers:
+            return [(None, numbers)]
+        starts = np.flatnonzero(np.diff(self.layers, prepend=-1)).tolist()
+        return [
+            (drawing.layers[self.layers[start]], numbers[start:end])
+            for start, end in pairwise([*starts, len(numbers)])
+        ]
 
     @property
     def low_and_high(self) -> tuple[Ints, Ints]:
-        """The lower and the upper face of each pair that overlaps in the pose, (p,) each."""
-        pairs = overlapping_faces(mesh_topology(TriMesh(self.rest, self.faces)), self.pose)
+        """The lower and the upper face of each pair that overlaps in the pose, (p,) each.
+
+        Pairs of faces of different layers do not count.
+        """
+        if not len(self.faces):
+            return np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32)
+        used, corners = np.unique(self.faces, return_inverse=True)  # not all if layers are hidden
+        layers = np.zeros(len(used), dtype=np.int64)
+        layers[corners.reshape(-1, 3)] = self.layers[:, None]
+        mesh = TriMesh(self.rest[used], corners.reshape(-1, 3), layers=layers if layers.any() else None)
+        pairs = overlapping_faces(mesh_topology(mesh), self.pose[used])
         return np.minimum(pairs.first, pairs.second), np.maximum(pairs.first, pairs.second)
 
 
@@ -46,24 +69,36 @@ def drawn_faces(drawing: Drawing, positions: Floats, order: Ints | CutMesh | Non
     """
     mesh, uv = drawing.mesh, drawing.uv.astype(float)
     component = mesh.component
-    rest, pose, faces = mesh.vertices, positions, mesh.faces
+    rest, pose, faces, layers = mesh.vertices, positions, mesh.faces, drawing.face_layers
     if isinstance(order, CutMesh):
         rest, pose, uv = (order.values(values) for values in (rest, pose, uv))
         component = np.concatenate([component, component[order.edges[:, 0]]])
         faces = order.faces
+        layers = drawing.face_layers[order.sources] if drawing.layers else np.zeros(len(faces), dtype=int)
     elif order is not None:
-        faces = faces[order]
+        faces, layers = faces[order], layers[order]
     count = len(rest)
     flat = np.zeros(count, dtype=np.int64)
-    return DrawnFaces(rest, pose, uv, faces, component[faces[:, 0]], flat, np.arange(count))
+    return DrawnFaces(rest, pose, uv, faces, component[faces[:, 0]], flat, np.arange(count), layers)
 
 
 def stacked(drawn: DrawnFaces, low: Ints, high: Ints) -> DrawnFaces:
     """The faces with levels z by which each lower one lies behind the upper one of its pairs.
 
     low, high: (p,) pairs of faces that overlap. The surface stays in one piece if that is possible; else
-    vertices are doubled, and the new ones follow the others.
+    vertices are doubled, and the new ones follow the others. Each layer lies wholly in front of the one before.
     """
+    result = _stacked_in_layers(drawn, low, high)
+    base, z = 0, result.z.copy()
+    starts = np.flatnonzero(np.diff(result.layers, prepend=-1)).tolist()
+    for start, end in pairwise([*starts, len(result.faces)]) if len(starts) > 1 else ():
+        own = np.unique(result.faces[start:end])
+        z[own] += base
+        base = int(z[own].max()) + 1
+    return replace(result, z=z)
+
+
+def _stacked_in_layers(drawn: DrawnFaces, low: Ints, high: Ints) -> DrawnFaces:
     z = _vertex_levels(drawn, low, high)
     if z is not None:
         return replace(drawn, z=z)

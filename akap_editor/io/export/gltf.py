@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
+from ...layers.drawing_layer import DrawingLayer
 from ...overlap.seams import CutMesh
 from .baked_animation import BakedAnimation
 from .drawn_faces import DrawnFaces, drawn_faces, stacked
@@ -83,11 +84,11 @@ def encode_glb(
     meshes = [
         {
             "name": drawing.name if number == 0 else f"{drawing.name} {number + 1}",
-            "primitives": [primitive],
+            "primitives": primitives,
             "weights": [1.0, *[0.0] * (len(poses) - 1)],
             "extras": {"targetNames": names},
         }
-        for number, primitive in enumerate(_primitives(buffer, drawing, layers, poses, order))
+        for number, primitives in enumerate(_primitives(buffer, drawing, layers, poses, order))
     ]
     nodes = [
         {"name": mesh["name"], "mesh": number, "scale": [0.0 if number else 1 / PIXELS_PER_UNIT] * 3}
@@ -103,7 +104,7 @@ def encode_glb(
         "nodes": nodes,
         "meshes": meshes,
         **animations,
-        "materials": [_material(drawing.name)],
+        "materials": [_material(drawing.name, layer) for layer in drawing.layers or (None,)],
         "textures": [{"sampler": 0, "source": 0}],
         "samplers": [{"magFilter": _LINEAR, "minFilter": _MIPMAPS, "wrapS": _CLAMP, "wrapT": _CLAMP}],
         "images": [{"name": drawing.name, "bufferView": image, "mimeType": "image/png"}],
@@ -130,8 +131,11 @@ def _layers(
         layers.append(stacked(drawn, *drawn.low_and_high) if z_order else drawn)
     for each in [] if baked is None else baked.orders:
         drawn = drawn_faces(drawing, positions, each.order)
-        rank = np.argsort(each.order)
-        layers.append(stacked(drawn, rank[each.low], rank[each.high]) if z_order else drawn)
+        rank = np.full(len(drawing.mesh.faces), -1)  # faces of hidden layers are not drawn
+        rank[each.order] = np.arange(len(each.order))
+        pairs = np.stack([rank[each.low], rank[each.high]])
+        low, high = pairs[:, pairs.min(axis=0, initial=0) >= 0]
+        layers.append(stacked(drawn, low, high) if z_order else drawn)
     return layers
 
 
@@ -141,8 +145,10 @@ def _primitives(
     layers: Sequence[DrawnFaces],
     poses: Sequence[Floats],
     order: Ints | CutMesh | None,
-) -> list[dict[str, Any]]:
-    """A primitive for each order of drawing; those with the same vertices share them and their targets.
+) -> list[list[dict[str, Any]]]:
+    """The primitives of each order of drawing; those with the same vertices share them and their targets.
+
+    Each layer is a primitive with a material of its own; without layers there is one.
 
     order: that of the pose.
     """
@@ -157,9 +163,9 @@ def _primitives(
                     "POSITION": buffer.add_array(rest, "VEC3", bounds=True),
                     "TEXCOORD_0": buffer.add_array(drawn.uv.astype("<f4"), "VEC2"),
                 },
-                "material": 0,
             }
-        indices = buffer.add_array(drawn.faces[:, ::-1].astype("<u4"), "SCALAR")
+        runs = drawn.layer_runs(drawing)
+        indices = [buffer.add_array(drawn.faces[run, ::-1].astype("<u4"), "SCALAR") for _, run in runs]
         if "targets" not in shared[key]:
             has_seams = drawn.sources.max() >= len(drawing.mesh.vertices)
             targets = []
@@ -168,7 +174,12 @@ def _primitives(
                 offsets = _to_3d(y_up(drawing, points[drawn.sources]), rest[:, 2]) - rest
                 targets.append({"POSITION": buffer.add_array(offsets, "VEC3", bounds=True)})
             shared[key]["targets"] = targets
-        primitives.append({**shared[key], "indices": indices})
+        primitives.append(
+            [
+                {**shared[key], "indices": accessor, "material": int(drawn.layers[run[0]])}
+                for accessor, (_, run) in zip(indices, runs, strict=True)
+            ]
+        )
     return primitives
 
 
@@ -206,11 +217,13 @@ def _to_3d(points: Floats, z: NDArray[Any]) -> NDArray[np.float32]:
     return np.column_stack([points, z]).astype("<f4")
 
 
-def _material(name: str) -> dict[str, Any]:
+def _material(name: str, layer: DrawingLayer | None) -> dict[str, Any]:
     """An unlit material that blends alpha and shows both sides, as a pose may flip faces."""
+    opacity = 1.0 if layer is None else layer.opacity
     return {
-        "name": name,
+        "name": name if layer is None else layer.name,
         "pbrMetallicRoughness": {
+            **({} if opacity == 1 else {"baseColorFactor": [1.0, 1.0, 1.0, opacity]}),
             "baseColorTexture": {"index": 0},
             "metallicFactor": 0.0,
             "roughnessFactor": 1.0,

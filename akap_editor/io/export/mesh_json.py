@@ -1,12 +1,40 @@
 """Exports mesh, pose and pins as JSON, described in docs/exporting.md."""
 
 import json
+from typing import Any
 
 from ...editor.document.document import Document
+from ...editor.document.drawing import Drawing
+from ...layers.drawing_layer import shown_layers
 from ...overlap.seams import CutMesh
 
 MESH_JSON_FORMAT = "akap-mesh"
 MESH_JSON_VERSION = 1
+
+
+def _layers(drawing: Drawing) -> dict[str, Any] | None:
+    """The layers of a drawing from back to front, and the layer of each face; None without layers."""
+    if not drawing.layers:
+        return None
+    shown = shown_layers(drawing.layers)
+    height, width = drawing.image.shape[:2]
+    return {
+        "texture": {"width": width, "height": height},
+        "layers": [
+            {
+                "name": layer.name,
+                "groups": list(layer.groups),
+                "shown": bool(shown[number]),
+                "opacity": layer.opacity,
+                "blend": layer.blend,
+                "offset": list(layer.artwork.offset),
+                "corner": list(layer.artwork.corner),
+            }
+            for number, layer in enumerate(drawing.layers)
+        ],
+        "order": list(drawing.layer_order),
+        "faceLayers": drawing.face_layers.tolist(),
+    }
 
 
 def encode_json(document: Document) -> bytes:
@@ -43,6 +71,7 @@ def encode_json(document: Document) -> bytes:
             }
             for index, pin in enumerate(state.pins)
         ],
+        "layers": _layers(drawing),
         "stiffness": None if state.stiffness is None else state.stiffness.tolist(),
         "settings": state.settings.to_json(),
     }

@@ -4,6 +4,7 @@ import numpy as np
 
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
+from ...layers.drawing_layer import DrawingLayer
 from ...overlap.seams import CutMesh
 from .drawn_faces import drawn_faces, stacked
 from .texture import companion_stem, encode_texture, level_height, texture_name, y_up
@@ -19,8 +20,8 @@ def encode_obj(
     """The contents of texture, material and mesh file, by name, for the pose ``positions`` (n, 2).
 
     Vertices keep their order, so that other programs can blend two poses of a drawing; new ones along seams
-    follow. Faces are counterclockwise seen from +z, from back to front; order: see `Document.draw_order`;
-    z_order: lay what is in front nearer to the viewer, see `stacked`.
+    follow. Each layer is a group. Faces are counterclockwise seen from +z, from back to front; order: see
+    `Document.draw_order`; z_order: lay what is in front nearer to the viewer, see `stacked`.
     """
     drawn = drawn_faces(drawing, positions, order)
     if z_order:
@@ -28,7 +29,6 @@ def encode_obj(
     z = drawn.z * level_height(drawing)
     texture, material = companion_names(stem)
     points, uv = y_up(drawing, drawn.pose), drawn.uv * np.array([1, -1]) + np.array([0, 1])
-    corners = drawn.faces[:, ::-1] + 1
     lines = [
         f"mtllib {material}",
         f"o {companion_stem(drawing.name) or 'drawing'}",
@@ -36,13 +36,19 @@ def encode_obj(
         *(f"vt {u:.9g} {v:.9g}" for u, v in uv.tolist()),
         "vn 0 0 1",
         "usemtl drawing",
-        *(f"f {a}/{a}/1 {b}/{b}/1 {c}/{c}/1" for a, b, c in corners.tolist()),
+        *(line for layer, run in drawn.layer_runs(drawing) for line in _face_lines(layer, drawn.faces[run])),
     ]
     return {
         texture: encode_texture(drawing),
         material: _material(texture).encode(),
         f"{stem}.obj": ("\n".join(lines) + "\n").encode(),
     }
+
+
+def _face_lines(layer: DrawingLayer | None, faces: Ints) -> list[str]:
+    """The lines of faces (f, 3); those of a layer are a group with its name."""
+    lines = [] if layer is None else [f"g {companion_stem(layer.name) or 'layer'}"]
+    return lines + [f"f {a}/{a}/1 {b}/{b}/1 {c}/{c}/1" for a, b, c in (faces[:, ::-1] + 1).tolist()]
 
 
 def companion_names(stem: str) -> list[str]:

@@ -31,12 +31,13 @@ def encode_spine(
     """The contents of texture, atlas and JSON file, by name. Raises InputError if the mesh is too large.
 
     The skeleton has one bone; each component of the mesh is a slot with one unweighted mesh attachment, or
-    several slots where it passes both behind and in front of another one. The setup pose is the rest pose,
-    the animation "pose" holds ``positions`` (n, 2) as a deform key. order: see `Document.draw_order`. baked:
-    keyframes, which are the animation "keyframes"; where they need several orders, there are slots for each
-    of these, and no faces are cut along seams.
+    several slots where it passes both behind and in front of another one. Slots are named after their layers,
+    and hidden layers are left out. The setup pose is the rest pose, the animation "pose" holds ``positions``
+    (n, 2) as a deform key. order: see `Document.draw_order`. baked: keyframes, which are the animation
+    "keyframes"; where they need several orders, there are slots for each of these, and no faces are cut along
+    seams.
     """
-    texture, title = texture_name(stem), drawing.name or "drawing"
+    texture = texture_name(stem)
     region = texture.removesuffix(".png")
     drawn = drawn_faces(drawing, positions, order if baked is None else None)
     rest, mesh = y_up(drawing, drawn.rest), drawing.mesh
@@ -44,13 +45,14 @@ def encode_spine(
         orders = [DrawingOrder(np.arange(len(drawn.faces)), *drawn.low_and_high)]
     else:
         orders = baked.orders
-    parts = [_Part(mesh, drawn, number) for number in range(int(mesh.component.max()) + 1)]
+    parts = {number: _Part(mesh, drawn, number) for number in np.unique(drawn.components).tolist()}
     slots: list[dict[str, str]] = []
     attachments, slot_parts = {}, []  # by slot
     slots_of_orders: list[list[str]] = []
+    slot_names = _SlotNames()
     for number, each in enumerate(orders):
-        runs = component_runs(drawn.components, each.order, each.low, each.high)
-        names = [_slot_name(title, len(slots) + k) for k in range(len(runs))]
+        runs = _layered_runs(drawing, drawn, each)
+        names = [slot_names.next(_title(drawing, drawn, faces)) for _, faces in runs]
         for name, (component, faces) in zip(names, runs, strict=True):
             shown = {"attachment": name} if number == 0 else {}
             slots.append({"name": name, "bone": "root", **shown})
@@ -78,7 +80,7 @@ def encode_spine(
     text = json.dumps(record, separators=(",", ":"), allow_nan=False)
     return {
         texture: encode_texture(drawing),
-        atlas_name(stem): _atlas(texture, drawing.size).encode(),
+        atlas_name(stem): _atlas(texture, drawing.image.shape[1::-1]).encode(),
         f"{stem}.spine.json": text.encode(),
     }
 
@@ -88,7 +90,7 @@ def atlas_name(stem: str) -> str:
     return f"{companion_stem(stem)}.atlas"
 
 
-def _atlas(texture: str, size: tuple[int, int]) -> str:
+def _atlas(texture: str, size: tuple[int, ...]) -> str:
     """A texture atlas with one region: https://esotericsoftware.com/spine-atlas-format."""
     width, height = size
     region = texture.removesuffix(".png")
@@ -96,8 +98,10 @@ def _atlas(texture: str, size: tuple[int, int]) -> str:
     return "\n".join([*lines, f"bounds: 0, 0, {width}, {height}", ""])
 
 
-def _slot_name(title: str, number: int) -> str:
-    return title if number == 0 else f"{title} {number + 1}"
+def _title(drawing: Drawing, drawn: DrawnFaces, faces: Ints) -> str:
+    """The name of the layer of some drawn faces; without layers that of the drawing."""
+    name = drawing.layers[drawn.layers[faces[0]]].name if drawing.layers else drawing.name
+    return name or "drawing"
 
 
 class _Offsets:
@@ -159,6 +163,40 @@ def _keys_in_spans(baked: BakedAnimation, spans: Sequence[tuple[float, float]]) 
     return [(times[k], baked.poses[k]) for k in sorted(needed)] or [(0.0, baked.poses[0])]
 
 
+class _SlotNames:
+    """Names of slots, which must differ: a number follows from the second of one name on."""
+
+    def __init__(self) -> None:
+        self._used: set[str] = set()
+
+    def next(self, name: str) -> str:
+        """The name for the next slot."""
+        number, result = 2, name
+        while result in self._used:
+            result, number = f"{name} {number}", number + 1
+        self._used.add(result)
+        return result
+
+
+def _layered_runs(drawing: Drawing, drawn: DrawnFaces, order: DrawingOrder) -> list[tuple[int, Ints]]:
+    """`component_runs` of each layer, from back to front; of a drawing without layers those of all."""
+    if not drawing.layers:
+        return component_runs(drawn.components, order.order, order.low, order.high)
+    runs: list[tuple[int, Ints]] = []
+    layers = drawn.layers
+    for layer in drawing.layer_order:
+        faces = order.order[layers[order.order] == layer]
+        if not len(faces):
+            continue
+        new = np.full(len(drawn.faces), -1)
+        new[faces] = np.arange(len(faces))
+        own = layers[order.low] == layer  # both faces of a pair are on one layer
+        low, high = new[order.low[own]], new[order.high[own]]
+        local = component_runs(drawn.components[faces], np.arange(len(faces)), low, high)
+        runs += [(component, faces[members]) for component, members in local]
+    return runs
+
+
 class _Part:
     """A component of a mesh, renumbered as Spine requires: the hull (outer contour) first, in order.
 
@@ -194,7 +232,7 @@ def _attachment(
             f"expected parts of at most {MAX_ATTACHMENT_VERTICES} vertices for Spine, got {len(part.order)}; "
             "choose a coarser mesh"
         )
-    width, height = drawing.size
+    height, width = drawing.image.shape[:2]
     return {
         "type": "mesh",
         "path": texture,

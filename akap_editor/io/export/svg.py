@@ -11,6 +11,7 @@ from ...editor.document.drawing import Drawing
 from ...editor.framing import Box, Color, output_size
 from ...geometry.mesh import signed_areas
 from ...geometry.validation import Floats, Ints
+from ...layers.drawing_layer import shown_layers
 from ...overlap.seams import CutMesh
 from ..images import encode_png
 from ..painter import Painter
@@ -23,10 +24,14 @@ GRID_SIZE = 0.001  # pixels
 def silhouette(drawing: Drawing, positions: Floats) -> list[shapely.Polygon]:
     """The area that the mesh covers in the pose ``positions`` (n, 2), as polygons, the largest first.
 
-    Points are snapped to a grid of `GRID_SIZE` pixels, which removes the slivers that rounding leaves at
-    overlaps.
+    Hidden layers do not count. Points are snapped to a grid of `GRID_SIZE` pixels, which removes the slivers
+    that rounding leaves at overlaps.
     """
-    faces = drawing.mesh.faces[signed_areas(positions, drawing.mesh.faces) != 0]
+    faces = drawing.mesh.faces
+    is_drawn = signed_areas(positions, faces) != 0
+    if drawing.layers:
+        is_drawn &= shown_layers(drawing.layers)[drawing.face_layers]
+    faces = faces[is_drawn]
     covered = shapely.set_precision(shapely.union_all(shapely.polygons(positions[faces])), GRID_SIZE)
     parts = [part for part in shapely.get_parts(covered) if part.geom_type == "Polygon"]
     return sorted(parts, key=lambda part: -part.area)
@@ -57,8 +62,8 @@ def encode_textured_svg(
 ) -> str:
     """The text of an SVG picture of ``box``: one embedded picture per part, from back to front.
 
-    A part is a component of the mesh; one that passes both behind and in front of another has several
-    pictures. order: see `Document.draw_order`. Raises InputError as `output_size` does.
+    A part is a layer, or without layers a component of the mesh; one that passes both behind and in front of
+    another has several pictures. order: see `Document.draw_order`. Raises InputError as `output_size` does.
     """
     elements = _picture_elements(drawing, positions, box, scale, painter, order)
     return _document(drawing, box, scale, background, elements)
@@ -103,8 +108,14 @@ def _picture_elements(
     edges = np.zeros((0, 2), dtype=np.int32) if cut is None else cut.edges
     shares = np.zeros(0) if cut is None else cut.shares
     whole_order = np.arange(len(drawing.mesh.faces))
+    sources = cut.sources if cut is not None else order if isinstance(order, np.ndarray) else whole_order
     later = np.ones(count, dtype=bool)  # faces of parts that are in front
-    runs = component_runs(drawn.components, np.arange(count), *drawn.low_and_high)
+    components = drawn.components
+    if drawing.layers:  # which do not pass through one another
+        runs = [(int(drawn.layers[run[0]]), run) for _, run in drawn.layer_runs(drawing) if len(run)]
+        components = drawn.layers
+    else:
+        runs = component_runs(components, np.arange(count), *drawn.low_and_high)
     for number, (component, run) in enumerate(runs, start=1):
         later[run] = False
         shown = np.zeros(count, dtype=bool)
@@ -112,12 +123,12 @@ def _picture_elements(
         # One more row of faces where the part goes on in front of another one, or the joint would show.
         corners = np.zeros(len(drawn.pose), dtype=bool)
         corners[drawn.faces[run]] = True
-        shown |= later & (drawn.components == component) & corners[drawn.faces].any(axis=1)
+        shown |= later & (components == component) & corners[drawn.faces].any(axis=1)
         faces = drawn.faces[shown]
         part_box = _common_box(box, drawn.pose[faces.ravel()])
         if part_box is None:
             continue
-        part = CutMesh(whole_order, faces.astype(np.int32), np.flatnonzero(shown), edges, shares)
+        part = CutMesh(whole_order, faces.astype(np.int32), sources[shown], edges, shares)
         picture = painter.render(drawing, positions, part_box, scale, None, part)
         height, width = picture.shape[:2]
         place = f'x="{part_box[0]}" y="{part_box[1]}" width="{width / scale:.10g}" '

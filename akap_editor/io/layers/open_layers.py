@@ -81,9 +81,12 @@ def merging_notes(layered: LayeredPicture) -> list[str]:
     if hidden:
         names, count = _listed([quoted(layer.name) for layer in hidden]), len(hidden)
         notes.append(f"{count} hidden {'layer was' if count == 1 else 'layers were'} left out: {names}")
-    if layered.left_out:
-        notes.append(f"Not drawn: {_listed(list(layered.left_out))}")
-    return notes
+    return notes + left_out_notes(layered)
+
+
+def left_out_notes(layered: LayeredPicture) -> list[str]:
+    """A sentence without period about what a file contains and the layers do not; none if that is nothing."""
+    return [f"Not drawn: {_listed(list(layered.left_out))}"] if layered.left_out else []
 
 
 def _listed(names: list[str]) -> str:

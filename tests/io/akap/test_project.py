@@ -352,11 +352,11 @@ def test_other_zip_archives_are_refused(saved, reopen):
             reopen(entries)
 
 
-@pytest.mark.parametrize("number", [2, 17, 2**53])
+@pytest.mark.parametrize("number", [3, 17, 2**53])
 def test_newer_version_says_so_first(saved, reopen, number):
     entries = {"mimetype": saved["mimetype"]}
     entries["document.json"] = json.dumps({"format": "akap", "version": number}).encode()
-    message = rf"newer version of the program \(file version {number}, this program reads up to 1\); update"
+    message = rf"newer version of the program \(file version {number}, this program reads up to 2\); update"
     with pytest.raises(InputError, match=message):
         reopen(entries)
 

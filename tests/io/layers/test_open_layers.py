@@ -114,22 +114,55 @@ def test_one_notice_says_what_was_merged_and_what_was_left_out():
     assert notes == ["2 layers were merged into one drawing", "1 hidden layer was left out: “arm”"]
 
 
-def test_a_document_shows_the_visible_layers_and_says_so_once(tmp_path):
+def test_a_document_has_the_layers_of_the_file_or_its_visible_ones_merged_and_says_so_once(tmp_path):
     def build(psd):
         add_layer(psd, "a", filled(40, 40, 9, 9, 200), 10, 10)
         add_layer(psd, "b", RED, 40, 20)
         add_layer(psd, "sketch", RED, visible=False)
 
     (tmp_path / "puppet.psd").write_bytes(psd_bytes(build, size=(90, 60)))
-    document = open_document(tmp_path / "puppet.psd")
-    assert document.drawing.name == "puppet"
-    assert document.drawing.size == (90, 60)
+    layered = open_document(tmp_path / "puppet.psd")
+    assert [(layer.name, layer.visible) for layer in layered.drawing.layers] == [
+        ("a", True),
+        ("b", True),
+        ("sketch", False),
+    ]
+    note = "Opened 3 layers, 1 of them hidden; Merge Layers in the File menu makes one drawing of them"
+    assert opening_notes(layered) == [note]
+    document = open_document(tmp_path / "puppet.psd", merge_layers=True)
+    assert document.drawing.name == layered.drawing.name == "puppet"
+    assert document.drawing.size == layered.drawing.size == (90, 60)
+    assert not document.drawing.layers
     assert document.drawing.image[30, 45].tolist() == [255, 0, 0, 255]
     assert document.drawing.image[5, 5, 3] == 0
     notes = ["2 layers were merged into one drawing", "1 hidden layer was left out: “sketch”"]
     assert opening_notes(document) == notes
-    akap.save(document, tmp_path / "puppet.akap")
-    assert opening_notes(akap.load(tmp_path / "puppet.akap")) == []
+    for each in (document, layered):
+        akap.save(each, tmp_path / "puppet.akap")
+        assert opening_notes(akap.load(tmp_path / "puppet.akap")) == []
+
+
+def test_a_file_with_a_single_layer_becomes_a_flat_drawing(tmp_path):
+    (tmp_path / "a.psd").write_bytes(psd_bytes(lambda psd: add_layer(psd, "a", RED, 5, 9), size=(90, 60)))
+    document = open_document(tmp_path / "a.psd")
+    assert not document.drawing.layers
+    assert document.drawing.image.shape == (60, 90, 4)
+    assert opening_notes(document) == []
+
+
+def test_a_mask_cuts_out_all_layers(tmp_path):
+    (tmp_path / "a.psd").write_bytes(
+        psd_bytes(lambda psd: [add_layer(psd, name, RED, 20, 10) for name in "ab"], size=(90, 60))
+    )
+    mask = np.zeros((60, 90, 4), np.uint8)
+    mask[:, :35] = 255
+    write_png(tmp_path / "mask.png", mask)
+    drawing = open_document(tmp_path / "a.psd", tmp_path / "mask.png").drawing
+    assert [layer.artwork.picture.shape[:2] for layer in drawing.layers] == [(20, 30)] * 2
+    assert drawing.mesh.vertices[:, 0].max() < 38
+    write_png(tmp_path / "small.png", mask[:9])
+    with pytest.raises(InputError, match=r"small\.png|expected the size of the picture, 90 x 60"):
+        open_document(tmp_path / "a.psd", tmp_path / "small.png")
 
 
 def test_opening_announces_layers_and_can_be_cancelled(tmp_path):

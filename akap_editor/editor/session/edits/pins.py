@@ -43,14 +43,20 @@ class SetPins(Edit):
         return SetPins(tuple(replace(pin, target=positions.get(pin.id, pin.target)) for pin in self.pins))
 
     def to_json(self, drawing: Drawing) -> Json:
-        """The pins with face and weights, for an equal mesh, and their rest positions, for any other."""
+        """The pins with face and weights, for an equal mesh, and their rest positions, for any other.
+
+        On a mesh in layers, with the layer, too.
+        """
         mesh = drawing.mesh
 
         def rest_position(pin: Pin) -> list[float]:
             position: list[float] = (pin.weights @ mesh.vertices[mesh.faces[pin.face]]).tolist()
             return position
 
-        return {"pins": [{**pin.to_json(), "rest": rest_position(pin)} for pin in self.pins]}
+        def layer(pin: Pin) -> Json:
+            return {} if mesh.layers is None else {"layer": int(mesh.face_layers[pin.face])}
+
+        return {"pins": [{**pin.to_json(), "rest": rest_position(pin), **layer(pin)} for pin in self.pins]}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
@@ -60,7 +66,9 @@ class SetPins(Edit):
         if target.same_mesh and (mesh is target.mesh or _lie_on(mesh, pins)):
             points = [(int(pin["face"]), pin["weights"]) for pin in pins]
         else:
-            located = mesh.locate(target.points([pin["rest"] for pin in pins], "rest", len(pins)))
+            layers = None if mesh.layers is None else [int(pin.get("layer", -1)) for pin in pins]
+            rest = target.points([pin["rest"] for pin in pins], "rest", len(pins))
+            located = mesh.locate(rest, layers=layers)
             points = list(zip(located.faces.tolist(), located.weights, strict=True))
         targets = target.points([pin["target"] for pin in pins], "target", len(pins))
         edit = cls(

@@ -1,0 +1,158 @@
+"""Groups of layers: each is deformed on its own, so that its lengths are those of its own size.
+
+The lengths of a method (steps, tolerances, radii around pins) are shares of √area. On a mesh of many layers
+they would be too long for a small one, for example an eye, and layers that no pin moves would be solved for
+nothing.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..geometry.mesh import NO_POINTS, MeshPoints, TriMesh
+from ..geometry.operators import to_complex
+from ..geometry.validation import Floats, Ints, as_indices, as_numbers, as_points
+from .deformer import Deformer, Flow, StepReport, StepResult, as_targets
+
+DeformerFactory = Callable[..., Deformer]  # of a mesh, with parameters by keyword
+_MAX_KEPT = 16  # groups whose deformers are kept when pins come and go
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """A component of a mesh with pins, as a mesh of its own, and its deformer.
+
+    vertices: (v,) of the whole mesh; faces: (m,) the number of each of its faces in the group, −1 of others;
+    pins: (p,) indices of the pins on it.
+    """
+
+    vertices: Ints
+    faces: Ints
+    deformer: Any  # may have more methods than the contract asks for
+    pins: Ints
+
+
+class LayerGroupDeformer(Deformer):
+    """Deforms each component that has pins by a deformer of its own; the others stay where they are.
+
+    mesh: the rest pose; make: of a method; parameters: by keyword, the stiffness (m,) among them.
+    """
+
+    def __init__(self, mesh: TriMesh, make: DeformerFactory, **parameters: Any) -> None:
+        self._mesh, self._make, self._parameters = mesh, make, dict(parameters)
+        stiffness = self._parameters.pop("stiffness", None)
+        count = len(mesh.faces)
+        self._stiffness = None
+        if stiffness is not None:
+            self._stiffness = as_numbers(stiffness, "stiffness", count, 0.0, np.inf)
+        self._face_components = mesh.component[mesh.faces[:, 0]]
+        self._kept: dict[int, tuple[Ints, Ints, Any]] = {}
+        smallest = int(np.argmin(np.bincount(self._face_components)))
+        sample = self._part(smallest)[2]  # also checks the parameters
+        self.holds_angles, self.takes_stiffness = sample.holds_angles, sample.takes_stiffness
+        self.has_memory, self.has_vector_fields = sample.has_memory, sample.has_vector_fields
+        self.set_pins(NO_POINTS)
+
+    def set_pins(self, points: MeshPoints) -> None:
+        """Choose the pins, k points of the mesh; moves nothing.
+
+        Raises InputError for points with faces that the mesh does not have.
+        """
+        as_indices(points.faces, "points.faces", None, len(self._mesh.faces))
+        components = self._face_components[points.faces]
+        groups = []
+        for component in np.unique(components).tolist():
+            vertices, faces, deformer = self._part(component)
+            pins = np.flatnonzero(components == component)
+            deformer.set_pins(MeshPoints(faces[points.faces[pins]], points.weights[pins]))
+            groups.append(_Group(vertices, faces, deformer, pins))
+        self._groups, self._pin_count = groups, len(points)
+
+    def _part(self, component: int) -> tuple[Ints, Ints, Any]:
+        """Vertices, numbers of faces and deformer of a component, see `_Group`."""
+        if component in self._kept:
+            self._kept[component] = self._kept.pop(component)  # the last one used
+            return self._kept[component]
+        mesh = self._mesh
+        vertices = np.flatnonzero(mesh.component == component)
+        own = np.flatnonzero(self._face_components == component)
+        number = np.full(len(mesh.vertices), -1)
+        number[vertices] = np.arange(len(vertices))
+        faces = np.full(len(mesh.faces), -1)
+        faces[own] = np.arange(len(own))
+        stiffness = {} if self._stiffness is None else {"stiffness": self._stiffness[own]}
+        part = TriMesh(mesh.vertices[vertices], number[mesh.faces[own]])
+        self._kept[component] = vertices, faces, self._make(part, **self._parameters, **stiffness)
+        while len(self._kept) > _MAX_KEPT:
+            del self._kept[next(iter(self._kept))]
+        return self._kept[component]
+
+    def step(self, positions: ArrayLike, targets: ArrayLike, angles: ArrayLike | None = None) -> StepResult:
+        """Move the pose (n, 2) so that its pins reach ``targets`` (k, 2), see `Deformer.step`.
+
+        angles: (k,) as the method takes them, if it `holds_angles`. Raises InputError and SolverError.
+        """
+        started = time.perf_counter()
+        pose = as_points(positions, "positions", len(self._mesh.vertices))
+        goals = as_points(targets, "targets", self._pin_count)
+        as_targets(goals, self._pin_count, self._mesh, to_complex(pose))
+        wanted = None if angles is None else as_numbers(angles, "angles", self._pin_count, allow_nan=True)
+        results: list[tuple[_Group, StepResult]] = []
+        for group in self._groups:
+            optional = () if wanted is None else (wanted[group.pins],)
+            result = group.deformer.step(pose[group.vertices], goals[group.pins], *optional)
+            results.append((group, result))
+        moved = self._together(pose, [(group, result.positions) for group, result in results])
+        fields = [(group, result.field) for group, result in results if result.field is not None]
+        field = self._together(np.zeros_like(pose), fields) if fields else None
+        report = _joint_report([result.report for _, result in results], time.perf_counter() - started)
+        return StepResult(moved, field, report, self._flow(pose, results))
+
+    def _together(self, values: Floats, parts: list[tuple[_Group, Floats]]) -> Floats:
+        """``values`` (n, 2) with those of groups in place."""
+        result = values.copy()
+        for group, part in parts:
+            result[group.vertices] = part
+        return result
+
+    def _flow(self, pose: Floats, results: list[tuple[_Group, StepResult]]) -> Flow | None:
+        """The flow γ(t) of all groups; None if one of them has none."""
+        flows = [(group, result.flow) for group, result in results]
+        if not flows or any(flow is None for _, flow in flows):
+            return None
+
+        def at(t: float) -> Floats:
+            return self._together(pose, [(group, flow(t)) for group, flow in flows if flow is not None])
+
+        return at
+
+    def vector_field(self, positions: ArrayLike, velocities: ArrayLike) -> Floats:
+        """U_opt (n, 2) at a pose (n, 2) for pin velocities (k, 2), if the method has vector fields."""
+        return self.vector_fields(positions, velocities)[0]
+
+    def vector_fields(self, positions: ArrayLike, velocities: ArrayLike) -> tuple[Floats, Floats]:
+        """U_opt and U°, (n, 2) each, if the method has vector fields; otherwise like `vector_field`."""
+        pose = as_points(positions, "positions", len(self._mesh.vertices))
+        rates = as_points(velocities, "velocities", self._pin_count)
+        optimal, smooth = np.zeros_like(pose), np.zeros_like(pose)
+        for group in self._groups:
+            fields = group.deformer.vector_fields(pose[group.vertices], rates[group.pins])
+            optimal[group.vertices], smooth[group.vertices] = fields
+        return optimal, smooth
+
+
+def _joint_report(reports: list[StepReport], seconds: float) -> StepReport:
+    """The report of all groups."""
+    return StepReport(
+        seconds,
+        max((report.substeps for report in reports), default=0),
+        sum(report.energy for report in reports),
+        sum(report.flipped for report in reports),
+        max((report.pin_error for report in reports), default=0.0),
+        any(report.blocked for report in reports),
+        any(report.unfinished for report in reports),
+    )

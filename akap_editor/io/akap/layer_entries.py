@@ -1,0 +1,153 @@
+"""The layers of a drawing as entries of an .akap file: descriptions in document.json and a picture each."""
+
+import reprlib
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...editor.document.drawing import Drawing
+from ...errors import InputError, error_context
+from ...geometry.validation import MAX_COORDINATE, Ints, freeze
+from ...layers.drawing_layer import Artwork, DrawingLayer
+from ..images import decode_image, encode_png
+from .archive import Archive, ArchiveEntry
+from .json_records import Json, numbers, optional, require
+
+MAX_LAYERS = 1000
+MAX_GROUPS = 50  # around a layer
+MAX_TEXTURE_PIXELS = 2**28
+MAX_PICTURE_BYTES = 2**29
+
+# The pictures of layers never change, and encoding them takes longer than the rest of a save.
+_encoded: WeakKeyDictionary[Artwork, bytes] = WeakKeyDictionary()
+
+
+def describe_layers(drawing: Drawing) -> Json:
+    """The keys of document.json for a drawing in layers; {} for another one. Raises InputError."""
+    if not drawing.layers:
+        return {}
+    assert drawing.mesh.layers is not None
+    if (np.diff(drawing.mesh.layers) < 0).any():
+        raise InputError("layers: expected vertices that are sorted by layer")
+    if len(drawing.layers) > MAX_LAYERS:
+        raise InputError(f"expected at most {MAX_LAYERS} layers, got {len(drawing.layers)}")
+    counts = np.bincount(drawing.mesh.layers, minlength=len(drawing.layers)).tolist()
+    height, width = drawing.image.shape[:2]
+    return {
+        "layers": [_describe(layer, count) for layer, count in zip(drawing.layers, counts, strict=True)],
+        "layerOrder": list(drawing.layer_order),
+        "texture": {"width": width, "height": height},
+    }
+
+
+def _describe(layer: DrawingLayer, vertices: int) -> Json:
+    artwork = layer.artwork
+    return {
+        "name": layer.name,
+        "groups": list(layer.groups),
+        "offset": list(artwork.offset),
+        "size": [artwork.picture.shape[1], artwork.picture.shape[0]],
+        "corner": list(artwork.corner),
+        "vertices": vertices,
+        "opacity": layer.opacity,
+        "blend": layer.blend,
+        "visible": layer.visible,
+        "solo": layer.solo,
+        "locked": layer.locked,
+    }
+
+
+def layer_picture_entries(drawing: Drawing) -> list[ArchiveEntry]:
+    """The entries layers/0.png, layers/1.png, ... with the picture of each layer."""
+    entries: list[ArchiveEntry] = []
+    for number, layer in enumerate(drawing.layers):
+        if layer.artwork not in _encoded:
+            _encoded[layer.artwork] = encode_png(layer.artwork.picture)
+        entries.append((_entry_name(number), _encoded[layer.artwork], False))
+    return entries
+
+
+def _entry_name(number: int) -> str:
+    return f"layers/{number}.png"
+
+
+def read_layers(
+    archive: Archive, record: Json, vertices: int
+) -> tuple[NDArray[np.uint8], tuple[DrawingLayer, ...], tuple[int, ...], Ints]:
+    """Texture (h, w, 4) uint8, layers, their order, and the layer of each of ``vertices`` (n,).
+
+    Raises InputError.
+    """
+    with error_context("document.json"):
+        records, order = require(record, "layers", list), require(record, "layerOrder", list)
+        size = require(record, "texture", dict)
+        width, height = require(size, "width", int), require(size, "height", int)
+        if not 1 <= len(records) <= MAX_LAYERS:
+            raise InputError(f"expected 1 to {MAX_LAYERS} layers, got {len(records)}")
+        if not (width >= 1 and height >= 1 and width * height <= MAX_TEXTURE_PIXELS):
+            raise InputError(f"texture: expected 1 to {MAX_TEXTURE_PIXELS} pixels, got {width} x {height}")
+        if any(type(number) is not int for number in order) or sorted(order) != list(range(len(records))):
+            raise InputError(f"layerOrder: expected each layer once, got {reprlib.repr(order)}")
+        counts = [require(_as_record(each), "vertices", int) for each in records]
+        if min(counts) < 1 or sum(counts) != vertices:
+            raise InputError(f"layers: expected {vertices} vertices in all, got {sum(counts)}")
+    archive.count_expanded(4 * width * height)
+    texture = np.zeros((height, width, 4), np.uint8)
+    boxes = []
+    for number, each in enumerate(records):
+        with error_context(f"layer {number}"):
+            boxes.append(_read_box(each, width, height))
+        (_, (x, y), (w, h)), name = boxes[-1], _entry_name(number)
+        content = archive.read(name, MAX_PICTURE_BYTES)
+        with error_context(name):
+            picture = decode_image(content, ("PNG",), (w, h))
+            if picture.shape[:2] != (h, w):
+                raise InputError("expected an upright picture, got one rotated by its EXIF data")
+        texture[y : y + h, x : x + w] = picture
+    freeze(texture)
+    layers = []
+    for number, (each, (offset, (x, y), (w, h))) in enumerate(zip(records, boxes, strict=True)):
+        with error_context(f"layer {number}"):
+            layers.append(_read_layer(each, Artwork(texture[y : y + h, x : x + w], offset, (x, y))))
+    return texture, tuple(layers), tuple(order), np.repeat(np.arange(len(counts)), counts).astype(np.int32)
+
+
+def _read_layer(record: Json, artwork: Artwork) -> DrawingLayer:
+    groups = optional(record, "groups", list, [])
+    if len(groups) > MAX_GROUPS or any(type(group) is not str for group in groups):
+        raise InputError(f"expected at most {MAX_GROUPS} names of groups, got {reprlib.repr(groups)}")
+    return DrawingLayer(
+        artwork,
+        require(record, "name", str),
+        tuple(groups),
+        float(numbers([record.get("opacity", 1.0)], "opacity")[0]),
+        optional(record, "blend", str, "normal"),
+        optional(record, "visible", bool, True),
+        optional(record, "solo", bool, False),
+        optional(record, "locked", bool, False),
+    )
+
+
+def _read_box(
+    record: Json, width: int, height: int
+) -> tuple[tuple[int, int], tuple[int, int], tuple[int, int]]:
+    """Offset, corner in the texture, and size of a layer's picture; the texture has a width and a height."""
+    offset, (x, y), (w, h) = (_pair(record, name) for name in ("offset", "corner", "size"))
+    if not (x >= 0 and y >= 0 and w >= 1 and h >= 1 and x + w <= width and y + h <= height):
+        raise InputError(f"expected a picture inside the texture, got {w} x {h} pixels at {x}, {y}")
+    return offset, (x, y), (w, h)
+
+
+def _pair(record: Json, name: str) -> tuple[int, int]:
+    values = require(record, name, list)
+    if len(values) != 2 or any(type(v) is not int or abs(v) > MAX_COORDINATE for v in values):
+        raise InputError(f"{name}: expected two whole numbers of pixels, got {reprlib.repr(values)}")
+    return values[0], values[1]
+
+
+def _as_record(value: Any) -> Json:
+    if type(value) is not dict:
+        raise InputError(f"expected layers to be objects, got {reprlib.repr(value)}")
+    return value

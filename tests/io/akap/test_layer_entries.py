@@ -1,0 +1,135 @@
+"""Drawings in layers in .akap files: round trips, version 1 for flat drawings, damage."""
+
+import json
+import zipfile
+from dataclasses import replace
+from io import BytesIO
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from akap_editor.editor.document.document import new_document
+from akap_editor.errors import InputError
+from akap_editor.io.akap.archive import pack
+from akap_editor.io.akap.project import decode_document, encode_document
+from akap_editor.io.images import encode_png
+from akap_editor.layers.composite import composite
+from tests.support.layered_files import filled
+from tests.support.puppets import HAT, SKULL, puppet, puppet_layers
+from tests.support.recorded_drag import plank_drawing
+
+
+@pytest.fixture(scope="module")
+def document():
+    drawing = puppet()
+    layers = list(drawing.layers)
+    layers[SKULL] = replace(layers[SKULL], opacity=0.5, blend="multiply", locked=True, name="head “1”")
+    layers[HAT] = replace(layers[HAT], visible=True, solo=True)
+    return new_document(replace(drawing, layers=tuple(layers), layer_order=(1, 0, 2, 4, 3)))
+
+
+@pytest.fixture(scope="module")
+def entries(document):
+    with zipfile.ZipFile(BytesIO(encode_document(document))) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def reopened(entries):
+    return decode_document(pack((name, content, False) for name, content in entries.items()))
+
+
+def test_a_drawing_in_layers_comes_back_bit_for_bit(document):
+    data = encode_document(document)
+    drawing, other = document.drawing, decode_document(data).drawing
+    assert encode_document(decode_document(data)) == data
+    for name in ("image", "uv"):
+        np.testing.assert_array_equal(getattr(other, name), getattr(drawing, name))
+    np.testing.assert_array_equal(other.mesh.layers, drawing.mesh.layers)
+    assert (other.size, other.layer_order, other.meshing) == (
+        drawing.size,
+        drawing.layer_order,
+        drawing.meshing,
+    )
+    for a, b in zip(drawing.layers, other.layers, strict=True):
+        values = [(each.path, each.opacity, each.blend) for each in (a, b)]
+        assert values[0] == values[1]
+        assert (a.visible, a.solo, a.locked) == (b.visible, b.solo, b.locked)
+        np.testing.assert_array_equal(a.artwork.picture, b.artwork.picture)
+        assert a.artwork.offset == b.artwork.offset
+
+
+def test_version_2_is_written_for_layers_only(entries):
+    assert json.loads(entries["document.json"])["version"] == 2
+    assert "picture.png" not in entries
+    with zipfile.ZipFile(BytesIO(encode_document(new_document(plank_drawing())))) as archive:
+        flat = json.loads(archive.read("document.json"))
+        assert flat["version"] == 1
+        assert not {"layers", "texture", "layerOrder"} & flat.keys()
+        assert "picture.png" in archive.namelist()
+
+
+def test_the_thumbnail_shows_the_visible_layers():
+    data = encode_document(new_document(puppet()))
+    with zipfile.ZipFile(BytesIO(data)) as archive:
+        thumbnail = np.asarray(Image.open(BytesIO(archive.read("thumbnail.png"))))
+    assert (thumbnail == composite(puppet_layers())).all()
+
+
+def changed(key, value, layer=None):
+    """A function that changes document.json: a key of it, or of one of its layers."""
+
+    def change(record):
+        (record if layer is None else record["layers"][layer])[key] = value
+
+    return change
+
+
+DAMAGE = {
+    "no order": (changed("layerOrder", [0, 1]), "layerOrder: expected each layer once, got"),
+    "an order of truths": (changed("layerOrder", [True, 0, 2, 3, 4]), "layerOrder: expected each layer once"),
+    "no layers": (changed("layers", []), "expected 1 to 1000 layers, got 0"),
+    "a layer that is a number": (changed("layers", [1] * 5), "expected layers to be objects, got 1"),
+    "layers as a text": (changed("layers", "abc"), "expected layers to be a list"),
+    "too many vertices": (changed("vertices", 9999, 1), "layers: expected 4[0-9][0-9] vertices in all"),
+    "no vertices": (changed("vertices", 0, 1), "layers: expected"),
+    "a huge texture": (changed("texture", {"width": 10**6, "height": 10**6}), "texture: expected 1 to"),
+    "no texture": (changed("texture", {"width": 0, "height": 5}), "texture: expected 1 to"),
+    "outside the texture": (changed("corner", [5000, 5], 0), "layer 0: expected a picture inside"),
+    "left of the texture": (changed("corner", [-1, 5], 0), "layer 0: expected a picture inside"),
+    "another size": (changed("size", [7, 7], 1), r"layers/1\.png: expected 7 x 7 pixels, got 70 x 18"),
+    "a size of one number": (changed("size", [7], 1), "layer 1: size: expected two whole numbers"),
+    "an offset of fractions": (changed("offset", [0.5, 1], 1), "layer 1: offset: expected two whole"),
+    "an offset at the moon": (changed("offset", [10**15, 1], 1), "layer 1: offset: expected two whole"),
+    "bright": (changed("opacity", 2.0, 3), "layer 3: opacity: expected a number from 0 to 1"),
+    "unknown blending": (changed("blend", "burn", 3), "layer 3: blend: expected 'normal'"),
+    "groups of numbers": (changed("groups", [1], 3), "layer 3: expected at most 50 names of groups"),
+    "a name that is a number": (changed("name", 3, 3), "layer 3: expected name to be a text, got 3"),
+    "visible": (changed("visible", 1, 3), "layer 3: expected visible to be true or false, got 1"),
+}
+
+
+@pytest.mark.parametrize(("change", "message"), DAMAGE.values(), ids=DAMAGE)
+def test_damage_is_named(entries, change, message):
+    record = json.loads(entries["document.json"])
+    change(record)
+    with pytest.raises(InputError, match=message):
+        reopened(entries | {"document.json": json.dumps(record).encode()})
+
+
+def test_a_missing_or_damaged_picture_is_named(entries):
+    with pytest.raises(InputError, match=r"expected the entry layers/2\.png, which is missing"):
+        reopened({name: content for name, content in entries.items() if name != "layers/2.png"})
+    with pytest.raises(InputError, match=r"layers/2\.png: the file is damaged or not a PNG picture"):
+        reopened(entries | {"layers/2.png": b"hello"})
+    wrong = encode_png(filled(3, 3, 1, 2, 3))
+    with pytest.raises(InputError, match=r"layers/2\.png: expected 72 x 72 pixels, got 3 x 3"):
+        reopened(entries | {"layers/2.png": wrong})
+
+
+def test_a_reader_of_version_1_ignores_nothing_silently(entries):
+    """Keys of layers in a file of version 1 mean nothing, as unknown keys do."""
+    record = json.loads(entries["document.json"]) | {"version": 1}
+    picture = encode_png(np.zeros((200, 160, 4), np.uint8))
+    flat = reopened(entries | {"document.json": json.dumps(record).encode(), "picture.png": picture})
+    assert not flat.drawing.layers
