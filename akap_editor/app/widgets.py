@@ -59,6 +59,22 @@ def switch(label: str, is_on: bool, tooltip: str = "") -> tuple[bool, bool]:
     return is_clicked, is_on
 
 
+def icon_switch(icon: str, name: str, is_on: bool, tooltip: str, width: float) -> bool:
+    """Draw an icon that is a switch, as high as a line of text; return whether it was clicked.
+
+    width: times the font size.
+    """
+    imgui.push_style_color(imgui.Col_.text, ImVec4(*(TEXT if is_on else SECONDARY)))
+    imgui.push_style_color(imgui.Col_.button, ImVec4(0, 0, 0, 0))
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))
+    size = ImVec2(width * imgui.get_font_size(), imgui.get_text_line_height())
+    is_clicked = imgui.button(f"{icon}###{name}", size)
+    imgui.pop_style_var()
+    imgui.pop_style_color(2)
+    show_tooltip(tooltip)
+    return bool(is_clicked)
+
+
 def switch_offset() -> float:
     """How much lower than other fields a switch must be drawn to be in line with them; points."""
     return float(imgui.get_style().frame_padding.y - _SWITCH_PADDING * imgui.get_font_size())

@@ -1,7 +1,7 @@
 """Functions that edit an open session, each in one gesture: one entry of the history."""
 
 from collections.abc import Callable, Iterable
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from ..geometry.validation import Floats, Ints
 from .camera import Point
@@ -13,9 +13,11 @@ from .session.edits import (
     AddPose,
     DeletePose,
     Edit,
+    OrderLayers,
     OrderLimb,
     ResetPose,
     SetAngles,
+    SetLayers,
     SetPins,
     SetPose,
     SetRestPose,
@@ -183,6 +185,36 @@ class NudgeSeries:
             raise
         session.commit(join=joins and now - last_time < SERIES_PAUSE)
         self._last = session.history.last, pins, now
+
+
+# -- layers --------------------------------------------------------------------------------------------------
+
+
+def set_layers(
+    editor: EditContext, label: str, layers: Iterable[int], join: bool = False, **values: Any
+) -> None:
+    """Change values of layers, see `SetLayers`. join: merge it into the history entry before, if that is one
+    of the same label and was the last one. Raises InputError.
+    """
+    session = editor.session
+    if session is None or editor.is_busy:
+        return
+    joins = join and session.history.undo_label == label
+    session.begin(label)
+    try:
+        session.apply(SetLayers(tuple(layers), **values))
+    except Exception:
+        session.abort()
+        raise
+    session.commit(join=joins)
+
+
+def move_layer(editor: EditContext, layer: int, place: int) -> None:
+    """Move a layer to a place among the others, from 0, the hindmost. Raises InputError."""
+    if editor.session is not None:
+        order = [number for number in editor.session.drawing.layer_order if number != layer]
+        order.insert(place, layer)
+        editor.apply("Reorder Layers", OrderLayers(order))
 
 
 # -- poses and settings --------------------------------------------------------------------------------------

@@ -2,8 +2,8 @@
 
 With premultiplied colors c and opacities a of source s and backdrop b (W3C, Compositing and Blending 1):
 normal is c_s + (1 - a_s) c_b, screen c_s + (1 - c_s) c_b, add c_s + c_b, and multiply, in two passes,
-(1 - (a_s - c_s)) c_b + (1 - a_b) c_s. Where a translucent layer is added to what it makes too bright, the sum is
-cut off after the layer's opacity counts, not before.
+(1 - (a_s - c_s)) c_b + (1 - a_b) c_s. Where a translucent layer is added to what it makes too bright,
+the sum is cut off after the layer's opacity counts, not before.
 """
 
 from collections.abc import Sequence

@@ -12,6 +12,7 @@ from ..editor.document.drawing import Drawing
 from ..editor.framing import Box, Color, frame_box, output_size
 from ..errors import GraphicsError
 from ..geometry.validation import Ints, as_points
+from ..layers.drawing_layer import stacked_faces
 from ..overlap.seams import CutMesh
 from .renderer import Background, Renderer
 from .shaders import load_program
@@ -105,12 +106,14 @@ class OffscreenRenderer:
         positions: (n, 2) drawing units; box: the part of the drawing plane to show, by default `frame_box` of
         the pose; scale: pixels per drawing unit, the size is rounded up (see `output_size`); background: None
         for transparent; order: (m,) the faces in drawing order, the last one in front, see
-        `Document.draw_order`. In the rest pose the result equals the drawing's picture wherever the mesh
-        covers it. The picture may be larger than the driver's limit. Raises InputError for a bad argument or
+        `Document.draw_order`; by default that of the layers. In the rest pose the result equals the
+        drawing's picture wherever the mesh covers it. The picture may be larger than the driver's limit. Raises InputError for a bad argument or
         a picture that is too large, GraphicsError without OpenGL 3.3.
         """
         pose = as_points(positions, "positions", len(drawing.mesh.vertices))
         box = frame_box(drawing, [pose]) if box is None else box
+        if order is None and drawing.layers:
+            order = stacked_faces(None, drawing.face_layers, drawing.layers, drawing.layer_order)
         width, height = output_size(box, scale)
         if self._context is None:
             self._context = standalone_context()

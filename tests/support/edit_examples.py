@@ -14,6 +14,7 @@ from akap_editor.editor.session.edits import (
     DeletePose,
     Edit,
     MoveKeyframes,
+    OrderLayers,
     OrderLimb,
     PaintStiffness,
     Remesh,
@@ -24,6 +25,7 @@ from akap_editor.editor.session.edits import (
     SetCrossings,
     SetEasing,
     SetKeyframe,
+    SetLayers,
     SetLoop,
     SetPins,
     SetPose,
@@ -48,6 +50,7 @@ def _first_pose(session: Session) -> str:
 
 
 # An edit for the current state of a session. It may be refused by InputError, for example without poses.
+LAYER_EDITS = frozenset({"layers", "layer-order"})  # which need a drawing in layers
 EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "pins": _pins,
     "targets": lambda session: SetTargets({pin.id: (90.0, 65.0) for pin in session.state.pins[-1:]}),
@@ -61,6 +64,8 @@ EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "mesh": lambda session: Remesh(replace(session.drawing.meshing or Meshing(), vertices=200)),
     "limb": lambda session: OrderLimb([pin.id for pin in session.state.pins[-1:]], False),
     "crossings": lambda session: SetCrossings(np.array([[3, 1]], dtype=np.int32)),
+    "layers": lambda session: SetLayers([0], "trunk", 0.5, False, True, True),
+    "layer-order": lambda session: OrderLayers(list(reversed(session.drawing.layer_order))),
     "keep": lambda session: AddPose("wave"),
     "forget": lambda session: DeletePose(_first_pose(session)),
     "rename": lambda session: RenamePose(_first_pose(session), "nod"),

@@ -14,6 +14,7 @@ from akap_editor.editor.session.replay import replay
 from akap_editor.editor.session.session import Session
 from akap_editor.editor.session.stepper import INLINE
 from akap_editor.geometry.mesh import signed_areas
+from akap_editor.layers.drawing_layer import DrawingLayer
 
 Point = tuple[float, float]
 OUTSIDE = (2.0, 2.0)  # a corner of the picture that the drawing leaves free
@@ -41,6 +42,8 @@ def bits(state: EditState) -> tuple[Any, ...]:
     )
     mesh = None if state.drawing is None else state.drawing.mesh
     mesh_bits = None if mesh is None else (mesh.vertices.tobytes(), mesh.faces.tobytes())
+    layers = () if state.drawing is None else tuple(map(_layer_bits, state.drawing.layers))
+    layer_list = layers, () if state.drawing is None else state.drawing.layer_order
     stiffness = None if state.stiffness is None else state.stiffness.tobytes()
     poses = tuple((pose.name, pose.positions.tobytes(), pose.crossings.tobytes()) for pose in state.poses)
     keyframes = tuple(
@@ -49,7 +52,12 @@ def bits(state: EditState) -> tuple[Any, ...]:
     )
     animation = keyframes, state.animation.ease, state.animation.loop
     pose = state.positions.tobytes(), state.crossings.tobytes()
-    return pose, pins, state.settings, mesh_bits, stiffness, poses, animation
+    return pose, pins, state.settings, mesh_bits, layer_list, stiffness, poses, animation
+
+
+def _layer_bits(layer: DrawingLayer) -> tuple[Any, ...]:
+    switches = layer.visible, layer.solo, layer.locked
+    return layer.path, layer.opacity, layer.blend, switches, layer.artwork.picture.tobytes()
 
 
 def replayed_state(recording: Recording, drawing: Drawing) -> EditState:

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from ...editor.document.stiffness import MAX_STIFFNESS
 from ...editor.editor import Editor
+from ...editor.session.session import Session
 from ...errors import InputError
 from ...geometry.distortion import Distortion
 from ...geometry.validation import Floats
 from ...io.images import read_image
+from ...layers.drawing_layer import shown_layers
 from ...render.colormaps import diverging, sequential
 from ...render.overlays import FaceColors, LineSegments, OnionPose, Overlays, Reference, Rgba
 from .checkerboard import BOARD_LABELS, BoardChoice
@@ -30,6 +32,7 @@ BEFORE_TINT: Rgba = (0.34, 0.71, 0.91, 0.88)  # blue and orange, which all commo
 AFTER_TINT: Rgba = (0.90, 0.55, 0.0, 0.88)
 ONION_OPACITY = 0.5  # of the nearest pose
 ONION_FADING = 0.65  # opacity of each pose as a share of that of the one before it
+LAYER_COLOR: Rgba = (1.0, 0.706, 0.227, 0.9)  # of the outline of the selected layer
 STORED_SWITCHES = {  # name in the preferences: field
     "vectors": "show_vector_fields",
     "ghost": "show_rest_pose",
@@ -44,7 +47,8 @@ class ViewOptions:
 
     board: the shade of the checkerboard; is_split: whether a second method is compared; show_vector_fields:
     while a pin is dragged; distortion_measure: of the distortion map, None if it is off; distortion_range:
-    index in `DISTORTION_RANGES`; reference_path: the file of the reference picture, None if it has none.
+    index in `DISTORTION_RANGES`; reference_path: the file of the reference picture, None if it has none;
+    selected_layer: the number of the layer that is selected in the list and outlined, None for none.
     """
 
     show_mesh: bool = False
@@ -60,6 +64,7 @@ class ViewOptions:
     distortion_range: int = 2
     reference: Reference | None = None
     reference_path: Path | None = None
+    selected_layer: int | None = None
     _arrows: VectorFieldArrows = field(default_factory=VectorFieldArrows)
     _distortion_map: tuple[Distortion, Measure, int, FaceColors] | None = None
     _stiffness_map: tuple[Floats, FaceColors] | None = None
@@ -124,6 +129,8 @@ class ViewOptions:
         if self.show_pin_trails:
             lines += outlined(editor.trails.segments(), TRAIL_COLOR, 1.5 * scale)
         session = editor.session
+        if session is not None and session.drawing.layers:
+            lines += _layer_outline(session, self.selected_layer, scale)
         is_in_motion = editor.is_moving or editor.tool.drags_pins
         if self.show_vector_fields and session is not None and is_in_motion:
             lines += self._arrows.lines(editor, session, scale)
@@ -162,6 +169,18 @@ class ViewOptions:
             limit = DISTORTION_RANGES[self.distortion_range]
             self._distortion_map = *key, distortion_colors(distortion, self.distortion_measure, limit)
         return self._distortion_map[3]
+
+
+def _layer_outline(session: Session, layer: int | None, scale: float) -> list[LineSegments]:
+    """The outline of a layer in the current pose. scale: framebuffer pixels per design point."""
+    drawing = session.drawing
+    if layer is None or layer >= len(drawing.layers) or not shown_layers(drawing.layers)[layer]:
+        return []
+    mesh, pose = drawing.mesh, session.state.positions
+    assert mesh.layers is not None
+    loops = [loop for loop in mesh.boundary_loops if mesh.layers[loop[0]] == layer]
+    segments = np.concatenate([np.stack([pose[loop], pose[np.roll(loop, -1)]], axis=1) for loop in loops])
+    return outlined(segments, LAYER_COLOR, 1.5 * scale)
 
 
 def distortion_colors(distortion: Distortion, measure: Measure, limit: float) -> FaceColors:

@@ -9,7 +9,6 @@ from .. import widgets
 from ..app_state import AppState
 from ..commands.registry import REMOVE_SELECTED
 from ..pending_values import NameField, PendingValues
-from ..theme import SECONDARY, TEXT
 
 _ROWS = 6  # pins that are visible at once
 _ICON_WIDTH, _DEPTH_WIDTH = 1.7, 3.0  # times the font size
@@ -51,11 +50,23 @@ class PinList:
         editor, font_size = state.editor, imgui.get_font_size()
         left, room = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
         eye = icons.ICON_FA_EYE_SLASH if pin.is_hidden else icons.ICON_FA_EYE
-        if _icon(eye, f"eye {pin.id}", not pin.is_hidden, "Hide on the canvas; it still holds the drawing"):
+        if widgets.icon_switch(
+            eye,
+            f"eye {pin.id}",
+            not pin.is_hidden,
+            "Hide on the canvas; it still holds the drawing",
+            _ICON_WIDTH,
+        ):
             state.run_reporting_errors(lambda: gestures.set_pin_hidden(editor, pin.id, not pin.is_hidden))
         imgui.same_line(left + _ICON_WIDTH * font_size)
         lock = icons.ICON_FA_LOCK if pin.is_locked else icons.ICON_FA_LOCK_OPEN
-        if _icon(lock, f"lock {pin.id}", pin.is_locked, "Lock: it cannot be moved or removed by hand"):
+        if widgets.icon_switch(
+            lock,
+            f"lock {pin.id}",
+            pin.is_locked,
+            "Lock: it cannot be moved or removed by hand",
+            _ICON_WIDTH,
+        ):
             state.run_reporting_errors(lambda: gestures.set_pin_locked(editor, pin.id, not pin.is_locked))
         imgui.same_line(left + 2 * _ICON_WIDTH * font_size)
         name_width = room - (2 * _ICON_WIDTH + _DEPTH_WIDTH + 0.4) * font_size
@@ -86,19 +97,6 @@ class PinList:
             self._name_field.begin(pin.id)
         target = f"{pin.target[0]:.0f}, {pin.target[1]:.0f}"
         widgets.show_tooltip(f"{pin.label} at {target}. Double-click or F2 to rename.")
-
-
-def _icon(icon: str, name: str, is_on: bool, tooltip: str) -> bool:
-    """Draw an icon that is a switch, as high as a line of text; return whether it was clicked."""
-    imgui.push_style_color(imgui.Col_.text, ImVec4(*(TEXT if is_on else SECONDARY)))
-    imgui.push_style_color(imgui.Col_.button, ImVec4(0, 0, 0, 0))
-    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))
-    size = ImVec2(_ICON_WIDTH * imgui.get_font_size(), imgui.get_text_line_height())
-    is_clicked = imgui.button(f"{icon}###{name}", size)
-    imgui.pop_style_var()
-    imgui.pop_style_color(2)
-    widgets.show_tooltip(tooltip)
-    return bool(is_clicked)
 
 
 def _draw_depth(state: AppState, pin: Pin) -> None:

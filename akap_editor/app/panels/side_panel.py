@@ -24,7 +24,7 @@ from ..commands.registry import (
 from ..dialogs.first_steps import FirstSteps
 from ..theme import ACCENT, SECONDARY, TEXT, packed
 from ..timeline import panel as timeline_panel
-from . import bending, drawing, history, measurements, mesh, pins, poses, stiffness_brush, view
+from . import bending, drawing, history, layers, measurements, mesh, pins, poses, stiffness_brush, view
 
 _TOOLBAR: tuple[Command | None, ...] = (
     *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL),
@@ -55,6 +55,7 @@ class Section:
 # From top to bottom; each section is a module of this folder.
 SECTIONS = (
     Section("Drawing", drawing.draw),
+    Section("Layers", layers.draw, layers.is_shown, layers.layer_count),
     Section("Pins", pins.draw, note=pins.pin_count),
     Section("Bending", bending.draw),
     Section("Mesh", mesh.draw),

@@ -22,9 +22,9 @@ class EditState:
     """Everything that undo restores; arrays are read-only.
 
     pins: in the order in which they were added; positions: the pose, (n, 2) float64 pixels; settings: the
-    deformation method; drawing: the drawing since it was last given another mesh in this session, None if it
-    never was; poses: the named ones; stiffness: factors of the faces, (m,) float64 (see `stiffness`), None
-    is 1 everywhere; animation: the keyframes; crossings: which part passes in front where the pose overlaps
+    deformation method; drawing: the drawing since it was last given another mesh or layer list in this
+    session, None if it never was; poses: the named ones; stiffness: factors of the faces, (m,) float64 (see
+    `stiffness`), None is 1 everywhere; animation: the keyframes; crossings: which part passes in front where the pose overlaps
     itself, (s, 2) int32 upper and lower faces (see `overlap.overlaps.Overlaps`).
     """
 

@@ -14,11 +14,13 @@ from akap_editor.editor.session.edits import (
     EDITS,
     AddPose,
     Edit,
+    OrderLayers,
     Remesh,
     RenamePose,
     ReorderPoses,
     ReplayTarget,
     SetKeyframe,
+    SetLayers,
     SetPins,
     SetPose,
     SetSettings,
@@ -30,13 +32,28 @@ from akap_editor.editor.session.replay import Replay
 from akap_editor.editor.session.session import Session
 from akap_editor.errors import InputError
 from akap_editor.io.akap.project import decode_document, encode_document
+from akap_editor.io.images import Picture
 from akap_editor.meshing.meshers import MESHERS, PYTHONCDT, TRIANGLE
-from tests.support.edit_examples import EDIT_EXAMPLES
+from tests.support.edit_examples import EDIT_EXAMPLES, LAYER_EDITS
 from tests.support.editor_driver import Ticks, bits, replayed_state
 from tests.support.meshers import pretend_installed
+from tests.support.puppets import puppet
 
 CASES = {**EDIT_EXAMPLES, "another method": lambda _: SetSettings(Settings.parse("arap:iterations=3"))}
 ONE_MESH = {"stiffness", "pose", "crossings"}  # edits with arrays that belong to vertices or faces
+
+
+@pytest.fixture
+def drawing(drawing: Drawing, request: pytest.FixtureRequest) -> Drawing:
+    """The figure; for edits of layers the puppet."""
+    callspec = getattr(request.node, "callspec", None)
+    return puppet(150) if callspec and callspec.params.get("name") in LAYER_EDITS else drawing
+
+
+@pytest.fixture
+def finer(drawing: Drawing, image: Picture) -> Drawing:
+    """The same drawing with another mesh."""
+    return puppet(300) if drawing.layers else make_drawing(image, vertices=400, name="figure")
 
 
 @pytest.fixture
@@ -44,8 +61,8 @@ def session(drawing: Drawing) -> Session:
     """A drawing folded over itself, with two pins, two named poses and two keyframes."""
     session = Session(new_document(drawing), Ticks())
     session.begin("Add pins")
-    add_pin(session, (20.0, 40.0))
-    add_pin(session, (105.0, 40.0))
+    add_pin(session, (80.0, 150.0) if drawing.layers else (20.0, 40.0))
+    add_pin(session, (150.0, 118.0) if drawing.layers else (105.0, 40.0))
     session.apply(AddPose("bow"))
     session.apply(SetKeyframe(0.0))
     session.apply(SetTargets({2: (35.0, 48.0)}))
@@ -53,7 +70,7 @@ def session(drawing: Drawing) -> Session:
     session.apply(AddPose("nod off"))
     session.apply(SetKeyframe(1.0))
     session.commit()
-    assert len(session.state.crossings)
+    assert drawing.layers or len(session.state.crossings)
     return session
 
 
@@ -124,9 +141,8 @@ def test_a_replay_on_the_same_mesh_gives_the_same_bits(session, edit, drawing):
 
 
 @pytest.mark.parametrize("name", sorted(set(CASES) - ONE_MESH))
-def test_a_replay_on_another_mesh_does_the_same(session, edit, image):
+def test_a_replay_on_another_mesh_does_the_same(session, edit, finer):
     apply_in_gesture(session, edit)
-    finer = make_drawing(image, vertices=400, name="figure")
     state, expected = replayed_state(session.recording, finer), session.state
     assert [pin.id for pin in state.pins] == [pin.id for pin in expected.pins]
     np.testing.assert_allclose(state.targets, expected.targets, atol=1.0)
@@ -138,13 +154,17 @@ def test_a_replay_on_another_mesh_does_the_same(session, edit, image):
     assert state.settings == expected.settings
     assert (state.stiffness is None) == (expected.stiffness is None)
     assert (state.drawing is None) == (expected.drawing is None)
+    if expected.drawing is not None:
+        assert state.drawing.layer_order == expected.drawing.layer_order
+        names = [[layer.name for layer in each.drawing.layers] for each in (state, expected)]
+        assert names[0] == names[1]
 
 
 @pytest.mark.parametrize("name", sorted(ONE_MESH))
-def test_arrays_of_one_mesh_are_refused_on_another(session, edit, image):
+def test_arrays_of_one_mesh_are_refused_on_another(session, edit, finer):
     apply_in_gesture(session, edit)
     with pytest.raises(InputError, match=r"fits? only the mesh that"):
-        replayed_state(session.recording, make_drawing(image, vertices=400, name="figure"))
+        replayed_state(session.recording, finer)
 
 
 @pytest.mark.parametrize("name", ["reset", "bake"])
@@ -276,3 +296,45 @@ def test_a_recorded_edit_with_any_bad_value_is_refused_or_leaves_what_can_be_sav
             assert encode_document(decode_document(encoded)) == encoded
     assert messages or not recorded
     assert all(len(message) < 400 and "\n" not in message for message in messages)
+
+
+@pytest.mark.parametrize(
+    ("edit", "message"),
+    [
+        (SetLayers([5], visible=False), "layers: expected numbers from 0 to 4, got 5"),
+        (SetLayers([True], visible=False), "layers: expected numbers from 0 to 4, got True"),
+        (SetLayers([0], opacity=1.5), "opacity: expected a number from 0 to 1"),
+        (SetLayers([0], " "), "name: expected a name of 1 to 255 characters"),
+        (SetLayers([0], solo="yes"), "solo: expected True or False"),
+        (OrderLayers([0, 1, 2, 3, 3]), "order: expected each of 5 layers once"),
+        (OrderLayers([0, 1, 2]), "order: expected each of 5 layers once"),
+    ],
+)
+def test_values_of_layers_that_do_not_fit_are_refused(edit, message):
+    session = Session(new_document(puppet(150)), Ticks())
+    before = session.state
+    session.begin("Edit")
+    with pytest.raises(InputError, match=message):
+        session.apply(edit)
+    assert session.state is before
+
+
+def test_a_drawing_without_layers_has_none_to_change(drawing):
+    for edit in (SetLayers([0], visible=False), OrderLayers([0])):
+        session = Session(new_document(drawing), Ticks())
+        session.begin("Edit")
+        with pytest.raises(InputError, match="layers"):
+            session.apply(edit)
+
+
+def test_the_layer_list_changes_while_the_drawing_moves():
+    session = Session(new_document(puppet(150)), Ticks())
+    session.begin("Bend")
+    for place in ((80.0, 150.0), (80.0, 40.0)):
+        add_pin(session, place)
+    session.apply(SetTargets({2: (95.0, 30.0)}))
+    session.step()
+    session.apply(SetLayers([2], visible=False))
+    assert session.is_moving
+    session.settle()
+    assert session.pin_error() < 0.25

@@ -3,6 +3,7 @@
 from .crossings import OrderLimb, SetCrossings
 from .edit import Edit, Effect, ReplayTarget
 from .keyframes import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
+from .layers import OrderLayers, SetLayers
 from .method import PaintStiffness, SetSettings, SetStiffness
 from .named_poses import AddPose, DeletePose, RenamePose, ReorderPoses
 from .pins import SetAngles, SetPins, SetTargets
@@ -15,6 +16,7 @@ EDITS: dict[str, type[Edit]] = {
         *(SetSettings, SetStiffness, PaintStiffness),
         *(SetPose, ResetPose, SetRestPose, Remesh),
         *(OrderLimb, SetCrossings),
+        *(SetLayers, OrderLayers),
         *(AddPose, DeletePose, RenamePose, ReorderPoses),
         *(SetKeyframe, DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop),
     )
@@ -28,6 +30,7 @@ __all__ = [
     "Edit",
     "Effect",
     "MoveKeyframes",
+    "OrderLayers",
     "OrderLimb",
     "PaintStiffness",
     "Remesh",
@@ -39,6 +42,7 @@ __all__ = [
     "SetCrossings",
     "SetEasing",
     "SetKeyframe",
+    "SetLayers",
     "SetLoop",
     "SetPins",
     "SetPose",
