@@ -73,7 +73,8 @@ class Drawing:
         as_instance(self.mesh, "mesh", TriMesh)
         name = display_text(as_instance(self.name, "name", str))[:MAX_NAME]
         uv = self.uv
-        if not (uv.dtype == np.float32 and not uv.flags.writeable and uv.shape == self.mesh.vertices.shape):
+        is_ready = isinstance(uv, np.ndarray) and uv.dtype == np.float32 and not uv.flags.writeable
+        if not (is_ready and uv.shape == self.mesh.vertices.shape):
             uv = freeze(as_points(uv, "uv", len(self.mesh.vertices)).astype(np.float32))
         if image.flags.writeable or not image.flags.owndata:
             image = freeze(image.copy())
