@@ -78,6 +78,7 @@ class Deformer(Protocol):
     takes_stiffness: the constructor takes ``stiffness``, (m,) factors of the faces' energies.
     has_memory: the constructor takes ``memory``, from 0 to 1: how strongly a step pulls towards the rest
     pose.
+    takes_joints: the constructor takes ``joints``, `MeshJoints` that hold components together.
     has_vector_fields: the pose follows a vector field: results have one, and ``vector_fields(positions,
     velocities)`` returns two of shape (n, 2), the one followed and the one before its last solve.
     """
@@ -86,6 +87,7 @@ class Deformer(Protocol):
     takes_stiffness: bool = False
     has_memory: bool = False
     has_vector_fields: bool = False
+    takes_joints: bool = False
 
     def set_pins(self, points: MeshPoints) -> None:
         """Choose the pins, k points of the mesh; moves nothing. Raises InputError."""

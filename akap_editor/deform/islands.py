@@ -25,10 +25,12 @@ from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from ..geometry.joints import NO_JOINTS, MeshJoints
 from ..geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from ..geometry.operators import to_complex, to_points
 from ..geometry.validation import Complexes, Floats, Ints, as_points
 from .deformer import Deformer, Flow, StepResult
+from .layer_groups import solved_groups
 
 _COLLAPSED = 1e-9  # share of its |S| at rest below which a patch has no direction
 _CUTOFF = 3.0  # reaches from the gap at which the weight of a vertex, below 1/8000, is set to 0
@@ -39,7 +41,8 @@ class Islands:
     """The vertices of all islands, and the patches that carry them.
 
     vertices: (r,) of the islands; patch: (r,) the patch of each; mean, arms: (g, n) sparse matrices that take
-    a pose to p* and S of each patch; min_arms: (g,) |S| below which a patch has no direction.
+    a pose to p*, or to the point of the joint that an island hangs on, and S of each patch;
+    min_arms: (g,) |S| below which a patch has no direction.
     """
 
     vertices: Ints
@@ -79,14 +82,17 @@ class Islands:
 class IslandDeformer(Deformer):
     """Deforms components with pins by another method, and moves the islands with them.
 
-    mesh: the rest pose; deformer: of the same mesh, keeps components without a pin where they are.
+    mesh: the rest pose; deformer: of the same mesh, keeps components without a pin where they are; joints:
+    components hang on one another by them before they do by gaps.
     """
 
-    def __init__(self, mesh: TriMesh, deformer: Deformer) -> None:
+    def __init__(self, mesh: TriMesh, deformer: Deformer, joints: MeshJoints | None = None) -> None:
         self._mesh = mesh
+        self._joints = NO_JOINTS if joints is None else joints
         self._deformer: Any = deformer  # may have more methods than the contract asks for
         self.holds_angles, self.takes_stiffness = deformer.holds_angles, deformer.takes_stiffness
         self.has_memory, self.has_vector_fields = deformer.has_memory, deformer.has_vector_fields
+        self.takes_joints = deformer.takes_joints
         self._rest = to_complex(mesh.vertices)
         corner_areas = np.repeat(mesh.rest_areas / 3, 3)
         self._vertex_areas = np.bincount(mesh.faces.ravel(), corner_areas, len(self._rest))
@@ -99,17 +105,31 @@ class IslandDeformer(Deformer):
         Raises InputError for points with faces that the mesh does not have.
         """
         self._deformer.set_pins(points)
-        pinned = np.unique(self._mesh.component[self._mesh.faces[points.faces, 0]])
-        gap_of_island = _gaps_of_islands(self._mesh, pinned.tolist())
+        mesh, joints = self._mesh, self._joints
+        pinned: list[int] = np.unique(mesh.component[mesh.faces[points.faces, 0]]).tolist()
+        if self.takes_joints:
+            pinned = [each for group in solved_groups(joints.components(mesh), pinned) for each in group]
+        gap_of_island = _gaps_of_islands(mesh, joints, pinned)
         gaps = sorted(set(gap_of_island.values()))
         patch_of_component = np.full(len(self._component_areas), -1)
         patch_of_component[list(gap_of_island)] = [gaps.index(gap) for gap in gap_of_island.values()]
         patch = patch_of_component[self._mesh.component]
         vertices = np.flatnonzero(patch >= 0)
-        mean = csr_array(np.array([self._patch_weights(*gap) for gap in gaps]).reshape(-1, len(self._rest)))
-        arms = mean.astype(np.complex128).tocoo()
+        weights = np.array([self._patch_weights(near, far) for near, far, _ in gaps])
+        patches = csr_array(weights.reshape(-1, len(self._rest)))
+        arms = patches.astype(np.complex128).tocoo()
         row, column = arms.coords
-        arms.data *= (self._rest[column] - (mean @ self._rest)[row]).conj()
+        arms.data *= (self._rest[column] - (patches @ self._rest)[row]).conj()
+        mean = patches
+        if any(joint >= 0 for *_, joint in gaps):
+            mean = csr_array(
+                np.array(
+                    [
+                        weights[number] if joint < 0 else self._joint_weights(near, joint)
+                        for number, (near, _, joint) in enumerate(gaps)
+                    ]
+                )
+            )
         min_arms = _COLLAPSED * np.abs(arms @ self._rest)
         self._islands = Islands(vertices, patch[vertices], mean, arms.tocsr(), min_arms)
 
@@ -143,6 +163,14 @@ class IslandDeformer(Deformer):
         pose = to_complex(points)
         return self._islands.extend_field(pose, optimal), self._islands.extend_field(pose, smooth)
 
+    def _joint_weights(self, carrier: int, joint: int) -> Floats:
+        """Weights (n,) of the point of a joint on the component of the vertex ``carrier``."""
+        weights, joints = np.zeros(len(self._rest)), self._joints
+        corners = self._mesh.faces[joints.faces[joint]]
+        side = int(self._mesh.component[corners[1, 0]] == self._mesh.component[carrier])
+        weights[corners[side]] = joints.weights[joint, side]
+        return weights
+
     def _patch_weights(self, carrier: int, island: int) -> Floats:
         """Weights (n,) with sum 1 of the patch at the gap from the vertex ``carrier`` to ``island``.
 
@@ -163,23 +191,31 @@ def _carried_flow(flow: Flow | None, islands: Islands, pose: Floats) -> Flow | N
     return None if flow is None else lambda t: islands.carry(before, flow(t))
 
 
-def _gaps_of_islands(mesh: TriMesh, pinned: list[int]) -> dict[int, tuple[int, int]]:
+def _gaps_of_islands(mesh: TriMesh, joints: MeshJoints, pinned: list[int]) -> dict[int, tuple[int, int, int]]:
     """For each component without pins, the gap at which its chain starts.
 
-    pinned: the components with pins. A gap is a vertex of a pinned component and one of an island.
+    pinned: the components with pins. A gap is a vertex of a pinned component, one of an island, and the joint
+    there, −1 for none. Joints come before all gaps.
     """
-    gaps: dict[int, list[tuple[float, int, int]]] = defaultdict(list)
+    gaps: dict[int, list[tuple[float, int, int, int]]] = defaultdict(list)
+
+    def add(width: float, i: int, j: int, joint: int) -> None:
+        gaps[int(mesh.component[i])].append((width, i, j, joint))
+        gaps[int(mesh.component[j])].append((width, j, i, joint))
+
+    for joint, (faces, weights) in enumerate(zip(joints.faces, joints.weights, strict=True)):
+        i, j = mesh.faces[faces, weights.argmax(axis=1)].tolist()
+        add(-1.0, i, j, joint)
     for (i, j), width in zip(mesh.gaps.tolist(), mesh.gap_widths.tolist(), strict=True):
-        gaps[int(mesh.component[i])].append((width, i, j))
-        gaps[int(mesh.component[j])].append((width, j, i))
-    first_gaps: dict[int, tuple[int, int]] = {}
+        add(width, i, j, -1)
+    first_gaps: dict[int, tuple[int, int, int]] = {}
     queue = [gap for component in pinned for gap in gaps[component]]
     heapify(queue)
     while queue:
-        _, near, far = heappop(queue)
+        _, near, far, joint = heappop(queue)
         component = int(mesh.component[far])
         if component not in first_gaps and component not in pinned:
-            first_gaps[component] = first_gaps.get(int(mesh.component[near]), (near, far))
+            first_gaps[component] = first_gaps.get(int(mesh.component[near]), (near, far, joint))
             for gap in gaps[component]:
                 heappush(queue, gap)
     return first_gaps

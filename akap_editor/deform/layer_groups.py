@@ -2,10 +2,12 @@
 
 The lengths of a method (steps, tolerances, radii around pins) are shares of √area. On a mesh of many layers
 they would be too long for a small one, for example an eye, and layers that no pin moves would be solved for
-nothing.
+nothing. Of components that joints hold together, those with pins and those on the way between them are
+solved together; the others ride.
 """
 
 import time
+from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..geometry.joints import NO_JOINTS, MeshJoints
 from ..geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from ..geometry.operators import to_complex
 from ..geometry.validation import Floats, Ints, as_indices, as_numbers, as_points
@@ -24,7 +27,7 @@ _MAX_KEPT = 16  # groups whose deformers are kept when pins come and go
 
 @dataclass(frozen=True, eq=False)
 class _Group:
-    """A component of a mesh with pins, as a mesh of its own, and its deformer.
+    """Components of a mesh with pins, joined with one another, as a mesh of their own, and its deformer.
 
     vertices: (v,) of the whole mesh; faces: (m,) the number of each of its faces in the group, −1 of others;
     pins: (p,) indices of the pins on it.
@@ -37,24 +40,33 @@ class _Group:
 
 
 class LayerGroupDeformer(Deformer):
-    """Deforms each component that has pins by a deformer of its own; the others stay where they are.
+    """Deforms each group of components that has pins by a deformer of its own; the others stay.
 
-    mesh: the rest pose; make: of a method; parameters: by keyword, the stiffness (m,) among them.
+    mesh: the rest pose; make: of a method; joints: by which components form groups, if the method takes them;
+    parameters: by keyword, the stiffness (m,) among them.
     """
 
-    def __init__(self, mesh: TriMesh, make: DeformerFactory, **parameters: Any) -> None:
+    def __init__(
+        self, mesh: TriMesh, make: DeformerFactory, joints: MeshJoints | None = None, **parameters: Any
+    ) -> None:
         self._mesh, self._make, self._parameters = mesh, make, dict(parameters)
+        self._joints = NO_JOINTS if joints is None else joints
+        as_indices(self._joints.faces, "joints", 2, len(mesh.faces))
+        self._joined = self._joints.components(mesh)
         stiffness = self._parameters.pop("stiffness", None)
         count = len(mesh.faces)
         self._stiffness = None
         if stiffness is not None:
             self._stiffness = as_numbers(stiffness, "stiffness", count, 0.0, np.inf)
         self._face_components = mesh.component[mesh.faces[:, 0]]
-        self._kept: dict[int, tuple[Ints, Ints, Any]] = {}
+        self._kept: dict[tuple[int, ...], tuple[Ints, Ints, Any]] = {}
         smallest = int(np.argmin(np.bincount(self._face_components)))
-        sample = self._part(smallest)[2]  # also checks the parameters
+        sample = self._part((smallest,))[2]  # also checks the parameters
         self.holds_angles, self.takes_stiffness = sample.holds_angles, sample.takes_stiffness
         self.has_memory, self.has_vector_fields = sample.has_memory, sample.has_vector_fields
+        self.takes_joints = sample.takes_joints
+        if not self.takes_joints:
+            self._joined = self._joined[:0]
         self.set_pins(NO_POINTS)
 
     def set_pins(self, points: MeshPoints) -> None:
@@ -65,31 +77,39 @@ class LayerGroupDeformer(Deformer):
         as_indices(points.faces, "points.faces", None, len(self._mesh.faces))
         components = self._face_components[points.faces]
         groups = []
-        for component in np.unique(components).tolist():
-            vertices, faces, deformer = self._part(component)
-            pins = np.flatnonzero(components == component)
+        for group in solved_groups(self._joined, np.unique(components).tolist()):
+            vertices, faces, deformer = self._part(group)
+            pins = np.flatnonzero(np.isin(components, group))
             deformer.set_pins(MeshPoints(faces[points.faces[pins]], points.weights[pins]))
             groups.append(_Group(vertices, faces, deformer, pins))
         self._groups, self._pin_count = groups, len(points)
 
-    def _part(self, component: int) -> tuple[Ints, Ints, Any]:
-        """Vertices, numbers of faces and deformer of a component, see `_Group`."""
-        if component in self._kept:
-            self._kept[component] = self._kept.pop(component)  # the last one used
-            return self._kept[component]
+    def _part(self, group: tuple[int, ...]) -> tuple[Ints, Ints, Any]:
+        """Vertices, numbers of faces and deformer of some components, see `_Group`."""
+        if group in self._kept:
+            self._kept[group] = self._kept.pop(group)  # the last one used
+            return self._kept[group]
         mesh = self._mesh
-        vertices = np.flatnonzero(mesh.component == component)
-        own = np.flatnonzero(self._face_components == component)
+        vertices = np.flatnonzero(np.isin(mesh.component, group))
+        own = np.flatnonzero(np.isin(self._face_components, group))
         number = np.full(len(mesh.vertices), -1)
         number[vertices] = np.arange(len(vertices))
         faces = np.full(len(mesh.faces), -1)
         faces[own] = np.arange(len(own))
-        stiffness = {} if self._stiffness is None else {"stiffness": self._stiffness[own]}
-        part = TriMesh(mesh.vertices[vertices], number[mesh.faces[own]])
-        self._kept[component] = vertices, faces, self._make(part, **self._parameters, **stiffness)
+        more: dict[str, Any] = {} if self._stiffness is None else {"stiffness": self._stiffness[own]}
+        layers = None
+        if len(group) > 1:  # then their vertices may coincide
+            layers = mesh.component[vertices]
+            inside = np.isin(self._joined, group).all(axis=1)
+            joints = self._joints
+            more["joints"] = MeshJoints(
+                faces[joints.faces[inside]], joints.weights[inside], joints.is_weld[inside]
+            )
+        part = TriMesh(mesh.vertices[vertices], number[mesh.faces[own]], False, layers)
+        self._kept[group] = vertices, faces, self._make(part, **self._parameters, **more)
         while len(self._kept) > _MAX_KEPT:
             del self._kept[next(iter(self._kept))]
-        return self._kept[component]
+        return self._kept[group]
 
     def step(self, positions: ArrayLike, targets: ArrayLike, angles: ArrayLike | None = None) -> StepResult:
         """Move the pose (n, 2) so that its pins reach ``targets`` (k, 2), see `Deformer.step`.
@@ -109,7 +129,7 @@ class LayerGroupDeformer(Deformer):
         moved = self._together(pose, [(group, result.positions) for group, result in results])
         fields = [(group, result.field) for group, result in results if result.field is not None]
         field = self._together(np.zeros_like(pose), fields) if fields else None
-        report = _joint_report([result.report for _, result in results], time.perf_counter() - started)
+        report = _common_report([result.report for _, result in results], time.perf_counter() - started)
         return StepResult(moved, field, report, self._flow(pose, results))
 
     def _together(self, values: Floats, parts: list[tuple[_Group, Floats]]) -> Floats:
@@ -145,7 +165,38 @@ class LayerGroupDeformer(Deformer):
         return optimal, smooth
 
 
-def _joint_report(reports: list[StepReport], seconds: float) -> StepReport:
+def solved_groups(joined: Ints, pinned: list[int]) -> list[tuple[int, ...]]:
+    """The components that are solved together, each group ascending: those on all ways between pins.
+
+    joined: (j, 2) components that a joint holds together; pinned: those with pins. What hangs on a group by
+    one joint only, and has no pins, is not solved.
+    """
+    neighbors: dict[int, set[int]] = defaultdict(set)
+    for a, b in joined.tolist():
+        neighbors[a].add(b)
+        neighbors[b].add(a)
+    ends = [each for each in neighbors if len(neighbors[each]) == 1 and each not in pinned]
+    while ends:
+        end = ends.pop()
+        for other in neighbors.pop(end):
+            neighbors[other].discard(end)
+            if len(neighbors[other]) == 1 and other not in pinned:
+                ends.append(other)
+    groups, seen = [], set()
+    for component in pinned:
+        if component in seen:
+            continue
+        group, reached = {component}, [component]
+        while reached:
+            new = neighbors[reached.pop()] - group
+            group |= new
+            reached += new
+        seen |= group
+        groups.append(tuple(sorted(group)))
+    return groups
+
+
+def _common_report(reports: list[StepReport], seconds: float) -> StepReport:
     """The report of all groups."""
     return StepReport(
         seconds,

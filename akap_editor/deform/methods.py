@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..errors import InputError
+from ..geometry.joints import MeshJoints
 from ..geometry.mesh import TriMesh
 from ..geometry.validation import as_instance
 from .akap.deformer import AkapDeformer
@@ -343,11 +344,14 @@ def get_method(name: str) -> Method:
     return METHODS[name]
 
 
-def make_deformer(method: str, mesh: TriMesh, /, **parameters: Any) -> Deformer:
+def make_deformer(
+    method: str, mesh: TriMesh, joints: MeshJoints | None = None, /, **parameters: Any
+) -> Deformer:
     """Make the deformer of a method for a mesh at rest, with parameters by keyword.
 
     If the components of the mesh are tied, those without a pin move with the others (`IslandDeformer`). Of a
-    mesh in layers, each component with pins is deformed on its own (`LayerGroupDeformer`).
+    mesh in layers, each component with pins is deformed on its own (`LayerGroupDeformer`), with those that
+    ``joints`` connect it to, if the method takes them; what hangs on a joint and has no pins rides.
     Raises InputError for an unknown method or parameter, or a value out of range.
     """
     chosen, known = get_method(method), default_parameters(method)
@@ -356,10 +360,10 @@ def make_deformer(method: str, mesh: TriMesh, /, **parameters: Any) -> Deformer:
     as_instance(mesh, "mesh", TriMesh)
     constructor: Callable[..., Deformer] = chosen.deformer
     if mesh.layers is not None:
-        deformer: Deformer = LayerGroupDeformer(mesh, constructor, **parameters)
+        deformer: Deformer = LayerGroupDeformer(mesh, constructor, joints, **parameters)
     else:
         deformer = constructor(mesh, **parameters)
-    return IslandDeformer(mesh, deformer) if mesh.tied and mesh.component.any() else deformer
+    return IslandDeformer(mesh, deformer, joints) if mesh.tied and mesh.component.any() else deformer
 
 
 def default_parameters(method: str) -> Parameters:
@@ -369,9 +373,9 @@ def default_parameters(method: str) -> Parameters:
 
 @cache  # panels ask in every frame
 def _constructor_defaults(deformer: type[Deformer]) -> tuple[tuple[str, Any], ...]:
-    """Names and default values of a deformer's arguments behind the mesh."""
+    """Names and default values of a deformer's arguments behind the mesh, without joints."""
     arguments = list(inspect.signature(deformer).parameters.values())[1:]
-    return tuple((argument.name, argument.default) for argument in arguments)
+    return tuple((argument.name, argument.default) for argument in arguments if argument.name != "joints")
 
 
 def presets() -> list[MethodPreset]:

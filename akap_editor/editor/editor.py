@@ -18,6 +18,7 @@ from .session.edits import Edit
 from .session.session import Session
 from .session.stepper import INLINE
 from .tools.base import IdleTool, Tool, distance
+from .tools.joints import JointsIdle
 from .tools.keyboard_pointer import MARGIN, KeyboardPointer
 from .tools.pan import HandIdle, Panning
 from .tools.pins import PinsIdle
@@ -54,7 +55,7 @@ class Editor:
         self.menu_request: Point | None = None  # where the menu of the empty canvas is to open
         self.trails = Trails()
         self.pins_tool, self.hand_tool = PinsIdle(self), HandIdle(self)
-        self.zoom_tool, self.brush_tool = ZoomIdle(self), BrushIdle(self)
+        self.zoom_tool, self.brush_tool, self.joint_tool = ZoomIdle(self), BrushIdle(self), JointsIdle(self)
         self.chosen_tool: IdleTool = self.pins_tool
         self._active_tool: Tool | None = None  # None while the idle tool is active
         self._canvas = (0.0, 0.0, 1280.0, 800.0)

@@ -1,12 +1,16 @@
 """Functions that edit an open session, each in one gesture: one entry of the history."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any, Protocol, TypeVar
+
+import numpy as np
 
 from ..geometry.validation import Floats, Ints
 from .camera import Point
 from .document.named_poses import unused_pose_name
 from .document.pin import Pin
+from .document.rig.joint import Joint, changed_joint, make_joint
 from .document.settings import Settings
 from .session import pin_edits
 from .session.edits import (
@@ -17,6 +21,7 @@ from .session.edits import (
     OrderLimb,
     ResetPose,
     SetAngles,
+    SetJoints,
     SetLayers,
     SetPins,
     SetPose,
@@ -215,6 +220,74 @@ def move_layer(editor: EditContext, layer: int, place: int) -> None:
         order = [number for number in editor.session.drawing.layer_order if number != layer]
         order.insert(place, layer)
         editor.apply("Reorder Layers", OrderLayers(order))
+
+
+def set_joints(editor: EditContext, label: str, joints: Iterable[Joint]) -> None:
+    """Replace all joints, see `SetJoints`. Raises InputError."""
+    editor.apply(label, SetJoints(tuple(joints)))
+
+
+def add_joint(editor: EditContext, limb: int, carrier: int, place: Point) -> int | None:
+    """Add a hinge between two layers at a place of the current pose, pixels; returns its id."""
+    session = editor.session
+    if session is None:
+        return None
+    state, mesh = session.state, session.drawing.mesh
+    joint_id = 1 + max((joint.id for joint in state.joints), default=0)
+    joint = make_joint(mesh, joint_id, limb, carrier, np.array(place), state.positions)
+    set_joints(editor, "Add Joint", (*state.joints, joint))
+    return joint_id
+
+
+def move_joint(editor: EditContext, joint_id: int, place: Point) -> None:
+    """Move a joint to a place of the current pose, pixels, on its two layers."""
+    session = editor.session
+    if session is not None:
+        state, mesh = session.state, session.drawing.mesh
+        old = next(joint for joint in state.joints if joint.id == joint_id)
+        moved = make_joint(mesh, joint_id, *old.layers(mesh), np.array(place), state.positions)
+        values = {"faces": moved.faces, "weights": moved.weights}
+        set_joints(editor, "Move Joint", changed_joint(state.joints, joint_id, **values))
+
+
+def hang_joint(editor: EditContext, joint_id: int, carrier: int) -> None:
+    """Let the limb of a joint hang on another layer, where the joint is now."""
+    session = editor.session
+    if session is not None:
+        state, mesh = session.state, session.drawing.mesh
+        old = next(joint for joint in state.joints if joint.id == joint_id)
+        place = old.places(mesh, state.positions)[0]
+        moved = make_joint(mesh, joint_id, old.layers(mesh)[0], carrier, place, state.positions)
+        values = {"faces": moved.faces, "weights": moved.weights}
+        set_joints(editor, "Change Parent", changed_joint(state.joints, joint_id, **values))
+
+
+def set_joint_kind(editor: EditContext, joint_id: int, kind: str) -> None:
+    """Make a joint a hinge or a weld. Raises InputError on another kind."""
+    if editor.session is not None:
+        joints = changed_joint(editor.session.state.joints, joint_id, kind=kind)
+        set_joints(editor, "Make Weld" if kind == "weld" else "Make Hinge", joints)
+
+
+def remove_joints(editor: EditContext, ids: Iterable[int], label: str = "Remove Joint") -> None:
+    """Remove joints by their ids; the drawing keeps its pose."""
+    if editor.session is not None:
+        removed = set(ids)
+        set_joints(editor, label, (j for j in editor.session.state.joints if j.id not in removed))
+
+
+def accept_joints(editor: EditContext) -> None:
+    """Accept all proposed joints."""
+    if editor.session is not None:
+        joints = (replace(joint, is_proposed=False) for joint in editor.session.state.joints)
+        set_joints(editor, "Accept Joints", joints)
+
+
+def clear_proposed_joints(editor: EditContext) -> None:
+    """Remove all joints that nobody has accepted."""
+    if editor.session is not None:
+        proposed = [joint.id for joint in editor.session.state.joints if joint.is_proposed]
+        remove_joints(editor, proposed, "Clear Proposed Joints")
 
 
 # -- poses and settings --------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ import numpy as np
 
 from .jit import compiled
 from .mesh import TriMesh
-from .validation import Complexes, Floats, Indices
+from .validation import Complexes, Floats, Indices, Ints
 
 
 class Slots(NamedTuple):  # numba's caches on disk refer to this name: renamed, they fail to load
@@ -27,7 +27,9 @@ class Slots(NamedTuple):  # numba's caches on disk refer to this name: renamed, 
 
 
 class VertexBlocks:
-    """The sparsity pattern: one block for each vertex and each edge of a mesh.
+    """The sparsity pattern: one block for each vertex and each edge of a mesh, and for each of its links.
+
+    links: (l, 2) further pairs of vertices that are coupled, the lower one first.
 
     Nonzeros are those of the lower triangle, column by column: first the block of the vertex itself, then the
     blocks of its neighbors with higher numbers.
@@ -35,8 +37,12 @@ class VertexBlocks:
     rows, columns: (z,) int32 of the nonzeros; slots: where a face adds to them.
     """
 
-    def __init__(self, mesh: TriMesh) -> None:
-        n, low, high = len(mesh.vertices), *mesh.edges.T.astype(np.int64)
+    def __init__(self, mesh: TriMesh, links: Ints | None = None) -> None:
+        n, pairs = len(mesh.vertices), mesh.edges.astype(np.int64)
+        if links is not None and len(links):
+            keys = np.unique(np.concatenate([pairs, links]) @ np.array([n, 1], dtype=np.int64))
+            pairs = np.stack(np.divmod(keys, n), axis=1)
+        low, high = pairs.T
         higher_neighbors = np.bincount(low, minlength=n)
         ends = np.cumsum(3 + 4 * higher_neighbors)
         first = ends - (3 + 4 * higher_neighbors)
@@ -68,11 +74,11 @@ class KillingMatrix:
     The printed eq. 6 stacks the whole gradient G instead of ∂x and ∂y, which would penalize rotations.
     Written out, the entry of component a at corner i and b at corner j is 2 A (∂b hᵢ ∂a hⱼ + δ_ab ∇hᵢ·∇hⱼ).
 
-    blocks: the sparsity pattern of K.
+    links: see `VertexBlocks`. blocks: the sparsity pattern of K.
     """
 
-    def __init__(self, mesh: TriMesh) -> None:
-        self.blocks = VertexBlocks(mesh)
+    def __init__(self, mesh: TriMesh, links: Ints | None = None) -> None:
+        self.blocks = VertexBlocks(mesh, links)
         self._faces = mesh.faces.astype(np.uint32)
         self._ones, self._zeros = np.ones(len(mesh.faces)), np.zeros(len(mesh.faces))
 

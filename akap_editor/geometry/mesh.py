@@ -120,6 +120,8 @@ class TriMesh:
         object.__setattr__(mesh, "vertices", freeze(self.vertices[vertex_order]))
         object.__setattr__(mesh, "faces", freeze(numbers[self.faces[face_order]]))
         object.__setattr__(mesh, "tied", self.tied)
+        layers = None if self.layers is None else freeze(self.layers[vertex_order])
+        object.__setattr__(mesh, "layers", layers)
         edges = np.sort(numbers[self.edges], axis=1)
         keys = edges @ np.array([len(numbers), 1], dtype=np.int64)
         mesh.__dict__["edges"] = freeze(edges[np.argsort(keys)])  # these are cheaper than from the faces

@@ -7,6 +7,7 @@ from typing import Any
 from ..display_text import display_name
 from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import apply_mask, make_drawing
+from ..editor.document.rig.suggestion import suggest_joints
 from ..editor.session.replay import Replay
 from ..errors import FileError, InputError, file_errors
 from ..layers.composite import composite
@@ -94,7 +95,8 @@ def _open_layered(
                 drawing = make_drawing(None, shown, layers=layered, **options)
             else:
                 drawing = make_drawing(composite(layered), shown, **options)
-        return replace(new_document(drawing), notes=tuple(notes))
+        document = replace(new_document(drawing), notes=tuple(notes))
+        return replace(document, state=replace(document.state, joints=suggest_joints(drawing)))
 
 
 def _layer_note(layers: list[Layer]) -> str:

@@ -119,7 +119,7 @@ def flat_picture(
 
 
 def faded_texture(texture: NDArray[np.uint8], layers: Sequence[DrawingLayer]) -> NDArray[np.uint8]:
-    """A texture (h, w, 4) uint8 with the opacity of the layers in its alpha; the same one if all are opaque."""
+    """A texture (h, w, 4) uint8 with the opacity of the layers in its alpha; itself if all are opaque."""
     if all(layer.opacity == 1 for layer in layers):
         return texture
     result = texture.copy()

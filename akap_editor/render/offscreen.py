@@ -107,8 +107,8 @@ class OffscreenRenderer:
         the pose; scale: pixels per drawing unit, the size is rounded up (see `output_size`); background: None
         for transparent; order: (m,) the faces in drawing order, the last one in front, see
         `Document.draw_order`; by default that of the layers. In the rest pose the result equals the
-        drawing's picture wherever the mesh covers it. The picture may be larger than the driver's limit. Raises InputError for a bad argument or
-        a picture that is too large, GraphicsError without OpenGL 3.3.
+        drawing's picture wherever the mesh covers it. The picture may be larger than the driver's limit.
+        Raises InputError for a bad argument or a picture that is too large, GraphicsError without OpenGL 3.3.
         """
         pose = as_points(positions, "positions", len(drawing.mesh.vertices))
         box = frame_box(drawing, [pose]) if box is None else box

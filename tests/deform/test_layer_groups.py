@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from akap_editor.deform.layer_groups import LayerGroupDeformer
+from akap_editor.deform.layer_groups import LayerGroupDeformer, solved_groups
 from akap_editor.deform.methods import make_deformer, method_names
 from akap_editor.errors import InputError
-from akap_editor.geometry.mesh import TriMesh
+from akap_editor.geometry.joints import MeshJoints
+from akap_editor.geometry.mesh import TriMesh, signed_areas
 from tests.support.puppets import ARM, BODY, EYES, HAT, SKULL, puppet
 
 MESH = puppet().mesh
@@ -102,3 +103,124 @@ def test_bad_arguments_are_refused(parameters, targets, message):
 def test_without_pins_nothing_moves():
     result = make_deformer("akap", MESH).step(MESH.vertices, np.zeros((0, 2)))
     np.testing.assert_array_equal(result.positions, MESH.vertices)
+
+
+# --- joints ---
+
+
+def joints(*rows):
+    ends = [MESH.locate([place, place], layers=[a, b]) for a, b, place, _ in rows]
+    return MeshJoints(
+        np.array([end.faces for end in ends]),
+        np.array([end.weights for end in ends]),
+        np.array([row[3] for row in rows]),
+    )
+
+
+SHOULDER, NECK = (ARM, BODY, (92.0, 118.0), False), (SKULL, BODY, (80.0, 85.0), False)
+RIG = joints(SHOULDER, NECK)
+
+
+def gap(pose, rig=RIG):
+    places = rig.places(MESH, pose)
+    return np.linalg.norm(places[:, 0] - places[:, 1], axis=1).max()
+
+
+@pytest.mark.parametrize(
+    ("joined", "pinned", "groups"),
+    [
+        ([], [0, 2], [(0,), (2,)]),
+        ([(0, 1), (1, 2)], [0, 2], [(0, 1, 2)]),  # the way between pins
+        ([(0, 1), (1, 2)], [0, 1], [(0, 1)]),  # 2 hangs on it without a pin
+        ([(0, 1), (1, 2), (2, 3)], [0], [(0,)]),
+        ([(0, 1), (2, 3)], [0, 1, 3], [(0, 1), (3,)]),
+        ([(0, 1), (1, 2), (2, 0)], [0], [(0, 1, 2)]),  # a ring holds itself
+        ([(0, 1), (0, 1)], [0, 1], [(0, 1)]),
+    ],
+)
+def test_what_lies_between_pins_is_solved_together(joined, pinned, groups):
+    assert solved_groups(np.array(joined, dtype=int).reshape(-1, 2), pinned) == groups
+
+
+@pytest.mark.parametrize("memory", [0.0, 1.0])
+def test_a_hinge_holds_while_the_limb_is_dragged_around(memory):
+    deformer = make_deformer("akap", MESH, RIG, memory=memory)
+    points = MESH.locate([(80.0, 155.0), (150.0, 118.0), (66.0, 165.0)], layers=[BODY, ARM, BODY])
+    deformer.set_pins(points)
+    rest = MESH.evaluate(points, MESH.vertices)
+    pose, worst = MESH.vertices, 0.0
+    for number in range(40):
+        angle = 0.04 * number
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        targets = rest.copy()
+        targets[1] = [92, 118] + turn @ (rest[1] - [92, 118])
+        pose = deformer.step(pose, targets).positions
+        worst = max(worst, gap(pose))
+    for _ in range(10):
+        pose = deformer.step(pose, targets).positions
+    assert worst < 0.5
+    assert gap(pose) < 0.05
+    assert signed_areas(pose, MESH.faces).min() > 0
+
+
+def test_a_rigid_motion_of_the_pins_moves_the_whole_puppet_rigidly():
+    """Lemma 1: fields of joined layers reproduce rigid motions to the precision of the solver."""
+    deformer = make_deformer("akap", MESH, RIG, exact=True)
+    points = MESH.locate([(80.0, 155.0), (150.0, 118.0), (80.0, 40.0)], layers=[BODY, ARM, SKULL])
+    deformer.set_pins(points)
+    solved = np.isin(MESH.layers, [BODY, ARM, SKULL])
+    z = MESH.vertices @ np.array([1, 1j])
+    field = 2 - 3j + 0.3j * z
+    pins = MESH.evaluate(points, np.stack([field.real, field.imag], axis=1))
+    optimal, smooth = deformer.vector_fields(MESH.vertices, pins)
+    for result in (optimal, smooth):
+        error = np.abs((result @ np.array([1, 1j]) - field)[solved]).max()
+        assert error < 1e-6 * np.abs(field).max()
+
+
+def test_without_pins_of_its_own_a_limb_turns_with_the_patch_at_its_joint():
+    deformer = make_deformer("akap", MESH, RIG, memory=1.0)
+    points = MESH.locate([(66.0, 165.0), (80.0, 95.0)], layers=[BODY, BODY])
+    deformer.set_pins(points)
+    rest, pose = MESH.evaluate(points, MESH.vertices), MESH.vertices
+    for number in range(20):
+        targets = rest + np.array([(0, 0), (2.0 * number, 0)])
+        pose = deformer.step(pose, targets).positions
+    assert is_moved_rigidly(MESH, ARM, pose)
+    assert gap(pose) < 1e-6
+    assert np.abs(pose - MESH.vertices)[MESH.layers == ARM].max() > 5
+
+
+def test_no_drift_with_memory():
+    deformer = make_deformer("akap", MESH, RIG, memory=1.0)
+    points = MESH.locate([(80.0, 155.0), (150.0, 118.0)], layers=[BODY, ARM])
+    deformer.set_pins(points)
+    rest, pose, rounds = MESH.evaluate(points, MESH.vertices), MESH.vertices, []
+    for _ in range(3):
+        for number in range(24):
+            angle = 2 * np.pi * number / 24
+            targets = rest + np.array([(0, 0), (10 * np.cos(angle) - 10, 15 * np.sin(angle))])
+            pose = deformer.step(pose, targets).positions
+        for _ in range(8):
+            pose = deformer.step(pose, rest).positions
+        rounds.append(pose)
+    assert np.abs(rounds[-1] - rounds[0]).max() < 0.1
+
+
+@pytest.mark.parametrize("method", [name for name in method_names() if name != "akap"])
+def test_methods_without_joints_let_layers_ride_by_them(method):
+    deformer = make_deformer(method, MESH, RIG)
+    deformer.set_pins(MESH.locate([(80.0, 155.0)], layers=[BODY]))
+    pose = deformer.step(MESH.vertices, [(95.0, 160.0)]).positions
+    assert not deformer.takes_joints
+    np.testing.assert_allclose((pose - MESH.vertices)[MESH.layers == ARM].mean(axis=0), [15, 5], atol=0.5)
+
+
+def test_no_joints_are_as_none_at_all_bit_for_bit():
+    points = MESH.locate([(80.0, 155.0), (66.0, 100.0)], layers=[BODY, BODY])
+    poses = []
+    for rig in (None, MeshJoints(np.zeros((0, 2), int), np.zeros((0, 2, 3)), np.zeros(0, bool))):
+        deformer = make_deformer("akap", MESH, rig, memory=1.0)
+        deformer.set_pins(points)
+        poses.append(deformer.step(MESH.vertices, [(80.0, 155.0), (70.0, 96.0)]).positions)
+    np.testing.assert_array_equal(*poses)

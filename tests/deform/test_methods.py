@@ -149,6 +149,7 @@ def test_capabilities_are_those_of_the_class(method):
     assert deformer.holds_angles == ("angles" in inspect.signature(deformer.step).parameters)
     assert deformer.takes_stiffness == ("stiffness" in default_parameters(method))
     assert deformer.has_memory == ("memory" in default_parameters(method))
+    assert deformer.takes_joints == ("joints" in inspect.signature(deformer).parameters)
     assert deformer.has_vector_fields == hasattr(deformer, "vector_fields")
 
 

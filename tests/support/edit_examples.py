@@ -7,6 +7,7 @@ import numpy as np
 
 from akap_editor.editor.document.drawing import Meshing
 from akap_editor.editor.document.pin import Pin
+from akap_editor.editor.document.rig.joint import make_joint
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import (
     AddPose,
@@ -24,6 +25,7 @@ from akap_editor.editor.session.edits import (
     SetAngles,
     SetCrossings,
     SetEasing,
+    SetJoints,
     SetKeyframe,
     SetLayers,
     SetLoop,
@@ -45,12 +47,19 @@ def _pins(session: Session) -> Edit:
     return SetPins((*first, new))
 
 
+def _joints(session: Session) -> Edit:
+    """A proposal of the program, and a weld."""
+    mesh = session.drawing.mesh
+    shoulder = make_joint(mesh, 1, 1, 0, np.array([92.0, 118.0]), is_proposed=True)
+    return SetJoints((shoulder, make_joint(mesh, 7, 2, 0, np.array([80.0, 85.0]), kind="weld")))
+
+
 def _first_pose(session: Session) -> str:
     return next((pose.name for pose in session.state.poses), "no pose")
 
 
 # An edit for the current state of a session. It may be refused by InputError, for example without poses.
-LAYER_EDITS = frozenset({"layers", "layer-order"})  # which need a drawing in layers
+LAYER_EDITS = frozenset({"layers", "layer-order", "joints"})  # which need a drawing in layers
 EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "pins": _pins,
     "targets": lambda session: SetTargets({pin.id: (90.0, 65.0) for pin in session.state.pins[-1:]}),
@@ -65,6 +74,7 @@ EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "limb": lambda session: OrderLimb([pin.id for pin in session.state.pins[-1:]], False),
     "crossings": lambda session: SetCrossings(np.array([[3, 1]], dtype=np.int32)),
     "layers": lambda session: SetLayers([0], "trunk", 0.5, False, True, True),
+    "joints": _joints,
     "layer-order": lambda session: OrderLayers(list(reversed(session.drawing.layer_order))),
     "keep": lambda session: AddPose("wave"),
     "forget": lambda session: DeletePose(_first_pose(session)),

@@ -52,7 +52,11 @@ def bits(state: EditState) -> tuple[Any, ...]:
     )
     animation = keyframes, state.animation.ease, state.animation.loop
     pose = state.positions.tobytes(), state.crossings.tobytes()
-    return pose, pins, state.settings, mesh_bits, layer_list, stiffness, poses, animation
+    joints = tuple(
+        (joint.id, joint.faces, joint.weights.tobytes(), joint.kind, joint.is_proposed)
+        for joint in state.joints
+    )
+    return pose, pins, state.settings, mesh_bits, layer_list, joints, stiffness, poses, animation
 
 
 def _layer_bits(layer: DrawingLayer) -> tuple[Any, ...]:

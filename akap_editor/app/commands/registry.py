@@ -290,6 +290,7 @@ def _resize_brush(larger: bool) -> Callable[[AppState], None]:
 PIN_TOOL = _tool("Pin Tool", lambda editor: editor.pins_tool, Key.p, icons.ICON_FA_THUMBTACK)
 HAND_TOOL = _tool("Hand Tool", lambda editor: editor.hand_tool, Key.n, icons.ICON_FA_HAND)
 BRUSH_TOOL = _tool("Stiffness Brush", lambda editor: editor.brush_tool, Key.b, icons.ICON_FA_PAINTBRUSH)
+JOINT_TOOL = _tool("Joint Tool", lambda editor: editor.joint_tool, Key.u, icons.ICON_FA_LINK)
 ZOOM_TOOL = _tool("Zoom Tool", lambda editor: editor.zoom_tool, Key.z, icons.ICON_FA_MAGNIFYING_GLASS)
 ERASE = Command("Erase Stiffness", _toggle_erasing, (Key.e,), "", _has_brush, _is_erasing)
 DECREASE_BRUSH = Command("Decrease Brush Size", _resize_brush(False), (Key.left_bracket,), "", _has_brush)
@@ -335,7 +336,7 @@ MENUS: tuple[Menu, ...] = (
 )
 COMMANDS = (
     *(command for _, items in MENUS for command in items if isinstance(command, Command)),
-    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL, CROSSHAIR),
+    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL, JOINT_TOOL, CROSSHAIR),
     *(ERASE, DECREASE_BRUSH, INCREASE_BRUSH),
     *PANNING,
 )

@@ -16,6 +16,7 @@ SYNONYMS = {
     "Deselect": "select none",
     "Pin Values": "coordinates position numbers transform",
     "Pin Tool": "puppet warp deform bend liquify mesh move",
+    "Joint Tool": "brad bone rig hinge weld layers skeleton",
     "Hand Tool": "pan scroll move view",
     "Zoom Tool": "magnify magnifying glass loupe",
     "Stiffness Brush": "starch rigid freeze paint stick bone mask",

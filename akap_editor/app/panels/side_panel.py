@@ -14,6 +14,7 @@ from ..commands.registry import (
     BRUSH_TOOL,
     FIT,
     HAND_TOOL,
+    JOINT_TOOL,
     PIN_TOOL,
     REDO,
     REMOVE_SELECTED,
@@ -25,9 +26,10 @@ from ..dialogs.first_steps import FirstSteps
 from ..theme import ACCENT, SECONDARY, TEXT, packed
 from ..timeline import panel as timeline_panel
 from . import bending, drawing, history, layers, measurements, mesh, pins, poses, stiffness_brush, view
+from .rig import joints
 
 _TOOLBAR: tuple[Command | None, ...] = (
-    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL),
+    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL, JOINT_TOOL),
     None,
     *(UNDO, REDO, REMOVE_SELECTED),
     None,
@@ -56,6 +58,7 @@ class Section:
 SECTIONS = (
     Section("Drawing", drawing.draw),
     Section("Layers", layers.draw, layers.is_shown, layers.layer_count),
+    Section("Joints", joints.draw, layers.is_shown, joints.joint_count),
     Section("Pins", pins.draw, note=pins.pin_count),
     Section("Bending", bending.draw),
     Section("Mesh", mesh.draw),

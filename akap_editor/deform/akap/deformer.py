@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import SolverError
 from ...geometry.jit import compiled
+from ...geometry.joints import JointRows, MeshJoints, joined_groups
 from ...geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import (
@@ -80,6 +81,7 @@ class AkapDeformer(Deformer):
     exact: factorize both systems in every substep, as the paper does. Otherwise factors are reused, and poses
     differ by less than a hundredth of a pixel at 1000 × 1000 pixels.
     stiffness: (m,) factors of the faces' energies, from 1e-3 to 1e6.
+    joints: hold components together, in the same linear solve.
     Raises InputError for arguments out of range.
     """
 
@@ -87,6 +89,7 @@ class AkapDeformer(Deformer):
     takes_stiffness = True
     has_memory = True
     has_vector_fields = True
+    takes_joints = True
 
     def __init__(
         self,
@@ -99,6 +102,7 @@ class AkapDeformer(Deformer):
         constraints: Constraints = "soft",
         exact: bool = False,
         stiffness: ArrayLike | None = None,
+        joints: MeshJoints | None = None,
     ) -> None:
         self._memory_strength = as_number(memory, "memory", 0, 1)
         as_choice(trajectory, "trajectory", ("spiral", "linear"))
@@ -112,10 +116,16 @@ class AkapDeformer(Deformer):
         if stiffness is not None:
             count = len(mesh.faces)
             self._stiffness = as_numbers(stiffness, "stiffness", count, _MIN_STIFFNESS, _MAX_STIFFNESS)
-        self._order = EliminationOrder(mesh)
+        joints = joints if joints is not None and len(joints) else None
+        self._order = EliminationOrder(mesh, None if joints is None else JointRows(mesh, joints).links)
         if self._stiffness is not None:
             self._stiffness = self._order.face_values(self._stiffness)
         mesh = self._mesh = self._order.mesh
+        self._joints: JointRows | None = None
+        self._groups = mesh.component  # of components that are joined
+        if joints is not None:
+            renumbered = self._order.joints(joints)
+            self._joints, self._groups = JointRows(mesh, renumbered), joined_groups(mesh, renumbered)
         self._dirichlet = as_switch(dirichlet, "dirichlet")
         self._max_step = max_step * mesh.length
         # Soft pins give way a little to the rest memory. With memory, they are not moved back from within the
@@ -127,7 +137,8 @@ class AkapDeformer(Deformer):
         tolerance = mesh.length * (_TOLERANCE_WITH_MEMORY if memory else _TOLERANCE)
         confirm = not memory  # without memory errors accumulate along the path
         self._system = KillingSystem(
-            mesh, pin_weight, exact, self._hard, tolerance, self._stiffness, self._order.starts, confirm
+            *(mesh, pin_weight, exact, self._hard, tolerance, self._stiffness, self._order.starts, confirm),
+            *(self._joints, self._groups),
         )
         self._exact_system: KillingSystem | None = None
         self._has_spirals = trajectory == "spiral"
@@ -174,7 +185,8 @@ class AkapDeformer(Deformer):
         pin_velocities = to_complex(as_points(velocities, "velocities", len(self._points)))
         if self._exact_system is None:
             self._exact_system = KillingSystem(
-                self._mesh, self._pin_weight, True, self._hard, 0.0, self._stiffness, self._order.starts
+                *(self._mesh, self._pin_weight, True, self._hard, 0.0, self._stiffness, self._order.starts),
+                *(True, self._joints, self._groups),
             )
             self._exact_system.set_pins(self._points)
         self._exact_system.prepare(to_points(pose))
@@ -260,8 +272,8 @@ class AkapDeformer(Deformer):
         fit = np.vdot(pins - center, goals - goals.mean())
         angle = float(np.angle(fit)) if self._has_spirals and fit != 0 else 0.0
         field = 1j * angle * (pose - center) + translation / complex(spiral_factor(np.array([1j * angle]))[0])
-        pinned = np.unique(self._mesh.component[self._mesh.faces[self._points.faces, 0]])
-        field[~np.isin(self._mesh.component, pinned)] = 0.0
+        pinned = np.unique(self._groups[self._mesh.faces[self._points.faces, 0]])
+        field[~np.isin(self._groups, pinned)] = 0.0
         end = self._flow(pose, field, 1.0)
         before, after = (np.abs(goals - self._system.at_pins(each)).max() for each in (pose, end))
         return [Substep(pose, field, 1.0, end)] if after < 0.5 * before else []
@@ -325,6 +337,7 @@ class AkapDeformer(Deformer):
                 break
             if not last.field.any():
                 self._system.prepare(to_points(pose))
+            self._system.measure_gaps(pose)  # not those of the pose that was prepared
             offsets *= 1 - self._pin_tolerance / largest
             field, _ = self._system.field(offsets, self._dirichlet, "correction")
             reached = self._system.at_pins(field)

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from ...geometry.joints import MeshJoints
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
-from ...geometry.validation import Complexes, Floats
+from ...geometry.validation import Complexes, Floats, Ints
 from ..dissection import dissect
 
 
@@ -14,11 +15,15 @@ class EliminationOrder:
     Factors need no permutation then, and vertices of one face are close in memory, so that all loops over
     faces and edges are faster. Faces are in the order of their last vertex.
 
-    mesh: renumbered; starts: (f + 1,) the groups of vertices that are eliminated together, see `Dissection`.
+    links: (l, 2) further pairs of vertices that are coupled, by joints. mesh: renumbered; starts: (f + 1,)
+    the groups of vertices that are eliminated together, see `Dissection`.
     """
 
-    def __init__(self, mesh: TriMesh) -> None:
-        order, self.starts = dissect(mesh.vertices, mesh.edges)
+    def __init__(self, mesh: TriMesh, links: Ints | None = None) -> None:
+        coupled = mesh.edges
+        if links is not None and len(links):
+            coupled = np.unique(np.concatenate([coupled, links]), axis=0).astype(np.int32)
+        order, self.starts = dissect(mesh.vertices, coupled)
         self._vertices = order.astype(np.intp)
         n, m = len(order), len(mesh.faces)
         self._numbers = np.empty(n, dtype=np.intp)
@@ -31,6 +36,10 @@ class EliminationOrder:
     def points(self, points: MeshPoints) -> MeshPoints:
         """The same points of the renumbered mesh."""
         return MeshPoints(self._face_numbers[points.faces], points.weights)
+
+    def joints(self, joints: MeshJoints) -> MeshJoints:
+        """The same joints of the renumbered mesh."""
+        return MeshJoints(self._face_numbers[joints.faces], joints.weights, joints.is_weld)
 
     def face_values(self, values: Floats) -> Floats:
         """Values (m,) of the faces in the order of the renumbered mesh."""

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.jit import compiled
+from ...geometry.joints import JointRows
 from ...geometry.killing_matrix import KillingMatrix
 from ...geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
@@ -30,6 +31,8 @@ class KillingSystem:
     elimination: (f + 1,) the groups of vertices of a mesh in elimination order, see `Dissection.starts`; by
     default a few vertices each, which is right for any mesh, but slow for a large one.
     confirm: see `PreconditionedCholesky`.
+    joints: rows that hold components together. They count as material: both systems contain K + JᵀJ, so that
+    rigid motions stay exact (Lemma 1), and fields close the gaps that strong rows have at the pose.
 
     Both sparsity patterns depend on the mesh alone, because a pin couples only the vertices of one face. So
     the symbolic factorizations are computed once.
@@ -49,8 +52,11 @@ class KillingSystem:
         stiffness: Floats | None = None,
         elimination: Ints | None = None,
         confirm: bool = True,
+        joints: JointRows | None = None,
+        groups: Ints | None = None,
     ) -> None:
         self._mesh = mesh
+        self.joints, self.groups = joints, mesh.component if groups is None else groups
         n = len(mesh.vertices)
         if elimination is None:
             elimination = np.append(np.arange(0, n, _DEFAULT_GROUP), n)
@@ -59,7 +65,7 @@ class KillingSystem:
         size = 2 * len(mesh.vertices)
         self._tolerance, self._stiffness = tolerance, stiffness
         self._rotation: PinRotationConstraints | None = None
-        self._killing = KillingMatrix(mesh)
+        self._killing = KillingMatrix(mesh, None if joints is None else joints.links)
         self.blocks = self._killing.blocks
         self.pattern = SymmetricPattern(self.blocks.rows, self.blocks.columns, size)
         self._pinned_system = PreconditionedCholesky(self.pattern, exact or hard, elimination, confirm)
@@ -73,7 +79,11 @@ class KillingSystem:
             self._inner_nonzeros = chosen.astype(np.intp)
             groups = np.unique(np.searchsorted(self._interior, elimination))
             self._interior_system = PreconditionedCholesky(inner, exact, groups, confirm)
-        self._first_faces = np.unique(mesh.component[mesh.faces[:, 0]], return_index=True)[1]
+        self._first_faces = np.unique(self.groups[mesh.faces[:, 0]], return_index=True)[1]
+        if joints is not None:
+            entries, rows, columns = joints.entries()
+            self._joint_entries, self._joint_slots = entries, self._slots(rows, columns)
+            self._joint_gaps = np.zeros(len(joints.strengths), dtype=np.complex128)
         self._same_place = SAME_PLACE * mesh.length
         self._frames = _VertexFrames(mesh)
         self.set_pins(NO_POINTS)
@@ -86,7 +96,7 @@ class KillingSystem:
     def set_pins(self, points: MeshPoints, rotation: PinRotationConstraints | None = None) -> None:
         """Choose the constraints C of eq. 3, k points, and the faces that rotate with pins."""
         self._points, self._rotation = points, rotation
-        self._pin_components = self._mesh.component[self._mesh.faces[points.faces, 0]]
+        self._pin_components = self.groups[self._mesh.faces[points.faces, 0]]
         _, first, group = np.unique(self._pin_components, return_index=True, return_inverse=True)
         self._first_pins = first[group]  # of each pin's component
         self._constrain(self._free_components(self._mesh.vertices))
@@ -140,16 +150,29 @@ class KillingSystem:
             rotation_weights = self._rotation.rotation_weights
         pose = to_complex(positions)
         nonzeros = self._killing.nonzeros(pose, self._stiffness, rotation_weights)
+        self.measure_gaps(pose)
+        if self.joints is not None:
+            np.add.at(nonzeros, self._joint_slots, self._joint_entries)
         frames = self._frames(pose)
         if self._interior_system is not None and self._needs_interior:
             self._interior_system.prepare(nonzeros.take(self._inner_nonzeros), frames[self._interior])
         np.add.at(nonzeros, self._pin_slots, self._pin_entries)
         self._pinned_system.prepare(nonzeros, frames)
 
-    def add_pins(self, nonzeros: Floats, positions: Floats) -> None:
-        """Add λ² WᵀW, with the anchors that a pose (n, 2) needs, to ``nonzeros`` (z,) in place."""
+    def measure_gaps(self, pose: Complexes) -> None:
+        """Let the next fields close the gaps that the joints have at the pose (n,)."""
+        if self.joints is not None:
+            self._joint_gaps = np.where(self.joints.is_strong, self.joints.gaps(pose), 0.0)
+
+    def add_constraints(self, nonzeros: Floats, positions: Floats) -> None:
+        """Add λ² WᵀW, with the anchors that a pose (n, 2) needs, to ``nonzeros`` (z,) in place.
+
+        The rows of joints are added, too.
+        """
         self._set_anchors(positions)
         np.add.at(nonzeros, self._pin_slots, self._pin_entries)
+        if self.joints is not None:
+            np.add.at(nonzeros, self._joint_slots, self._joint_entries)
 
     def _set_anchors(self, positions: Floats) -> None:
         """Update the constraints if other components need an anchor in the pose (n, 2)."""
@@ -195,15 +218,17 @@ class KillingSystem:
         """
         prescribed = self._constraint_velocities(velocities)
         forces = self._reactions(prescribed) if self._hard else self._weight * prescribed
-        rotation_force: Complexes | float = 0.0
+        further_force: Complexes | float = 0.0
         if self._rotation is not None and rates is not None:
-            rotation_force = self._rotation.pin_force(rates)
-        right = self._scatter(forces) + rotation_force
+            further_force = self._rotation.pin_force(rates)
+        if self.joints is not None:
+            further_force = further_force - self.joints.pull(self._joint_gaps)
+        right = self._scatter(forces) + further_force
         smooth = self._pinned_system.solve(right, self._tolerance, warm_start_key)
         if not dirichlet or self._interior_system is None or not self._needs_interior:
             return smooth, smooth
         pin_force = self._scatter(self._weight * self._at_constraints(smooth))
-        force = pin_force + rotation_force - self._pinned_system.multiply(smooth)
+        force = pin_force + further_force - self._pinned_system.multiply(smooth)
         optimal = smooth.copy()
         optimal[self._interior] += self._interior_system.solve(
             force[self._interior], self._tolerance, warm_start_key
@@ -215,6 +240,8 @@ class KillingSystem:
         constraint_energy = self._weight * float((np.abs(self._at_constraints(field)) ** 2).sum())
         if self._rotation is not None:
             constraint_energy += self._rotation.energy(field)
+        if self.joints is not None:
+            constraint_energy += self.joints.energy(self.joints.gaps(field))
         return max(self._pinned_system.energy(field) - constraint_energy, 0.0)
 
     def _constraint_velocities(self, velocities: Complexes) -> Complexes:

@@ -41,8 +41,9 @@ class RestMemory:
 
     def set_pins(self, points: MeshPoints, rotation: PinRotationConstraints | None) -> None:
         """Choose the pins, k points of the mesh, and the faces that rotate with them."""
-        pinned = np.unique(self._mesh.component[self._mesh.faces[points.faces, :1]])
-        self._is_unpinned = ~np.isin(self._mesh.component, pinned)
+        groups = self._system.groups
+        pinned = np.unique(groups[self._mesh.faces[points.faces, :1]])
+        self._is_unpinned = ~np.isin(groups, pinned)
         self._has_unpinned = bool(self._is_unpinned.any())
         self._rotation = rotation
 
@@ -64,6 +65,11 @@ class RestMemory:
             residuals = rotation.face_rotations(pose) - np.exp(1j * goals.angles[rotation.pins])
             start += rotation.residual_energy(residuals)
             gradient += 2 * rotation.residual_gradient(residuals)
+        joints = self._system.joints
+        if joints is not None:
+            gaps = joints.gaps(pose)
+            start += joints.energy(gaps)
+            gradient += 2 * joints.pull(gaps)
         if self._has_unpinned:
             gradient[self._is_unpinned] = 0.0
 
@@ -71,6 +77,7 @@ class RestMemory:
             """The pose (n,) after a line search along a direction (n,), and the step length."""
             change, first_flip = energy.direction(columns, direction)
             pin_change = self._system.at_pins(direction)
+            gap_change = joints.gaps(direction) if joints is not None else 0.0
             rotation_change = rotation.face_rotations(direction) if rotation is not None else 0.0
 
             def value(step_length: float) -> float:
@@ -78,6 +85,8 @@ class RestMemory:
                 total += self._system.pin_energy(offsets + step_length * pin_change)
                 if rotation is not None:
                     total += rotation.residual_energy(residuals + step_length * rotation_change)
+                if joints is not None:
+                    total += joints.energy(gaps + step_length * gap_change)
                 return total
 
             slope = dot(gradient, direction)
@@ -100,7 +109,7 @@ class RestMemory:
         rotation_weights = None if self._rotation is None else self._rotation.rotation_weights
         for convex in (False, True):  # far from a minimum the Hessian has negative eigenvalues
             nonzeros = self._energy.half_hessian(columns, convex, self._system.blocks, rotation_weights)
-            self._system.add_pins(nonzeros, to_points(pose))
+            self._system.add_constraints(nonzeros, to_points(pose))
             try:
                 self._hessian.factorize(nonzeros)
                 break

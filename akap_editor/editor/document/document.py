@@ -14,6 +14,7 @@ from .drawing import Drawing
 from .keyframes import NO_ANIMATION, Animation
 from .named_poses import NamedPose
 from .pin import Pin, pin_points
+from .rig.joint import Joint
 from .settings import Settings
 
 
@@ -24,8 +25,9 @@ class EditState:
     pins: in the order in which they were added; positions: the pose, (n, 2) float64 pixels; settings: the
     deformation method; drawing: the drawing since it was last given another mesh or layer list in this
     session, None if it never was; poses: the named ones; stiffness: factors of the faces, (m,) float64 (see
-    `stiffness`), None is 1 everywhere; animation: the keyframes; crossings: which part passes in front where the pose overlaps
-    itself, (s, 2) int32 upper and lower faces (see `overlap.overlaps.Overlaps`).
+    `stiffness`), None is 1 everywhere; animation: the keyframes; crossings: which part passes in front
+    where the pose overlaps itself, (s, 2) int32 upper and lower faces (see `overlap.overlaps.Overlaps`);
+    joints: between layers.
     """
 
     pins: tuple[Pin, ...]
@@ -36,6 +38,7 @@ class EditState:
     stiffness: Floats | None = None
     animation: Animation = NO_ANIMATION
     crossings: Ints = field(default_factory=no_crossings)
+    joints: tuple[Joint, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positions", as_floats(self.positions, "positions"))

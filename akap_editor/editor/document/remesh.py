@@ -26,6 +26,7 @@ from .drawing import (
 from .keyframes import Keyframe
 from .named_poses import NamedPose
 from .pin import Pin
+from .rig.joint import Joint
 
 _MAX_UV_OFFSET = 0.5  # pixels of a vertex from its texture coordinates on the picture
 _MAX_PIN_DISTANCE = 0.08  # share of √area: a pin farther from the new mesh was on a part that is gone
@@ -113,6 +114,7 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
             ),
         ),
         crossings=map_crossings(state, positions),
+        joints=_transfer_joints(state.joints, mesh, new_mesh),
     )
 
 
@@ -181,6 +183,16 @@ def _transfer_pins(state: EditState, mesh: TriMesh, new_mesh: TriMesh) -> tuple[
         for pin, face, row, distance in zip(state.pins, faces, weights, distances, strict=True)
         if distance <= _MAX_PIN_DISTANCE * new_mesh.length
     )
+
+
+def _transfer_joints(joints: tuple[Joint, ...], mesh: TriMesh, new_mesh: TriMesh) -> tuple[Joint, ...]:
+    """The joints at their places of the rest pose on another mesh of the same layers."""
+    result = []
+    for joint in joints:
+        places, layers = joint.places(mesh, mesh.vertices), np.array(joint.layers(mesh))
+        faces, _, weights = _nearest_on_mesh(places, new_mesh, layers)
+        result.append(replace(joint, faces=(int(faces[0]), int(faces[1])), weights=weights))
+    return tuple(result)
 
 
 def _has_flipped(positions: Floats, mesh: TriMesh) -> bool:

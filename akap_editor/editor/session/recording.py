@@ -21,6 +21,7 @@ from .edits import (
     Edit,
     SetCrossings,
     SetEasing,
+    SetJoints,
     SetKeyframe,
     SetLoop,
     SetPins,
@@ -98,6 +99,8 @@ def opening_edits(document: Document) -> list[Edit]:
         edits.append(SetStiffness(state.stiffness))
     if not np.array_equal(state.positions, mesh.vertices):
         edits.append(SetPose(state.positions))
+    if state.joints:
+        edits.append(SetJoints(state.joints))
     if state.pins:
         edits.append(SetPins(state.pins))
     if len(state.crossings):

@@ -228,7 +228,7 @@ class Session:
         stepper = self._stepper
         # Pins that undo or Escape stopped on the way stay there until the next drag.
         keeps_targets = self.is_moving or self.pin_error() <= PIN_TOLERANCE
-        if effect is Effect.METHOD:
+        if effect in (Effect.METHOD, Effect.JOINTS):
             stepper.set_method(self.drawing.mesh, state)
         elif effect in (Effect.MESH, Effect.DOCUMENT):
             self._restore(state)
@@ -239,7 +239,8 @@ class Session:
             stepper.stop()
         self._set_state(state)
         settles = effect is Effect.MESH and keeps_targets and self.pin_error() > PIN_TOLERANCE
-        if settles or effect is Effect.TARGETS:
+        closes = effect is Effect.JOINTS and keeps_targets and len(state.pins) > 0
+        if settles or closes or effect is Effect.TARGETS:
             stepper.aim(state)
 
     def return_to(self, state: EditState, line: int) -> None:

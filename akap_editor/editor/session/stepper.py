@@ -17,6 +17,7 @@ from ...overlap.overlaps import no_overlaps
 from ..document.crossings import following_overlaps, overlaps_of, remember_overlaps
 from ..document.document import EditState
 from ..document.pin_angles import FullTurnCounter, pin_angles
+from ..document.rig.joint import mesh_joints
 
 MAX_PIN_TRAVEL = 0.035  # of a pin in one step, as a share of √area; longer steps cost as much per pixel
 MAX_PIN_ROTATION = 0.2  # radians of a pin in one step
@@ -105,7 +106,7 @@ class Stepper:
         method, parameters = state.settings.method, dict(state.settings.parameters)
         if state.stiffness is not None and get_method(method).deformer.takes_stiffness:
             parameters["stiffness"] = state.stiffness
-        deformer = make_deformer(method, mesh, **parameters)
+        deformer = make_deformer(method, mesh, mesh_joints(state.joints), **parameters)
         deformer.set_pins(state.points)
         with self._lock:
             # Any: a method may have more than the contract asks for, e.g. angles of pins and vector fields
@@ -113,6 +114,7 @@ class Stepper:
             self._pin_count = len(state.pins)
             self.last_motion: tuple[Floats, Floats] | None = None
         self._mesh, self._settings, self._stiffness = mesh, state.settings, state.stiffness
+        self._joints = state.joints
         self._max_travel = MAX_PIN_TRAVEL * mesh.length
         self._full_turns = FullTurnCounter()
         self.steps_left = 0
@@ -130,7 +132,7 @@ class Stepper:
         Raises InputError as `set_method` does.
         """
         same_method = state.settings == self._settings and state.stiffness is self._stiffness
-        if mesh is not self._mesh or not same_method:
+        if mesh is not self._mesh or not same_method or state.joints is not self._joints:
             self.set_method(mesh, state)
             return
         self.last_motion = None

@@ -60,7 +60,7 @@ class Markers:
 
     hovered_pin: the pin under the pointer, by id; removes_hovered_pin: whether a click removes it; new_pin:
     where a click would add a pin; pin_targets: of the pins that are dragged, by id; selection_box: its upper
-    left and lower right corners.
+    left and lower right corners; hovered_joint: the joint under the pointer, by id; new_joint: where it goes.
     """
 
     hovered_pin: int | None = None
@@ -71,6 +71,8 @@ class Markers:
     brush: BrushCircle | None = None
     crosshair: Crosshair | None = None
     selection_box: tuple[Point, Point] | None = None
+    hovered_joint: int | None = None
+    new_joint: Point | None = None
 
 
 class ToolContext(EditContext, Protocol):

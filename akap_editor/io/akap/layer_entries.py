@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...editor.document.drawing import Drawing
+from ...editor.document.rig.joint import MAX_JOINTS, Joint
 from ...errors import InputError, error_context
 from ...geometry.validation import MAX_COORDINATE, Ints, freeze
 from ...layers.drawing_layer import Artwork, DrawingLayer
@@ -145,6 +146,32 @@ def _pair(record: Json, name: str) -> tuple[int, int]:
     if len(values) != 2 or any(type(v) is not int or abs(v) > MAX_COORDINATE for v in values):
         raise InputError(f"{name}: expected two whole numbers of pixels, got {reprlib.repr(values)}")
     return values[0], values[1]
+
+
+def read_joints(record: Json) -> tuple[Joint, ...]:
+    """The joints of a record, none if absent. Raises InputError on values of other kinds."""
+    records = optional(record, "joints", list, [])
+    if len(records) > MAX_JOINTS:
+        raise InputError(f"expected at most {MAX_JOINTS} joints, got {len(records)}")
+    return tuple(map(_read_joint, records))
+
+
+def _read_joint(value: Any) -> Joint:
+    if type(value) is not dict:
+        raise InputError(f"expected joints to be objects, got {reprlib.repr(value)}")
+    faces, rows = require(value, "faces", list), require(value, "weights", list)
+    if len(faces) != 2 or any(type(face) is not int for face in faces):
+        raise InputError(f"expected two faces of a joint, got {reprlib.repr(faces)}")
+    weights = [numbers(row, "weights") for row in rows]
+    if len(weights) != 2 or any(len(row) != 3 for row in weights):
+        raise InputError(f"expected two times 3 weights of a joint, got {reprlib.repr(rows)}")
+    return Joint(
+        require(value, "id", int),
+        (faces[0], faces[1]),
+        np.array(weights),
+        optional(value, "kind", str, "hinge"),
+        optional(value, "proposed", bool, False),
+    )
 
 
 def _as_record(value: Any) -> Json:

@@ -13,6 +13,7 @@ from PIL import Image
 
 from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing, Meshing
+from ...editor.document.rig.joint import check_joints
 from ...errors import FileError, InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
@@ -31,7 +32,13 @@ from .json_records import (
     refuse_newer,
     require,
 )
-from .layer_entries import MAX_PICTURE_BYTES, describe_layers, layer_picture_entries, read_layers
+from .layer_entries import (
+    MAX_PICTURE_BYTES,
+    describe_layers,
+    layer_picture_entries,
+    read_joints,
+    read_layers,
+)
 from .pose_entries import keyframe_entries, named_pose_entries, read_keyframes, read_named_poses
 from .state_records import (
     check_crossings,
@@ -143,6 +150,7 @@ def _check(document: Document) -> None:
         _check_meshing(document.drawing.meshing)
     state = document.state
     check_state(state, len(mesh.vertices), len(mesh.faces))
+    check_joints(state.joints, mesh)
     of_poses = [pose.crossings for pose in state.poses]
     for crossings in [*of_poses, *(keyframe.crossings for keyframe in state.animation.keyframes)]:
         check_crossings(crossings, len(mesh.faces))
@@ -212,7 +220,7 @@ def _stiffness_entries(state: EditState) -> list[ArchiveEntry]:
 
 def _describe(document: Document) -> Json:
     """The entry document.json."""
-    drawing = document.drawing
+    drawing, state = document.drawing, document.state
     width, height = drawing.size
     return {
         "format": DOCUMENT_FORMAT,
@@ -229,6 +237,7 @@ def _describe(document: Document) -> Json:
         "pins": [pin.to_json() for pin in document.state.pins],
         "settings": document.state.settings.to_json(),
         **describe_layers(drawing),
+        **({"joints": [joint.to_json() for joint in state.joints]} if state.joints else {}),
         **write_crossings(document.state.crossings),
     }
 
@@ -298,7 +307,9 @@ def _decode(archive: Archive) -> Document:
         drawing = Drawing(
             texture, layered_mesh, uv, name, meshing, None, layers, order, canvas=(width, height)
         )
-        return Document(drawing, state)
+        with error_context("document.json"):
+            joints = read_joints(record)
+        return Document(drawing, replace(state, joints=joints))
     trimesh = TriMesh(vertices, faces, tied)
     image, original = _picture(archive, "picture.png", width, height), None
     if meshing is not None and meshing.background is not None:

@@ -278,6 +278,7 @@ CASES = {
     "About akap-editor": (nothing, lambda ui: ui.state.part(AboutDialog).is_open),
     "Pin Tool": (with_tool("hand_tool"), lambda ui: ui.editor.chosen_tool is ui.editor.pins_tool),
     "Hand Tool": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.hand_tool),
+    "Joint Tool": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.joint_tool),
     "Zoom Tool": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.zoom_tool),
     "Hide Panels": (nothing, lambda ui: ui.editor.canvas[0] == 0 and ui.editor.canvas[2] == 1280),
     "Full Screen": (nothing, lambda ui: ui.state.is_full_screen),

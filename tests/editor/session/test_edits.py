@@ -9,6 +9,7 @@ import pytest
 from akap_editor.editor.document.document import EditState, new_document
 from akap_editor.editor.document.drawing import Drawing, Meshing, make_drawing
 from akap_editor.editor.document.remesh import remesh_drawing
+from akap_editor.editor.document.rig.joint import make_joint
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import (
     EDITS,
@@ -19,6 +20,7 @@ from akap_editor.editor.session.edits import (
     RenamePose,
     ReorderPoses,
     ReplayTarget,
+    SetJoints,
     SetKeyframe,
     SetLayers,
     SetPins,
@@ -338,3 +340,44 @@ def test_the_layer_list_changes_while_the_drawing_moves():
     assert session.is_moving
     session.settle()
     assert session.pin_error() < 0.25
+
+
+def test_joints_that_do_not_fit_are_refused():
+    drawing = puppet(150)
+    good = make_joint(drawing.mesh, 1, 1, 0, np.array([92.0, 118.0]))
+    cases = {
+        "expected each joint once": (good, good),
+        "expected points on two layers": (replace(good, faces=(good.faces[0], good.faces[0])),),
+        "expected faces from 0": (replace(good, faces=(0, 10**6)),),
+        "weights from 0 to 1": (replace(good, weights=2 * good.weights),),
+    }
+    for message, joints in cases.items():
+        session = Session(new_document(drawing), Ticks())
+        session.begin("Edit")
+        with pytest.raises(InputError, match=message):
+            session.apply(SetJoints(joints))
+    with pytest.raises(InputError, match="kind"):
+        replace(good, kind="spring")
+    with pytest.raises(InputError, match="expected a layer of the drawing"):
+        make_joint(drawing.mesh, 1, 9, 0, np.array([92.0, 118.0]))
+
+
+def test_a_new_joint_closes_its_gap_at_once():
+    drawing = puppet(150)
+    session = Session(new_document(drawing), Ticks())
+    session.begin("Bend")
+    add_pin(session, (66.0, 160.0))
+    add_pin(session, (80.0, 95.0))
+    add_pin(session, (150.0, 118.0))
+    session.apply(SetTargets({3: (155.0, 112.0)}))
+    session.settle()
+    joint = make_joint(drawing.mesh, 1, 1, 0, np.array([92.0, 118.0]))
+
+    def gap():
+        places = joint.places(drawing.mesh, session.state.positions)
+        return np.abs(places[0] - places[1]).max()
+
+    assert gap() > 3
+    session.apply(SetJoints((joint,)))
+    session.settle()
+    assert gap() < 0.05

@@ -100,6 +100,7 @@ CASES = {
         "OpeningMenu", press(NECK, "right"), button="right", tool="hand_tool"
     ),
     "canvas pressed right": Case("OpeningMenu", press(OUTSIDE, "right"), button="right"),
+    "joint pressed": Case("PointingJoint", press(NECK), cursor="arrow", tool="joint_tool"),
     "zoom pressed": Case("PointingZoom", press(NECK), cursor="zoom", tool="zoom_tool"),
     "zoomed": Case("Zooming", drag(NECK, (70.0, 70.0)), cursor="zoom", tool="zoom_tool"),
     "canvas pressed": Case("PointingCanvas", press(OUTSIDE), cursor="arrow"),
@@ -127,6 +128,7 @@ CASES = {
     ),
 }
 IDLE = {"pins_tool": "PinsIdle", "hand_tool": "HandIdle", "brush_tool": "BrushIdle", "zoom_tool": "ZoomIdle"}
+IDLE["joint_tool"] = "JointsIdle"
 
 every_state = pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 

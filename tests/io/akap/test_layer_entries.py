@@ -10,13 +10,15 @@ import pytest
 from PIL import Image
 
 from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.rig.joint import make_joint
+from akap_editor.editor.document.rig.suggestion import suggest_joints
 from akap_editor.errors import InputError
 from akap_editor.io.akap.archive import pack
 from akap_editor.io.akap.project import decode_document, encode_document
 from akap_editor.io.images import encode_png
 from akap_editor.layers.composite import composite
 from tests.support.layered_files import filled
-from tests.support.puppets import HAT, SKULL, puppet, puppet_layers
+from tests.support.puppets import BODY, HAT, SKULL, puppet, puppet_layers
 from tests.support.recorded_drag import plank_drawing
 
 
@@ -26,7 +28,10 @@ def document():
     layers = list(drawing.layers)
     layers[SKULL] = replace(layers[SKULL], opacity=0.5, blend="multiply", locked=True, name="head “1”")
     layers[HAT] = replace(layers[HAT], visible=True, solo=True)
-    return new_document(replace(drawing, layers=tuple(layers), layer_order=(1, 0, 2, 4, 3)))
+    document = new_document(replace(drawing, layers=tuple(layers), layer_order=(1, 0, 2, 4, 3)))
+    weld = make_joint(drawing.mesh, 4, SKULL, BODY, np.array([80.0, 85.0]), kind="weld")
+    joints = (*suggest_joints(drawing), weld)
+    return replace(document, state=replace(document.state, joints=joints))
 
 
 @pytest.fixture(scope="module")
@@ -76,6 +81,19 @@ def test_the_thumbnail_shows_the_visible_layers():
     assert (thumbnail == composite(puppet_layers())).all()
 
 
+def test_joints_come_back_bit_for_bit(document):
+    joints, other = document.state.joints, decode_document(encode_document(document)).state.joints
+    assert len(joints) == len(other) == 3
+    for a, b in zip(joints, other, strict=True):
+        assert (a.id, a.faces, a.kind, a.is_proposed) == (b.id, b.faces, b.kind, b.is_proposed)
+        np.testing.assert_array_equal(a.weights, b.weights)
+
+
+def joint(**values):
+    """A joint's record with some values changed."""
+    return [{"id": 1, "faces": [0, 500], "weights": [[1, 0, 0], [0, 1, 0]], **values}]
+
+
 def changed(key, value, layer=None):
     """A function that changes document.json: a key of it, or of one of its layers."""
 
@@ -105,6 +123,21 @@ DAMAGE = {
     "unknown blending": (changed("blend", "burn", 3), "layer 3: blend: expected 'normal'"),
     "groups of numbers": (changed("groups", [1], 3), "layer 3: expected at most 50 names of groups"),
     "a name that is a number": (changed("name", 3, 3), "layer 3: expected name to be a text, got 3"),
+    "joints of numbers": (changed("joints", [1]), "expected joints to be objects, got 1"),
+    "joints as a text": (changed("joints", "x"), "expected joints to be a list"),
+    "a joint of one face": (changed("joints", joint(faces=[1])), "expected two faces of a joint"),
+    "a joint far away": (changed("joints", joint(faces=[0, 10**8])), "joint 1: expected faces from 0"),
+    "a joint in one layer": (
+        changed("joints", joint(faces=[0, 1])),
+        "joint 1: expected points on two layers",
+    ),
+    "heavy weights": (
+        changed("joints", joint(weights=[[2, 0, 0], [0, 1, 0]])),
+        "joint 1: expected two times",
+    ),
+    "few weights": (changed("joints", joint(weights=[[1, 0], [0, 1]])), "expected two times 3 weights"),
+    "a spring": (changed("joints", joint(kind="spring")), "kind: expected 'hinge' or 'weld'"),
+    "one joint twice": (changed("joints", joint() * 2), "expected each joint once"),
     "visible": (changed("visible", 1, 3), "layer 3: expected visible to be true or false, got 1"),
 }
 

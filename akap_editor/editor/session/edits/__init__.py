@@ -3,7 +3,7 @@
 from .crossings import OrderLimb, SetCrossings
 from .edit import Edit, Effect, ReplayTarget
 from .keyframes import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
-from .layers import OrderLayers, SetLayers
+from .layers import OrderLayers, SetJoints, SetLayers
 from .method import PaintStiffness, SetSettings, SetStiffness
 from .named_poses import AddPose, DeletePose, RenamePose, ReorderPoses
 from .pins import SetAngles, SetPins, SetTargets
@@ -16,7 +16,7 @@ EDITS: dict[str, type[Edit]] = {
         *(SetSettings, SetStiffness, PaintStiffness),
         *(SetPose, ResetPose, SetRestPose, Remesh),
         *(OrderLimb, SetCrossings),
-        *(SetLayers, OrderLayers),
+        *(SetLayers, OrderLayers, SetJoints),
         *(AddPose, DeletePose, RenamePose, ReorderPoses),
         *(SetKeyframe, DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop),
     )
@@ -41,6 +41,7 @@ __all__ = [
     "SetAngles",
     "SetCrossings",
     "SetEasing",
+    "SetJoints",
     "SetKeyframe",
     "SetLayers",
     "SetLoop",

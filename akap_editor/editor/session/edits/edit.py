@@ -25,6 +25,7 @@ class Effect(Enum):
     TARGETS = auto()  # the drawing starts to move
     PINS = auto()  # other pins; no vertex moves
     METHOD = auto()  # another deformer; no vertex moves
+    JOINTS = auto()  # another deformer; the drawing moves until its joints are closed
     POSE = auto()  # another pose, not reached by steps
     MESH = auto()  # another mesh; the drawing settles on it
     DOCUMENT = auto()  # anything else

@@ -1,4 +1,4 @@
-"""Edits of the layer list: eyes, locks, names, opacity and order."""
+"""Edits of the layer list, and of the joints between layers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,12 +6,13 @@ from typing import Self
 
 from ....display_text import display_text
 from ....errors import InputError
-from ....geometry.validation import as_number, as_switch
+from ....geometry.validation import as_number, as_points, as_switch
 from ....layers.drawing_layer import DrawingLayer
 from ....layers.layered_picture import MAX_NAME
 from ...document.document import EditState
 from ...document.drawing import Drawing
-from .edit import Edit, Json, ReplayTarget
+from ...document.rig.joint import Joint, check_joints, make_joint
+from .edit import Edit, Effect, Json, ReplayTarget
 
 _SWITCHES = ("visible", "solo", "locked")
 
@@ -96,3 +97,55 @@ class OrderLayers(Edit):
 
     def to_json(self, drawing: Drawing) -> Json:
         return {"order": list(self.order)}
+
+
+@dataclass(frozen=True)
+class SetJoints(Edit):
+    """Replace all joints; no vertex moves, but gaps of new joints close with the next motion."""
+
+    name = "joints"
+    fields = ("joints",)
+    effect = Effect.JOINTS
+
+    joints: tuple[Joint, ...]
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        check_joints(self.joints, drawing.mesh)
+        if not self.joints and not state.joints:
+            return state
+        return replace(state, joints=tuple(self.joints))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        """The joints with faces and weights, for an equal mesh, and layers and rest places for others."""
+        mesh = drawing.mesh
+        return {
+            "joints": [
+                {
+                    **joint.to_json(),
+                    "layers": list(joint.layers(mesh)),
+                    "rest": joint.places(mesh, mesh.vertices).mean(axis=0).tolist(),
+                }
+                for joint in self.joints
+            ]
+        }
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        records, mesh = event["joints"], drawing.mesh
+        if target.same_mesh and mesh is target.mesh:
+            return cls(tuple(map(_joint_from_json, records)))
+        places = target.points([record["rest"] for record in records], "rest", len(records))
+        joints = []
+        for record, place in zip(records, places, strict=True):
+            limb, carrier = map(int, record["layers"])
+            joint = make_joint(mesh, int(record["id"]), limb, carrier, place)
+            kind, proposed = record.get("kind", "hinge"), record.get("proposed", False) is True
+            joints.append(replace(joint, kind=kind, is_proposed=proposed))
+        return cls(tuple(joints))
+
+
+def _joint_from_json(record: Json) -> Joint:
+    limb, carrier = map(int, record["faces"])
+    weights = as_points(record["weights"], "weights", 2, columns=3)
+    kind, proposed = record.get("kind", "hinge"), record.get("proposed", False) is True
+    return Joint(int(record["id"]), (limb, carrier), weights, kind, proposed)

@@ -1,0 +1,1 @@
+"""The rig of a drawing in layers: joints, and proposals for them."""

@@ -1,0 +1,137 @@
+"""Joints: points at which two components of a mesh are held together, and their rows of eq. 3.
+
+A row is W_a p − W_b p, the difference of two points of the mesh in a pose. A hinge has one strong row, at the
+joint, and three weak ones on a circle around it: without them a limb without pins could rotate freely, and
+the matrix would be singular. A weld has three strong rows on the circle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from ..errors import InputError
+from .mesh import TriMesh, barycentric
+from .validation import Complexes, Floats, Ints, as_indices, freeze
+
+STRONG, WEAK = 1e4, 1.0  # λ² of a row: a pin's, and one that hardly resists a rotation
+_RADIUS = 0.02  # share of √area: of the circle of the weak rows
+_RADIUS_OF_SMALL = 0.2  # the same of the smaller of the two components, which it may not exceed
+_CIRCLE = np.exp(2j * np.pi * np.arange(3) / 3)
+
+
+@dataclass(frozen=True, eq=False)
+class MeshJoints:
+    """Joints of a mesh; arrays are read-only.
+
+    faces: (j, 2) int32, of two components each; weights: (j, 2, 3) float64 barycentric, the point on each of
+    them; is_weld: (j,) bool, false for hinges. Raises InputError on other shapes.
+    """
+
+    faces: Ints
+    weights: Floats
+    is_weld: Ints
+
+    def __post_init__(self) -> None:
+        faces = as_indices(self.faces, "joints", 2, np.iinfo(np.int32).max)
+        weights, is_weld = np.asarray(self.weights, np.float64), np.asarray(self.is_weld, bool)
+        if weights.shape != (len(faces), 2, 3) or is_weld.shape != (len(faces),):
+            raise InputError(f"joints: expected weights ({len(faces)}, 2, 3), got {weights.shape}")
+        for name, array in (("faces", faces), ("weights", weights), ("is_weld", is_weld)):
+            object.__setattr__(self, name, freeze(array.copy()))
+
+    def __len__(self) -> int:
+        return len(self.faces)
+
+    def components(self, mesh: TriMesh) -> Ints:
+        """The two components of each joint, (j, 2)."""
+        return mesh.component[mesh.faces[self.faces, 0]]
+
+    def places(self, mesh: TriMesh, positions: Floats) -> Floats:
+        """The two points of each joint in a pose (n, 2), (j, 2, 2) pixels."""
+        return np.einsum("jsc,jscd->jsd", self.weights, positions[mesh.faces[self.faces]])
+
+
+NO_JOINTS = MeshJoints(np.zeros((0, 2), dtype=np.int32), np.zeros((0, 2, 3)), np.zeros(0, dtype=bool))
+
+
+class JointRows:
+    """The rows of joints of a mesh, and the energy Σ strength |W_a p − W_b p|².
+
+    corners, weights: (r, 6) vertices of both points, and their weights, negative for the second point;
+    strengths: (r,) λ²; is_strong: (r,) which rows close their gap, the others only resist.
+    """
+
+    def __init__(self, mesh: TriMesh, joints: MeshJoints) -> None:
+        places = joints.places(mesh, mesh.vertices).mean(axis=1)
+        components = joints.components(mesh)
+        if (components[:, 0] == components[:, 1]).any():
+            raise InputError("joints: expected points of two components each")
+        areas = np.bincount(mesh.component[mesh.faces[:, 0]], mesh.rest_areas)
+        radii = np.minimum(_RADIUS * mesh.length, _RADIUS_OF_SMALL * np.sqrt(areas[components].min(axis=1)))
+        corners, weights, strengths = [], [], []
+        for j, (faces, place, radius) in enumerate(zip(joints.faces, places, radii, strict=True)):
+            side = STRONG if joints.is_weld[j] else WEAK
+            around = [(place + radius * np.array([z.real, z.imag]), side) for z in _CIRCLE]
+            for point, strength in [(place, STRONG), *around]:
+                ends = [_row_end(mesh, int(face), point) for face in faces]
+                corners.append(np.concatenate([ends[0][0], ends[1][0]]))
+                weights.append(np.concatenate([ends[0][1], -ends[1][1]]))
+                strengths.append(strength)
+        self.corners: Ints = np.array(corners, dtype=np.int64).reshape(-1, 6)
+        self.weights: Floats = np.array(weights).reshape(-1, 6)
+        self.strengths: Floats = np.array(strengths)
+        self.is_strong = self.strengths == STRONG
+        self._n = len(mesh.vertices)
+
+    @property
+    def links(self) -> Ints:
+        """(l, 2) int64 pairs of vertices that the rows couple, the lower one first, each once."""
+        first, second = np.repeat(self.corners[:, :3], 3, axis=1), np.tile(self.corners[:, 3:], (1, 3))
+        pairs = np.stack([first.ravel(), second.ravel()], axis=1)
+        return np.unique(np.sort(pairs, axis=1), axis=0)
+
+    def gaps(self, values: Complexes) -> Complexes:
+        """W_a p − W_b p of each row, (r,), for values p (n,) at the vertices."""
+        return np.asarray((self.weights * values[self.corners]).sum(axis=1))
+
+    def pull(self, gaps: Complexes) -> Complexes:
+        """Half the gradient of `energy` for ``gaps`` (r,), (n,)."""
+        result = np.zeros(self._n, dtype=np.complex128)
+        np.add.at(result, self.corners.ravel(), ((self.strengths * gaps)[:, None] * self.weights).ravel())
+        return result
+
+    def energy(self, gaps: Complexes) -> float:
+        """Σ strength |gap|² for ``gaps`` (r,)."""
+        return float(self.strengths @ (gaps.real**2 + gaps.imag**2))
+
+    def entries(self) -> tuple[Floats, Ints, Ints]:
+        """Values, rows and columns of Σ strength WᵀW in the lower triangle of the 2n × 2n matrix, (q,)."""
+        outer = self.strengths[:, None, None] * self.weights[:, :, None] * self.weights[:, None, :]
+        rows = 2 * np.broadcast_to(self.corners[:, :, None], outer.shape)
+        columns = 2 * np.broadcast_to(self.corners[:, None, :], outer.shape)
+        lower = rows >= columns
+        values, row, column = outer[lower], rows[lower], columns[lower]
+        return np.tile(values, 2), np.concatenate([row, row + 1]), np.concatenate([column, column + 1])
+
+
+def _row_end(mesh: TriMesh, face: int, point: Floats) -> tuple[Ints, Floats]:
+    """Corners (3,) of the face at a point (2,) of the rest pose, on the component of ``face``, and weights.
+
+    Outside the component, the face ``face`` is extended, so that the row is 0 at rest in any case.
+    """
+    own = np.flatnonzero(mesh.component[mesh.faces[:, 0]] == mesh.component[mesh.faces[face, 0]])
+    weights = barycentric(mesh.vertices[mesh.faces[own]], point)
+    best = int(weights.min(axis=1).argmax())
+    if weights[best].min() >= -1e-12:
+        return mesh.faces[own[best]], weights[best]
+    return mesh.faces[face], barycentric(mesh.vertices[mesh.faces[[face]]], point)[0]
+
+
+def joined_groups(mesh: TriMesh, joints: MeshJoints) -> Ints:
+    """The number of the group of components joined by joints that each vertex belongs to, (n,) int32."""
+    count = int(mesh.component.max()) + 1
+    first, second = joints.components(mesh).T
+    graph = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
+    return connected_components(graph, directed=False)[1][mesh.component].astype(np.int32)
