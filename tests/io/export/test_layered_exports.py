@@ -35,7 +35,8 @@ def test_gltf_has_a_primitive_with_its_own_material_for_each_layer(document, tmp
     counts = np.bincount(document.drawing.face_layers, minlength=5)
     sizes = [scene["accessors"][each["indices"]]["count"] // 3 for each in primitives]
     assert sizes == [counts[number] for number in ORDER[:4]]
-    colors = [each["pbrMetallicRoughness"].get("baseColorFactor") for each in scene["materials"]]
+    materials = [scene["materials"][each["material"]] for each in primitives]
+    colors = [each["pbrMetallicRoughness"].get("baseColorFactor") for each in materials]
     assert colors == [None, None, None, [1, 1, 1, 0.5]]
 
 
