@@ -1,4 +1,4 @@
-"""Proposed joints: the parents that a person would choose, on real puppets and on others than those tuned on."""
+"""Proposed joints: the parents that a person would choose, also on puppets that nothing was tuned on."""
 
 import numpy as np
 import pytest
