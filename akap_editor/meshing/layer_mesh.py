@@ -1,7 +1,7 @@
 """Meshes the pictures of layers: one mesh of all of them, with components of its own for each."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,13 +25,17 @@ def mesh_layers(
     expand: float,
     threshold: float,
     mesher: str | None = None,
+    known: Mapping[int, tuple[Floats, Ints]] | None = None,
+    counts: Mapping[int, int] | None = None,
 ) -> TriMesh:
     """One mesh of all layers, from back to front; its `TriMesh.layers` says which vertex is of which.
 
     alphas: (h, w) uint8 of each layer; offsets: of their corners on the canvas, (x, y) pixels; vertices: the
     wanted number of all layers, shared by visible area, but at least `MIN_LAYER_VERTICES` for each; for the
-    others see `mesh_picture`. A layer that is fainter than the threshold is cut out at half its opacity; one
-    that is too small for an outline gets a rectangle around it. Raises InputError as `mesh_picture` does.
+    others see `mesh_picture`. known: vertices on the canvas and faces of layers that have a mesh already;
+    counts: the wanted numbers of vertices of single layers. A layer that is fainter than the threshold is cut
+    out at half its opacity; one that is too small for an outline gets a rectangle around it. Raises
+    InputError as `mesh_picture` does.
     """
     as_number(vertices, "vertices", MIN_VERTICES, MAX_VERTICES)
     check_lengths(threshold, expand)
@@ -39,15 +43,19 @@ def mesh_layers(
     areas = [
         max(int((alpha > 255 * level).sum()), 1) for alpha, level in zip(alphas, thresholds, strict=True)
     ]
-    counts = shared_counts(areas, vertices)
+    wanted = {**dict(enumerate(shared_counts(areas, vertices))), **(counts or {})}
     places: list[Floats] = []
     faces: list[Ints] = []
     done = 0
     for number, (alpha, level) in enumerate(zip(alphas, thresholds, strict=True)):
         announce(number / len(alphas), f"Meshing layer {number + 1} of {len(alphas)}")
-        with part(number / len(alphas), (number + 1) / len(alphas)):
-            points, triangles = _mesh_layer(alpha, counts[number], expand, level, mesher)
-        places.append(points + offsets[number])
+        if known is not None and number in known:
+            points, triangles = known[number]
+        else:
+            with part(number / len(alphas), (number + 1) / len(alphas)):
+                points, triangles = _mesh_layer(alpha, wanted[number], expand, level, mesher)
+            points = points + offsets[number]
+        places.append(points)
         faces.append(triangles + done)
         done += len(points)
     layers = np.repeat(np.arange(len(places)), [len(points) for points in places])

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from akap_editor.editor.document.drawing import Meshing
+from akap_editor.editor.document.drawing import Drawing, Meshing
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.document.rig.joint import make_joint
 from akap_editor.editor.document.settings import Settings
@@ -18,6 +18,7 @@ from akap_editor.editor.session.edits import (
     OrderLayers,
     OrderLimb,
     PaintStiffness,
+    ReloadArtwork,
     Remesh,
     RenamePose,
     ReorderPoses,
@@ -37,6 +38,7 @@ from akap_editor.editor.session.edits import (
     SetTargets,
 )
 from akap_editor.editor.session.session import Session
+from akap_editor.layers.layered_picture import Layer, LayeredPicture
 
 
 def _pins(session: Session) -> Edit:
@@ -52,6 +54,13 @@ def _joints(session: Session) -> Edit:
     mesh = session.drawing.mesh
     shoulder = make_joint(mesh, 1, 1, 0, np.array([92.0, 118.0]), is_proposed=True)
     return SetJoints((shoulder, make_joint(mesh, 7, 2, 0, np.array([80.0, 85.0]), kind="weld")))
+
+
+def _painted_anew(drawing: Drawing) -> LayeredPicture:
+    """The picture of a flat drawing in other colors."""
+    image = drawing.image.copy()
+    image[..., :3] = 255 - image[..., :3]
+    return LayeredPicture(drawing.size, (Layer(drawing.name, image),))
 
 
 def _first_pose(session: Session) -> str:
@@ -71,6 +80,7 @@ EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "reset": lambda session: ResetPose(),
     "bake": lambda session: SetRestPose(),
     "mesh": lambda session: Remesh(replace(session.drawing.meshing or Meshing(), vertices=200)),
+    "artwork": lambda session: ReloadArtwork(_painted_anew(session.drawing)),
     "limb": lambda session: OrderLimb([pin.id for pin in session.state.pins[-1:]], False),
     "crossings": lambda session: SetCrossings(np.array([[3, 1]], dtype=np.int32)),
     "layers": lambda session: SetLayers([0], "trunk", 0.5, False, True, True),

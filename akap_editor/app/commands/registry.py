@@ -55,6 +55,7 @@ OPEN_BUNDLED = Submenu(
     "Open Bundled Drawing", lambda state: [(path.stem.capitalize(), path) for path in bundled_drawings()]
 )
 CUT_OUT = Command("Cut Out with Mask...", file_commands.choose_mask, (), "", file_commands.can_mask)
+RELOAD = Command("Reload Artwork", file_commands.reload_artwork, (Key.f5,), "", file_commands.can_reload)
 MERGE_LAYERS = Command("Merge Layers", file_commands.merge_layers, (), "", file_commands.has_layers)
 CLOSE = Command("Close", files.close_document, (CTRL | Key.w,), "", has_drawing)
 SAVE = Command("Save", files.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, has_drawing)
@@ -302,7 +303,7 @@ MENUS: tuple[Menu, ...] = (
     (
         "File",
         (
-            *(OPEN, OPEN_RECENT, OPEN_BUNDLED, CUT_OUT, MERGE_LAYERS, CLOSE, None),
+            *(OPEN, OPEN_RECENT, OPEN_BUNDLED, RELOAD, CUT_OUT, MERGE_LAYERS, CLOSE, None),
             *(SAVE, SAVE_AS, None),
             *(EXPORT_POSE_FILE, APPLY_POSE_FILE, None),
             *(EXPORT, SAVE_RECORDING, None),

@@ -3,6 +3,7 @@
 SYNONYMS = {
     "Open": "import load picture image",
     "Cut Out with Mask": "matte background remove alpha",
+    "Reload Artwork": "refresh update replace picture footage psd linked",
     "Merge Layers": "flatten image combine",
     "Save Recording": "record session macro",
     "Export": "export png svg gltf obj spine image picture render save for web",

@@ -201,7 +201,7 @@ def mesh_layered_drawing(layered: LayeredPicture, meshing: Meshing, name: str) -
     pictures, offsets = [layer.picture for layer in movable], [layer.offset for layer in movable]
     texture, corners = pack(pictures, meshing.expand)
     artworks = [
-        _artwork(texture, picture.shape[:2], offset, corner)
+        artwork_in(texture, picture.shape[:2], offset, corner)
         for picture, offset, corner in zip(pictures, offsets, corners, strict=True)
     ]
     layers = tuple(
@@ -223,16 +223,16 @@ def remesh_layered_drawing(drawing: Drawing, meshing: Meshing) -> Drawing:
     artworks = [layer.artwork for layer in drawing.layers]
     texture, corners = pack([artwork.picture for artwork in artworks], meshing.expand)
     layers = tuple(
-        replace(layer, artwork=_artwork(texture, artwork.picture.shape[:2], artwork.offset, corner))
+        replace(layer, artwork=artwork_in(texture, artwork.picture.shape[:2], artwork.offset, corner))
         for layer, artwork, corner in zip(drawing.layers, artworks, corners, strict=True)
     )
     return _mesh_artworks(texture, layers, drawing.layer_order, drawing.size, meshing, drawing.name)
 
 
-def _artwork(
+def artwork_in(
     texture: NDArray[np.uint8], shape: tuple[int, ...], offset: tuple[int, int], corner: tuple[int, int]
 ) -> Artwork:
-    """The picture of a layer as a view of the texture, so that it is in memory once."""
+    """The artwork of a layer whose picture is at ``corner`` of a texture, as a view of it."""
     (x, y), (height, width) = corner, shape
     return Artwork(texture[y : y + height, x : x + width], offset, corner)
 

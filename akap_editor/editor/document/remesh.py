@@ -1,10 +1,11 @@
 """Remeshing: another mesh for a posed drawing; pins, poses and stiffness are transferred to it."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import count
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...geometry.area_bounds import grow_faces
@@ -42,6 +43,31 @@ def remesh_drawing(drawing: Drawing, meshing: Meshing) -> Drawing:
     may be so for a mesh from a file or after a new rest pose.
     """
     current = drawing.meshing or Meshing()
+    check_lies_on_picture(drawing)
+    if drawing.layers:
+        return remesh_layered_drawing(drawing, meshing)
+    if meshing.background == current.background:
+        return mesh_drawing(drawing.image, meshing, drawing.name, drawing.original)
+    image = drawing.original if drawing.original is not None else drawing.image
+    return remove_background_and_mesh(image, meshing, drawing.name)
+
+
+@dataclass(frozen=True, eq=False)
+class LayerOrigins:
+    """Where the layers of a drawing come from whose artwork was painted anew.
+
+    layers: (l,) the number of each in the drawing before, −1 for new ones; shifts: (l, 2) pixels by which
+    each has moved on the canvas; is_same: (l,) whether its mesh is the same, vertex for
+    vertex, but for the shift.
+    """
+
+    layers: Ints
+    shifts: Floats
+    is_same: NDArray[np.bool_]
+
+
+def check_lies_on_picture(drawing: Drawing) -> None:
+    """Raise InputError unless the mesh of a drawing lies on its picture."""
     places = drawing.uv * np.array(drawing.image.shape[1::-1])
     if drawing.layers:
         places = places - texture_shifts(drawing.layers)[drawing.mesh.layers]
@@ -51,16 +77,14 @@ def remesh_drawing(drawing: Drawing, meshing: Meshing) -> Drawing:
             f"the mesh of {drawing.name} cannot be made anew: expected one that lies on its picture, "
             f"but a vertex is {offset:.1f} pixels away from its place there"
         )
-    if drawing.layers:
-        return remesh_layered_drawing(drawing, meshing)
-    if meshing.background == current.background:
-        return mesh_drawing(drawing.image, meshing, drawing.name, drawing.original)
-    image = drawing.original if drawing.original is not None else drawing.image
-    return remove_background_and_mesh(image, meshing, drawing.name)
 
 
-def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditState:
+def transfer_state(
+    state: EditState, mesh: TriMesh, drawing: Drawing, origins: LayerOrigins | None = None
+) -> EditState:
     """Transfer a state of ``mesh`` to the mesh of ``drawing``, which shows the same picture.
+
+    origins: of its layers, if the artwork was painted anew.
 
     Poses are transferred by `map_points`, and what passes in front in them stays; if no face of the current
     pose is flipped, none will be. Pins stay at their places on the picture; those on parts that are gone are
@@ -70,7 +94,7 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
     announce(0.0, "Transferring pins and poses")
     new_mesh = drawing.mesh
     is_at_rest = np.array_equal(state.positions, mesh.vertices)
-    positions = new_mesh.vertices if is_at_rest else _map_vertices(new_mesh, mesh, state.positions)
+    positions = new_mesh.vertices if is_at_rest else _map_vertices(new_mesh, mesh, state.positions, origins)
     if _has_flipped(positions, new_mesh) and not _has_flipped(state.positions, mesh):
         positions = _unflip_faces(positions, new_mesh)
         if _has_flipped(positions, new_mesh):
@@ -79,11 +103,11 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
                 "expected a pose that it can follow; bend it less first"
             )
     centers = new_mesh.vertices[new_mesh.faces].mean(axis=1)
-    faces = _nearest_on_mesh(centers, mesh, _layers_of(new_mesh.face_layers, mesh))[0]
+    faces = _nearest_on_mesh(*_origin_of(centers, new_mesh.face_layers, mesh, origins))[0]
     stiffness = None if state.stiffness is None else state.stiffness[faces]
 
     def map_pose(pose: Floats) -> Floats:
-        return _map_vertices(new_mesh, mesh, pose)
+        return _map_vertices(new_mesh, mesh, pose, origins)
 
     poses_to_map = 1 + len(state.poses) + len(state.animation.keyframes)
     mapped_poses = count(1)
@@ -98,7 +122,7 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
     keyframes = zip(animation.keyframes, state.animation.keyframes, strict=True)
     named_poses = ((pose, map_pose(pose.positions)) for pose in state.poses)
     return EditState(
-        pins=_transfer_pins(state, mesh, new_mesh),
+        pins=_transfer_pins(state, mesh, new_mesh, origins),
         positions=positions,
         settings=state.settings,
         drawing=drawing,
@@ -114,18 +138,43 @@ def transfer_state(state: EditState, mesh: TriMesh, drawing: Drawing) -> EditSta
             ),
         ),
         crossings=map_crossings(state, positions),
-        joints=_transfer_joints(state.joints, mesh, new_mesh),
+        joints=_transfer_joints(state.joints, mesh, new_mesh, origins),
     )
 
 
-def _map_vertices(new_mesh: TriMesh, mesh: TriMesh, pose: Floats) -> Floats:
-    """A pose (n, 2) of ``mesh`` on another mesh of the same layers."""
-    return map_points(new_mesh.vertices, mesh, pose, _layers_of(new_mesh.layers, mesh))
+def _map_vertices(new_mesh: TriMesh, mesh: TriMesh, pose: Floats, origins: LayerOrigins | None) -> Floats:
+    """A pose (n, 2) of ``mesh`` on another mesh of the same layers, or of those with ``origins``."""
+    points, _, layers = _origin_of(new_mesh.vertices, new_mesh.layers, mesh, origins)
+    mapped = map_points(points, mesh, pose, layers)
+    if origins is None or new_mesh.layers is None or mesh.layers is None:
+        return mapped
+    for layer, old in enumerate(origins.layers.tolist()):
+        own = new_mesh.layers == layer
+        if origins.is_same[layer]:
+            mapped[own] = pose[mesh.layers == old]
+        mapped[own] += _turned(origins.shifts[layer], mesh, pose, old)
+    return mapped
 
 
-def _layers_of(layers: Ints | None, mesh: TriMesh) -> Ints | None:
-    """Layers of points, if those of ``mesh`` are to be told apart."""
-    return None if mesh.layers is None else layers
+def _turned(shift: Floats, mesh: TriMesh, pose: Floats, layer: int) -> Floats:
+    """A shift (2,) of a layer at rest in a pose (n, 2), in which the layer is rotated."""
+    if not shift.any() or mesh.layers is None:
+        return np.zeros(2)
+    own = mesh.layers == layer
+    rest, moved = (to_complex(p[own]) - to_complex(p[own]).mean() for p in (mesh.vertices, pose))
+    turned = complex(*shift) * complex(_unit(np.array([np.vdot(rest, moved)]))[0])
+    return np.array([turned.real, turned.imag])
+
+
+def _origin_of(
+    points: Floats, layers: Ints | None, mesh: TriMesh, origins: LayerOrigins | None
+) -> tuple[Floats, TriMesh, Ints | None]:
+    """Points (k, 2) on layers (k,) as points of ``mesh``, and the layers there, −1 for any."""
+    if mesh.layers is None or layers is None:
+        return points, mesh, None
+    if origins is None:
+        return points, mesh, layers
+    return points - origins.shifts[layers], mesh, origins.layers[layers]
 
 
 def map_points(points: Floats, mesh: TriMesh, pose: Floats, layers: Ints | None = None) -> Floats:
@@ -151,6 +200,8 @@ def _nearest_on_mesh(
 ) -> tuple[Ints, Floats, Floats]:
     """Points of the rest pose that are nearest to ``points`` (k, 2), on the layers (k,) if they are given.
 
+    A layer of −1 stands for any.
+
     Returns their faces (k,), their positions (k, 2), and their barycentric weights (k, 3).
     """
     corners = mesh.vertices[mesh.faces]
@@ -159,7 +210,9 @@ def _nearest_on_mesh(
     faces = np.zeros(len(points), dtype=np.int64)
     for layer in [None] if layers is None else np.unique(layers).tolist():
         mine = slice(None) if layer is None else layers == layer
-        own = np.arange(len(triangles)) if layer is None else np.flatnonzero(mesh.face_layers == layer)
+        own = np.arange(len(triangles))
+        if layer is not None and layer >= 0:
+            own = np.flatnonzero(mesh.face_layers == layer)
         faces[mine] = own[shapely.STRtree(triangles[own]).nearest(shapely_points[mine])]
     lines = shapely.shortest_line(triangles[faces], shapely_points)
     nearest = shapely.get_coordinates(lines).reshape(-1, 2, 2)[:, 0]
@@ -170,26 +223,56 @@ def _nearest_on_mesh(
     return faces, nearest, weights
 
 
-def _transfer_pins(state: EditState, mesh: TriMesh, new_mesh: TriMesh) -> tuple[Pin, ...]:
+def _transfer_pins(
+    state: EditState, mesh: TriMesh, new_mesh: TriMesh, origins: LayerOrigins | None
+) -> tuple[Pin, ...]:
     """The pins at their places of the rest pose on another mesh, without those that are too far from it."""
     if not state.pins:
         return ()
     rest_positions = mesh.evaluate(state.points, mesh.vertices)
     layers = None if new_mesh.layers is None else mesh.face_layers[state.points.faces]
+    pins, is_there = state.pins, np.ones(len(state.pins), dtype=bool)
+    if origins is not None and layers is not None:
+        old_layers, layers = layers, _new_numbers(layers, origins)
+        is_there = layers >= 0
+        shifts = np.where(is_there[:, None], origins.shifts[np.maximum(layers, 0)], 0.0)
+        rest_positions = rest_positions + shifts
+        pins = tuple(
+            replace(pin, target=pin.target + _turned(shift, mesh, state.positions, int(old)))
+            for pin, shift, old in zip(pins, shifts, old_layers, strict=True)
+        )
     faces, nearest, weights = _nearest_on_mesh(rest_positions, new_mesh, layers)
     distances = np.linalg.norm(rest_positions - nearest, axis=1)
+    is_there &= distances <= _MAX_PIN_DISTANCE * new_mesh.length
     return tuple(
         replace(pin, face=int(face), weights=row)
-        for pin, face, row, distance in zip(state.pins, faces, weights, distances, strict=True)
-        if distance <= _MAX_PIN_DISTANCE * new_mesh.length
+        for pin, face, row, kept in zip(pins, faces, weights, is_there, strict=True)
+        if kept
     )
 
 
-def _transfer_joints(joints: tuple[Joint, ...], mesh: TriMesh, new_mesh: TriMesh) -> tuple[Joint, ...]:
-    """The joints at their places of the rest pose on another mesh of the same layers."""
+def _new_numbers(layers: Ints, origins: LayerOrigins) -> Ints:
+    """The new numbers of old layers (k,), −1 for those that are gone."""
+    numbers = {old: new for new, old in enumerate(origins.layers.tolist()) if old >= 0}
+    return np.array([numbers.get(layer, -1) for layer in layers.tolist()])
+
+
+def _transfer_joints(
+    joints: tuple[Joint, ...], mesh: TriMesh, new_mesh: TriMesh, origins: LayerOrigins | None
+) -> tuple[Joint, ...]:
+    """The joints at their places of the rest pose on another mesh, without those of layers that are gone.
+
+    A joint moves with the layer that the limb hangs on.
+    """
     result = []
     for joint in joints:
         places, layers = joint.places(mesh, mesh.vertices), np.array(joint.layers(mesh))
+        if origins is not None:
+            layers = _new_numbers(layers, origins)
+            if layers.min() < 0:
+                continue
+            if origins.shifts[layers].any():
+                places = np.repeat(places[1:] + origins.shifts[layers[1]], 2, axis=0)
         faces, _, weights = _nearest_on_mesh(places, new_mesh, layers)
         result.append(replace(joint, faces=(int(faces[0]), int(faces[1])), weights=weights))
     return tuple(result)

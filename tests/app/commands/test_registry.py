@@ -5,6 +5,7 @@ import glfw
 import numpy as np
 import pytest
 
+from akap_editor.app import files
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES
 from akap_editor.app.commands import clipboard
 from akap_editor.app.commands import registry as commands
@@ -19,10 +20,12 @@ from akap_editor.app.dialogs.preferences_page import PreferencesPage
 from akap_editor.app.glfw_window import on_key
 from akap_editor.editor import gestures
 from akap_editor.editor.camera import Camera
+from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import PinRequest
 from akap_editor.editor.session.edits import PaintStiffness, SetTargets
 from akap_editor.editor.tools.stiffness_brush import Brush
 from tests.support.clipboards import FakeClipboard
+from tests.support.puppets import puppet
 
 ITEMS = [(menu, command) for menu, group in MENUS for command in group if isinstance(command, Command)]
 
@@ -214,6 +217,11 @@ CASES = {
     "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
     "Onion Skin": (keyed, lambda ui: ui.state.timeline.keyframe_playback.onion_skin.is_shown),
     "Open...": (nothing, lambda ui: ui.file_request is not None and not ui.file_request.saving),
+    "Merge Layers": (
+        lambda ui: files.show_document(ui.state, new_document(puppet())),
+        lambda ui: not ui.document.drawing.layers or ui.state.task is not None,
+    ),
+    "Reload Artwork": (nothing, lambda ui: ui.file_request is not None and not ui.file_request.saving),
     "Cut Out with Mask...": (
         nothing,
         lambda ui: ui.file_request is not None and not ui.file_request.saving,

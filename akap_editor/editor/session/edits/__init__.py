@@ -7,14 +7,14 @@ from .layers import OrderLayers, SetJoints, SetLayers
 from .method import PaintStiffness, SetSettings, SetStiffness
 from .named_poses import AddPose, DeletePose, RenamePose, ReorderPoses
 from .pins import SetAngles, SetPins, SetTargets
-from .pose import Remesh, ResetPose, SetPose, SetRestPose
+from .pose import ReloadArtwork, Remesh, ResetPose, SetPose, SetRestPose
 
 EDITS: dict[str, type[Edit]] = {
     edit.name: edit
     for edit in (
         *(SetPins, SetTargets, SetAngles),
         *(SetSettings, SetStiffness, PaintStiffness),
-        *(SetPose, ResetPose, SetRestPose, Remesh),
+        *(SetPose, ResetPose, SetRestPose, Remesh, ReloadArtwork),
         *(OrderLimb, SetCrossings),
         *(SetLayers, OrderLayers, SetJoints),
         *(AddPose, DeletePose, RenamePose, ReorderPoses),
@@ -33,6 +33,7 @@ __all__ = [
     "OrderLayers",
     "OrderLimb",
     "PaintStiffness",
+    "ReloadArtwork",
     "Remesh",
     "RenamePose",
     "ReorderPoses",

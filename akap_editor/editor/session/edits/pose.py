@@ -1,12 +1,16 @@
 """Edits of the pose, the rest pose and the mesh."""
 
+import base64
+import zlib
 from dataclasses import asdict, dataclass, replace
 from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ....geometry.validation import Floats
+from ....errors import InputError
+from ....geometry.validation import Floats, as_number
+from ....layers.layered_picture import Layer, LayeredPicture, LayerGroup
 from ....meshing.meshers import TRIANGLE, check_known, nearest_mesher
 from ...document.crossings import as_crossings, crossings_in_pose
 from ...document.document import EditState
@@ -15,7 +19,10 @@ from ...document.named_poses import as_pose
 from ...document.pin_angles import pins_fixed_at_pose
 from ...document.remesh import remesh_drawing, transfer_state
 from ...document.rest_pose import with_pose_as_rest
+from ..artwork_reload import with_artwork
 from .edit import Edit, Effect, Json, ReplayTarget, crossings_from_json, crossings_to_json
+
+MAX_LAYER_PIXELS = 2**28
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,3 +132,65 @@ class Remesh(Edit):
                 nearest_mesher(check_known(event.get("mesher", TRIANGLE))),
             )
         )
+
+
+@dataclass(frozen=True, eq=False)
+class ReloadArtwork(Edit):
+    """Take over artwork that was painted anew; pins, joints, poses and stiffness stay, see `reload_layers`.
+
+    artwork: layers, or one picture of a flat drawing, which is a single layer here; prepared: the state that
+    was computed before from the one that the edit is applied to.
+    """
+
+    name = "artwork"
+    fields = ("size", "layers")
+    effect = Effect.MESH
+
+    artwork: LayeredPicture
+    prepared: EditState | None = None
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        return self.prepared or with_artwork(state, drawing, self.artwork)
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"size": list(self.artwork.size), "layers": [*map(_layer_to_json, self.artwork.layers)]}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        width, height = map(int, event["size"])
+        return cls(LayeredPicture((width, height), tuple(map(_layer_from_json, event["layers"]))))
+
+
+def _layer_to_json(layer: Layer) -> Json:
+    height, width = layer.picture.shape[:2]
+    groups = [group.name for group in layer.groups]
+    pixels = base64.b64encode(zlib.compress(layer.picture.tobytes(), 6)).decode("ascii")
+    return {
+        "name": layer.name,
+        "groups": groups,
+        "offset": list(layer.offset),
+        "size": [width, height],
+        "opacity": layer.opacity,
+        "blend": layer.blend,
+        "visible": layer.visible,
+        "pixels": pixels,
+    }
+
+
+def _layer_from_json(record: Json) -> Layer:
+    width, height = map(int, record["size"])
+    as_number(width * height, "pixels of a layer", 1, MAX_LAYER_PIXELS)
+    size = 4 * width * height
+    data = zlib.decompressobj().decompress(base64.b64decode(record["pixels"], validate=True), size)
+    if len(data) != size:
+        raise InputError(f"expected {size} bytes of pixels, got {len(data)}")
+    x, y = map(int, record["offset"])
+    return Layer(
+        str(record["name"]),
+        np.frombuffer(data, np.uint8).reshape(height, width, 4),
+        (x, y),
+        tuple(LayerGroup(str(name)) for name in record["groups"]),
+        record["opacity"],
+        record["blend"],
+        record["visible"],
+    )
