@@ -18,11 +18,11 @@ def as_stiffness(values: ArrayLike, faces: int) -> Floats:
     return as_numbers(values, "stiffness", faces, MIN_STIFFNESS, MAX_STIFFNESS)
 
 
-def stroke_coverage(mesh: TriMesh, dabs: ArrayLike, radius: float) -> Floats:
+def stroke_coverage(mesh: TriMesh, dabs: ArrayLike, radius: float, layer: int | None = None) -> Floats:
     """How much of each face of the rest pose a stroke covers, (m,) from 0 to 1.
 
     dabs: (d, 2) centers of the brush, pixels; radius: of the brush, pixels, but at least that of the face
-    under it. Coverage falls off smoothly towards the edge of a dab. Raises InputError on bad arguments.
+    under it; layer: the only one that it covers, None for all. Coverage falls off smoothly towards the edge of a dab. Raises InputError on bad arguments.
     """
     radius = as_number(radius, "radius", 0.0, np.inf)
     x, y, face_radii = _face_discs(mesh)
@@ -33,6 +33,8 @@ def stroke_coverage(mesh: TriMesh, dabs: ArrayLike, radius: float) -> Floats:
         distances = np.hypot(dx[near], dy[near])
         falloff = (1.0 - distances / np.maximum(radius, face_radii[near])) / (1.0 - _FULL_STRENGTH)
         coverage[near] = np.maximum(coverage[near], np.clip(falloff, 0.0, 1.0))
+    if layer is not None:
+        coverage[mesh.face_layers != layer] = 0.0
     return coverage * coverage * (3.0 - 2.0 * coverage)
 
 

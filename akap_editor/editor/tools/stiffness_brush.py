@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...geometry.mesh import MeshPoints
 from ...geometry.validation import Floats
 from ..camera import Point
 from ..document.drawing import visible_point
@@ -92,7 +93,10 @@ class BrushIdle(IdleTool):
 
 
 class Painting(Tool):
-    """A stroke of the brush. It is shown while it grows, and applied to the document when it ends."""
+    """A stroke of the brush. It is shown while it grows, and applied to the document when it ends.
+
+    In a drawing in layers it paints the layer that is seen where it begins, and no other.
+    """
 
     cursor = "hidden"
 
@@ -108,6 +112,7 @@ class Painting(Tool):
         self._radius_on_screen = idle_tool.radius_on_screen
         self._radius = self._radius_on_screen / context.camera.zoom
         self._dabs: list[Floats] = []
+        self._layer: int | None = None
         self._coverage = np.zeros(len(session.drawing.mesh.faces))
         self._stiffness = session.state.stiffness
         session.begin("Erase Stiffness" if erases else "Paint Stiffness")
@@ -138,24 +143,34 @@ class Painting(Tool):
         self._last = event.position
         if dabs:
             self._dabs += dabs
-            coverage = stroke_coverage(self.session.drawing.mesh, dabs, self._radius)
+            coverage = stroke_coverage(self.session.drawing.mesh, dabs, self._radius, self._layer)
             self._coverage = np.maximum(self._coverage, coverage)
             self._stiffness = apply_stroke(self.session.state.stiffness, self._coverage, self._factor)
 
     def _at_rest(self, position: Point) -> Floats | None:
-        """The point (2,) of the rest pose that is seen at a point of the screen; None outside the drawing."""
+        """The point (2,) of the rest pose that is seen at a point of the screen; None outside the drawing.
+
+        After the first one it is on the same layer, which may be covered there.
+        """
         session = self.session
-        mesh, center = session.drawing.mesh, self.context.camera.to_drawing(position)
-        point = visible_point(
-            session.drawing, center, session.state.positions, session.document.face_order, unlocked=True
-        )
+        drawing, pose = session.drawing, session.state.positions
+        mesh, center = drawing.mesh, self.context.camera.to_drawing(position)
+        order = session.document.face_order
+        if self._layer is None:
+            point = visible_point(drawing, center, pose, order, unlocked=True)
+            if point is not None and drawing.layers:
+                self._layer = int(drawing.face_layers[point.faces[0]])
+        else:
+            hits = mesh.find_all(center, pose, order)
+            own = np.flatnonzero(drawing.face_layers[hits.faces] == self._layer)[-1:]
+            point = MeshPoints(hits.faces[own], hits.weights[own]) if len(own) else None
         return None if point is None else np.round(mesh.evaluate(point, mesh.vertices)[0], 3)
 
     def release(self, event: PointerEvent) -> None:
         if event.button == self._button:
             if self._dabs:
                 self._idle_tool.last_end = self.context.camera.to_drawing(self._last)
-                self.session.apply(PaintStiffness(self._dabs, self._radius, self._factor))
+                self.session.apply(PaintStiffness(self._dabs, self._radius, self._factor, self._layer))
             self.session.commit()
             self.context.return_to_idle()
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from akap_editor.editor import gestures
+from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.remesh import transfer_state
 from akap_editor.editor.document.rest_pose import with_pose_as_rest
 from akap_editor.editor.document.settings import Settings
@@ -14,6 +15,7 @@ from akap_editor.editor.session.replay import replay
 from akap_editor.editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS, Brush
 from akap_editor.geometry.distortion import distortion
 from tests.support.editor_driver import Driver, bits
+from tests.support.puppets import ARM, BODY, SKULL, puppet
 
 NECK, HEAD = (80.0, 40.0), (30.0, 40.0)
 
@@ -191,3 +193,19 @@ def test_a_drawing_that_is_opened_stiff_is_recorded_so(pinned, drawing):
     stroke(again, HEAD)
     *_, last = replay(again.session.recording, drawing)
     assert last.state.stiffness.tobytes() == again.state.stiffness.tobytes()
+
+
+def test_a_stroke_paints_the_layer_where_it_begins_and_no_other():
+    drawing = puppet()
+    driver = Driver(new_document(drawing))
+    stroke(driver, (92.0, 118.0), (120.0, 118.0))  # on the arm, which lies on the body
+    layers = drawing.mesh.face_layers
+    stiffness = driver.session.state.stiffness
+    assert (stiffness[layers == ARM] > 1).any()
+    assert (stiffness[layers != ARM] == 1).all()
+    stroke(driver, (66.0, 150.0), (80.0, 80.0))  # from the body to where the head covers it
+    stiffness = driver.session.state.stiffness
+    assert (stiffness[layers == BODY] > 1).any()
+    assert (stiffness[layers == SKULL] == 1).all()
+    *_, last = replay(driver.session.recording, drawing)
+    np.testing.assert_array_equal(last.state.stiffness, stiffness)

@@ -67,7 +67,7 @@ class PaintStiffness(Edit):
     """Stiffen the faces that a stroke of a brush covers; no vertex moves.
 
     dabs: (d, 2) centers of the brush in the rest pose, pixels; radius: of the brush, pixels; factor: from 1,
-    which erases, to 1000.
+    which erases, to 1000; layer: the number of the only layer that is painted, None for all.
     """
 
     name = "paint"
@@ -77,15 +77,19 @@ class PaintStiffness(Edit):
     dabs: ArrayLike
     radius: float
     factor: float
+    layer: int | None = None
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
-        coverage = stroke_coverage(drawing.mesh, self.dabs, self.radius)
+        coverage = stroke_coverage(drawing.mesh, self.dabs, self.radius, self.layer)
         return replace(state, stiffness=apply_stroke(state.stiffness, coverage, self.factor))
 
     def to_json(self, drawing: Drawing) -> Json:
-        return {"dabs": as_points(self.dabs, "dabs").tolist(), "radius": self.radius, "factor": self.factor}
+        layer = {} if self.layer is None else {"layer": self.layer}
+        dabs = as_points(self.dabs, "dabs").tolist()
+        return {"dabs": dabs, "radius": self.radius, "factor": self.factor, **layer}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         dabs = target.points(event["dabs"], "dabs", len(event["dabs"]))
-        return cls(dabs, target.scale * float(event["radius"]), event["factor"])
+        layer = int(event["layer"]) if "layer" in event else None
+        return cls(dabs, target.scale * float(event["radius"]), event["factor"], layer)
