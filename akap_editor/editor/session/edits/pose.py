@@ -2,6 +2,7 @@
 
 import base64
 import zlib
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Self
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....errors import InputError
-from ....geometry.validation import Floats, as_number
+from ....geometry.validation import MAX_COORDINATE, Floats, as_number
 from ....layers.layered_picture import Layer, LayeredPicture, LayerGroup
 from ....meshing.meshers import TRIANGLE, check_known, nearest_mesher
 from ...document.crossings import as_crossings, crossings_in_pose
@@ -23,6 +24,7 @@ from ..artwork_reload import with_artwork
 from .edit import Edit, Effect, Json, ReplayTarget, crossings_from_json, crossings_to_json
 
 MAX_LAYER_PIXELS = 2**28
+MAX_GROUPS = 50  # around a layer
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,8 +159,15 @@ class ReloadArtwork(Edit):
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
-        width, height = map(int, event["size"])
+        width, height = _read_size(event["size"])
         return cls(LayeredPicture((width, height), tuple(map(_layer_from_json, event["layers"]))))
+
+
+def _read_size(value: Sequence[int]) -> tuple[int, int]:
+    """Width and height, pixels. Raises InputError if that is too much."""
+    width, height = (int(as_number(side, "size", 1, MAX_LAYER_PIXELS)) for side in value)
+    as_number(width * height, "pixels", 1, MAX_LAYER_PIXELS)
+    return width, height
 
 
 def _layer_to_json(layer: Layer) -> Json:
@@ -178,13 +187,17 @@ def _layer_to_json(layer: Layer) -> Json:
 
 
 def _layer_from_json(record: Json) -> Layer:
-    width, height = map(int, record["size"])
-    as_number(width * height, "pixels of a layer", 1, MAX_LAYER_PIXELS)
+    width, height = _read_size(record["size"])
     size = 4 * width * height
-    data = zlib.decompressobj().decompress(base64.b64decode(record["pixels"], validate=True), size)
+    try:
+        data = zlib.decompressobj().decompress(base64.b64decode(record["pixels"], validate=True), size)
+    except zlib.error as error:
+        raise InputError("expected the pixels of a layer, got damaged ones") from error
     if len(data) != size:
         raise InputError(f"expected {size} bytes of pixels, got {len(data)}")
-    x, y = map(int, record["offset"])
+    if len(record["groups"]) > MAX_GROUPS:
+        raise InputError(f"expected at most {MAX_GROUPS} groups around a layer, got {len(record['groups'])}")
+    x, y = (int(as_number(value, "offset", -MAX_COORDINATE, MAX_COORDINATE)) for value in record["offset"])
     return Layer(
         str(record["name"]),
         np.frombuffer(data, np.uint8).reshape(height, width, 4),
