@@ -22,7 +22,8 @@ def stroke_coverage(mesh: TriMesh, dabs: ArrayLike, radius: float, layer: int | 
     """How much of each face of the rest pose a stroke covers, (m,) from 0 to 1.
 
     dabs: (d, 2) centers of the brush, pixels; radius: of the brush, pixels, but at least that of the face
-    under it; layer: the only one that it covers, None for all. Coverage falls off smoothly towards the edge of a dab. Raises InputError on bad arguments.
+    under it; layer: the only one that it covers, None for all. Coverage falls off smoothly towards the edge
+    of a dab. Raises InputError on bad arguments.
     """
     radius = as_number(radius, "radius", 0.0, np.inf)
     x, y, face_radii = _face_discs(mesh)

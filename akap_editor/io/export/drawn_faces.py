@@ -86,7 +86,7 @@ def stacked(drawn: DrawnFaces, low: Ints, high: Ints) -> DrawnFaces:
     """The faces with levels z by which each lower one lies behind the upper one of its pairs.
 
     low, high: (p,) pairs of faces that overlap. The surface stays in one piece if that is possible; else
-    vertices are doubled, and the new ones follow the others. Each layer lies wholly in front of the one before.
+    vertices are doubled, and the new ones follow the others. A layer lies wholly in front of the one before.
     """
     result = _stacked_in_layers(drawn, low, high)
     base, z = 0, result.z.copy()
