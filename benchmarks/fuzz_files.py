@@ -43,6 +43,7 @@ from akap_editor.editor.document.document import Document, EditState, new_docume
 from akap_editor.editor.document.drawing import Drawing, make_drawing
 from akap_editor.editor.document.named_poses import NamedPose
 from akap_editor.editor.document.pin import Pin
+from akap_editor.editor.document.rig.joint import make_joint
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.replay import Replay
@@ -58,6 +59,7 @@ from akap_editor.io.mesh_files.obj_off import PARSERS
 from akap_editor.io.mesh_files.soundness import decode_mesh, mesh_defects
 from akap_editor.io.open_document import open_document
 from akap_editor.layers.composite import composite
+from akap_editor.layers.layered_picture import Layer, LayeredPicture
 
 MAX_CASE_SECONDS = 20.0  # of processor time; the largest allowed pictures take several
 MAX_MEMORY_BYTES = 2**30
@@ -101,6 +103,15 @@ def seed_documents() -> list[Document]:
         state = EditState(pins, vertices * 1.25 + 0.5, poses=poses)
         documents.append(Document(Drawing(image, mesh, uv, "seed"), state))
     return documents
+
+
+def seed_puppet() -> Document:
+    """Two squares on layers, held together by a weld."""
+    square = np.full((12, 12, 4), 255, dtype=np.uint8)
+    layers = Layer("body", square), Layer("arm", square, (7, 3), opacity=0.5, blend="multiply")
+    drawing = make_drawing(layers=LayeredPicture((20, 16), layers), vertices=20)
+    joint = make_joint(drawing.mesh, 1, 1, 0, np.array([9.0, 8.0]), kind="weld")
+    return Document(drawing, EditState((), drawing.mesh.vertices, joints=(joint,)))
 
 
 def seed_recording(document: Document) -> bytes:
@@ -488,7 +499,7 @@ class Fuzzer:
     def __post_init__(self) -> None:
         self.documents = seed_documents()
         self.files = []
-        for document in self.documents:
+        for document in [*self.documents, seed_puppet()]:
             with zipfile.ZipFile(BytesIO(encode_document(document))) as archive:
                 self.files.append([(name, archive.read(name)) for name in archive.namelist()])
         self.poses = [encode_pose(document) for document in self.documents]

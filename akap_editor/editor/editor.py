@@ -394,9 +394,5 @@ class Editor:
         pose = self.session.state.positions
         low, high = pose.min(axis=0), pose.max(axis=0)
         left, top, right, bottom = self.canvas
-        self.camera = self._fitted = fit(
-            (min(low[0], 0.0), min(low[1], 0.0)),
-            (max(high[0], width), max(high[1], height)),
-            (left, top),
-            (right, bottom),
-        )
+        corners = (min(low[0], 0.0), min(low[1], 0.0)), (max(high[0], width), max(high[1], height))
+        self.camera = self._fitted = fit(*corners, (left, top), (right, bottom))
