@@ -1,5 +1,6 @@
 """Opens any file that can be edited as a document."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from ..editor.document.rig.suggestion import suggest_joints
 from ..editor.session.replay import Replay
 from ..errors import FileError, InputError, file_errors
 from ..layers.composite import composite
-from ..layers.layered_picture import Layer
+from ..layers.drawing_layer import DrawingLayer
 from ..layers.merging import movable_layers
 from ..meshing.faint import DEFAULT_THRESHOLD, faint_share
 from ..progress import announce, part
@@ -91,7 +92,6 @@ def _open_layered(
         with part(0.4, 1.0):
             options: dict[str, Any] = {"threshold": threshold, "name": path.stem, "mesher": mesher}
             if len(movable) > 1:
-                notes.insert(0, _layer_note(movable))
                 drawing = make_drawing(None, shown, layers=layered, **options)
             else:
                 drawing = make_drawing(composite(layered), shown, **options)
@@ -99,7 +99,7 @@ def _open_layered(
         return replace(document, state=replace(document.state, joints=suggest_joints(drawing)))
 
 
-def _layer_note(layers: list[Layer]) -> str:
+def _layer_note(layers: Sequence[DrawingLayer]) -> str:
     """A sentence about the layers of a drawing."""
     hidden = sum(not layer.visible for layer in layers)
     some = "" if not hidden else f", {hidden} of them hidden"
@@ -129,7 +129,8 @@ def opening_notes(document: Document, setting: str = THRESHOLD_OPTION) -> list[s
     if document.path is not None or drawing.meshing is None:
         return []
     if drawing.layers:
-        return list(document.notes)
+        in_window = setting != THRESHOLD_OPTION
+        return [*([_layer_note(drawing.layers)] if in_window else []), *document.notes]
     alpha, threshold, notes = drawing.image[..., 3], drawing.meshing.threshold, list(document.notes)
     most = int(alpha.max())
     if most <= 255 * DEFAULT_THRESHOLD and threshold < DEFAULT_THRESHOLD:

@@ -128,7 +128,8 @@ def test_a_document_has_the_layers_of_the_file_or_its_visible_ones_merged_and_sa
         ("sketch", False),
     ]
     note = "Opened 3 layers, 1 of them hidden; Merge Layers in the File menu makes one drawing of them"
-    assert opening_notes(layered) == [note]
+    assert opening_notes(layered, "Alpha threshold") == [note]
+    assert opening_notes(layered) == [], "a command prints nothing about it"
     document = open_document(tmp_path / "puppet.psd", merge_layers=True)
     assert document.drawing.name == layered.drawing.name == "puppet"
     assert document.drawing.size == layered.drawing.size == (90, 60)
