@@ -7,7 +7,7 @@ import numpy as np
 
 from akap_editor.editor.document.drawing import Drawing, Meshing
 from akap_editor.editor.document.pin import Pin
-from akap_editor.editor.document.rig.joint import make_joint
+from akap_editor.editor.document.rig.joint import Joint, make_joint
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import (
     AddPose,
@@ -50,8 +50,10 @@ def _pins(session: Session) -> Edit:
 
 
 def _joints(session: Session) -> Edit:
-    """A proposal of the program, and a weld."""
+    """A proposal of the program, and a weld; on a flat drawing one that is refused."""
     mesh = session.drawing.mesh
+    if mesh.layers is None:
+        return SetJoints((Joint(1, (0, 1), np.eye(3)[:2]),))
     shoulder = make_joint(mesh, 1, 1, 0, np.array([92.0, 118.0]), is_proposed=True)
     return SetJoints((shoulder, make_joint(mesh, 7, 2, 0, np.array([80.0, 85.0]), kind="weld")))
 
