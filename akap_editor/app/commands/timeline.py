@@ -83,6 +83,12 @@ def _toggle_onion_skin(playback: KeyframePlayback) -> None:
     playback.onion_skin.is_shown = not playback.onion_skin.is_shown
 
 
+def _toggle_auto_key(state: AppState) -> None:
+    state.timeline.show_keyframes()
+    auto_key = state.timeline.keyframe_playback.auto_key
+    auto_key.is_on = not auto_key.is_on
+
+
 def _select_all(playback: KeyframePlayback) -> None:
     playback.selected = frozenset(playback.stored_animation.times)
 
@@ -197,6 +203,14 @@ MOVE_LATER = Command(
     has_keyframes,
 )
 
+AUTO_KEY = Command(
+    "Auto Key",
+    _toggle_auto_key,
+    (),
+    icons.ICON_FA_CIRCLE_DOT,
+    has_drawing,
+    lambda state: state.timeline.keyframe_playback.auto_key.is_on,
+)
 ONION_SKIN = Command(
     "Onion Skin",
     _on_keyframes(_toggle_onion_skin),
@@ -213,7 +227,7 @@ ANIMATION: tuple[Command | None, ...] = (
     *(STEP_BACK, STEP_FORWARD, SECOND_BACK, SECOND_FORWARD, GO_TO_START, GO_TO_END, None),
     *(SET_RANGE_START, SET_RANGE_END, CLEAR_RANGE, None),
     *(ADD_KEYFRAME, DELETE_KEYFRAME, DUPLICATE_KEYFRAME, SELECT_ALL_KEYFRAMES),
-    *(REVERSE_KEYFRAMES, DUPLICATE_REVERSED, None),
+    *(REVERSE_KEYFRAMES, DUPLICATE_REVERSED, AUTO_KEY, None),
     *(PREVIOUS_KEYFRAME, NEXT_KEYFRAME, MOVE_EARLIER, MOVE_LATER, None),
     *(ONION_SKIN, ZOOM_IN_TIMELINE, ZOOM_OUT_TIMELINE),
 )

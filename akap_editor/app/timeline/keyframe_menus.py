@@ -10,6 +10,7 @@ from ...editor.document.keyframes import Keyframe
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT, SECONDARY
+from .track import RED
 
 _BUTTON_WIDTH, _BUTTON_HEIGHT, _NUMBER_WIDTH = 30, 28, 118  # design points
 _MIN_STEP, _MAX_STEP = 0.01, 10.0  # seconds between poses of the onion skin
@@ -22,6 +23,13 @@ def draw_buttons(state: AppState, scale: float) -> None:
     if imgui.button(f"{icons.ICON_FA_PLUS}##add key", size):
         state.run_reporting_errors(state.timeline.add_keyframe)
     widgets.show_tooltip("Add keyframe (K): keeps the visible pose at this time")
+    imgui.same_line(0, 4 * scale)
+    auto_key = playback.auto_key
+    imgui.push_style_color(imgui.Col_.text, ImVec4(*(RED if auto_key.is_on else SECONDARY)))
+    if imgui.button(f"{icons.ICON_FA_CIRCLE_DOT}##auto key", size):
+        auto_key.is_on = not auto_key.is_on
+    imgui.pop_style_color()
+    widgets.show_tooltip("Auto key: each change of the pose becomes a keyframe at this time")
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(not playback.animation.keyframes)
     if imgui.button(f"{icons.ICON_FA_BEZIER_CURVE}##easing", size):

@@ -39,6 +39,8 @@ class Timeline:
 
     def follow(self) -> str:
         """Record the session's state, once a frame; a sentence if it was continued from an earlier moment."""
+        if not self.shows_keyframes:
+            self.keyframe_playback.auto_key.forget()
         if self.session_playback.follow(self._editor.session):
             return "Continued from an earlier moment: what came after it is cut off. Undo brings it back."
         return ""

@@ -12,14 +12,14 @@ from ...geometry.validation import Floats, Ints
 from ..document.crossings import draw_order
 from ..document.document import Document
 from ..document.drawing import Drawing
-from ..document.easing import NEW_EASING
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
 from ..document.pin import Pin
 from ..document.pin_angles import pins_fixed_at_pose
 from ..gestures import EditContext
-from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
+from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop
 from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
+from .auto_key import AutoKey, key_edits
 from .crossing_blend import CrossingBlend
 from .frames import Frame
 from .keyframe_poses import KeyframePoses
@@ -56,6 +56,7 @@ class KeyframePlayback(Playback):
     def __init__(self, editor: EditContext, clock: Callable[[], float] = monotonic) -> None:
         super().__init__(clock)
         self.onion_skin = OnionSkin()
+        self.auto_key = AutoKey()
         self._editor = editor
         self._poses = KeyframePoses()
         self._crossings = CrossingBlend()
@@ -177,6 +178,8 @@ class KeyframePlayback(Playback):
             self.time = self._time_of_present()
         if session is None:
             return
+        if self.auto_key.update(self._editor, self.time) and self.is_previewing:
+            self._show()
         self.selected &= set(self.stored_animation.times)
         if not self.is_dragging:
             self.visible_range.fit(max(_MIN_TOTAL_SECONDS, 1.2 * self.duration, self.time))
@@ -258,10 +261,7 @@ class KeyframePlayback(Playback):
         if positions is None and self.is_previewing:
             positions, crossings = session.state.positions, session.state.crossings
         label = "Update Keyframe" if time in self.animation.times else "Add Keyframe"
-        edits: list[KeyframeEdit] = [SetKeyframe(time, positions, None, crossings)]
-        if not self.animation.keyframes and self.animation.ease != NEW_EASING:
-            edits.insert(0, SetEasing(None, NEW_EASING))
-        self._edit(label, *edits)
+        self._edit(label, *key_edits(self.animation, time, positions, crossings))
         self.selected, self.time = frozenset({time}), time
 
     def delete_keyframes(self) -> None:

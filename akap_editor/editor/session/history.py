@@ -27,6 +27,7 @@ class History:
         self._undo: list[HistoryEntry] = []
         self._redo: list[HistoryEntry] = []
         self._open: HistoryEntry | None = None
+        self.commits = 0  # how many gestures have been committed, undone ones too
 
     def begin(self, label: str, state: EditState) -> None:
         """Open a gesture that starts from ``state``."""
@@ -47,6 +48,7 @@ class History:
         if not (join and self._undo):
             self._undo.append(self._open)
         self._redo.clear()
+        self.commits += 1
         self._drop_oldest()
         self._open = None
 

@@ -209,6 +209,7 @@ CASES = {
     "Add Keyframe": (looking_between, lambda ui: times(ui) == (0.0, 0.5, 1.0)),
     "Delete Keyframe": (keyed, lambda ui: times(ui) == (0.0,)),
     "Duplicate Keyframe": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5)),
+    "Auto Key": (nothing, lambda ui: ui.state.timeline.keyframe_playback.auto_key.is_on),
     "Reverse Keyframes": (keyed, lambda ui: ui.session.history.undo_label == "Reverse 2 Keyframes"),
     "Duplicate Keyframes Reversed": (keyed, lambda ui: times(ui) == (0.0, 1.0, 1.5, 2.5)),
     "Next Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.time == 1.0),

@@ -1,0 +1,78 @@
+"""Auto-key: each pose that a gesture leaves becomes a keyframe at the playhead."""
+
+from ...geometry.validation import Floats, Ints
+from ..document.easing import NEW_EASING
+from ..document.keyframes import Animation, as_keyframe_time
+from ..gestures import EditContext
+from ..session.edits import SetEasing, SetKeyframe
+from ..session.edits.keyframes import KeyframeEdit
+from ..session.session import Session
+
+
+class AutoKey:
+    """Watches a session for gestures that change the pose. is_on: whether they make keyframes."""
+
+    def __init__(self) -> None:
+        self.is_on = False
+        self.forget()
+
+    def forget(self) -> None:
+        """Disregard what has been done so far; to be called while the keyframes are not shown."""
+        self._session: Session | None = None
+        self._commits = 0
+        self._positions: Floats | None = None  # those of the last keyframe, or of the last time without one
+        self._pending: tuple[float, int] | None = None  # time of a keyframe to make, and depth of the history
+
+    def update(self, editor: EditContext, time: float) -> bool:
+        """Make the keyframe of the last gesture once its pose has settled; return whether there is a new one.
+
+        To be called once a frame. time: of the playhead, seconds. The keyframe is in one undo entry with the
+        gesture. Undo and redo make none.
+        """
+        session = editor.session
+        if session is None or editor.is_busy:
+            return False
+        if not self.is_on or session is not self._session:
+            self.forget()
+            self._session, self._commits = session, session.history.commits
+            self._positions = session.present.positions
+            return False
+        due = self._due_time(session, time)
+        if due is None:
+            return False
+        session.end_preview()
+        session.begin("Auto Key")
+        for edit in key_edits(session.present.animation, as_keyframe_time(due)):
+            session.apply(edit)
+        session.commit(join=True)
+        self._commits = session.history.commits
+        return True
+
+    def _due_time(self, session: Session, time: float) -> float | None:
+        """The time at which the present pose becomes a keyframe now; None if it does not."""
+        history = session.history
+        if history.commits != self._commits:
+            self._commits = history.commits
+            is_undone = history.redo_label is not None
+            self._pending = None if is_undone else (time, history.depth)
+        if self._pending is not None and history.depth < self._pending[1]:
+            self._pending = None  # it was undone before it had settled
+        if self._pending is None:
+            self._positions = session.present.positions
+            return None
+        if session.is_moving and not session.is_previewing:
+            return None
+        (due, _), self._pending = self._pending, None
+        is_changed = session.present.positions is not self._positions
+        self._positions = session.present.positions
+        return due if is_changed else None
+
+
+def key_edits(
+    animation: Animation, time: float, positions: Floats | None = None, crossings: Ints | None = None
+) -> list[KeyframeEdit]:
+    """The edits that make a keyframe of a pose (n, 2), by default the present one."""
+    key = SetKeyframe(time, positions, None, crossings)
+    if not animation.keyframes and animation.ease != NEW_EASING:
+        return [SetEasing(None, NEW_EASING), key]
+    return [key]
