@@ -119,14 +119,14 @@ class RunningProgram:
         """
         activity, processes = {}, [str(self.process.pid)]
         for process in processes:
-            for thread in Path(f"/proc/{process}/task").iterdir():
-                with suppress(OSError):  # one that has ended meanwhile
-                    lines = (thread / "status").read_text().splitlines()
+            with suppress(OSError):  # a process or thread that has ended meanwhile
+                for thread in Path(f"/proc/{process}/task").iterdir():
+                    lines = (thread / "status").read_text("utf-8").splitlines()
                     fields = dict(line.split(":\t", 1) for line in lines if ":\t" in line)
                     switches = fields["voluntary_ctxt_switches"], fields["nonvoluntary_ctxt_switches"]
                     if fields["State"][0] != "Z":
                         activity[thread.name] = fields["State"][0], sum(map(int, switches))
-                    processes += (thread / "children").read_text().split()
+                    processes += (thread / "children").read_text("utf-8").split()
         return activity
 
     def cpu_seconds(self) -> float:
