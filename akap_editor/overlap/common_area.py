@@ -1,4 +1,4 @@
-"""Areas of faces in a pose: what two of them have in common, and whether some are flipped."""
+"""The area that two overlapping faces have in common."""
 
 import numpy as np
 
@@ -43,14 +43,3 @@ def common_areas(pose: Floats, faces: Ints, first: Ints, second: Ints) -> Floats
             bx, by = shape[j + 1, 0] - shape[0, 0], shape[j + 1, 1] - shape[0, 1]
             areas[i] += 0.5 * (ax * by - ay * bx)
     return np.maximum(areas, 0.0)
-
-
-@compiled
-def has_flipped(pose: Floats, faces: Ints) -> bool:
-    """Whether a face has no positive area in a pose (n, 2)."""
-    for f in range(len(faces)):
-        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        ux, uy = pose[b, 0] - pose[a, 0], pose[b, 1] - pose[a, 1]
-        if ux * (pose[c, 1] - pose[a, 1]) - uy * (pose[c, 0] - pose[a, 0]) <= 0:
-            return True
-    return False

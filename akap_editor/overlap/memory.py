@@ -5,7 +5,7 @@ import numpy as np
 from ..geometry.jit import compiled
 from ..geometry.validation import Floats, Ints, freeze
 from .circles import low_and_high
-from .common_area import common_areas, has_flipped
+from .common_area import common_areas
 from .face_pairs import FacePairs, pair_index
 from .least_cut import seam_pairs, spread_signs
 from .topology import Topology
@@ -99,7 +99,6 @@ def deciding_pairs(
         before[:, 0], before[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
     )
     valid = (indices >= 0) & (signs[indices] == sides)
-    is_flipped = has_flipped(pose, topology.faces)
     ends = np.searchsorted(pairs.regions, np.arange(pairs.region_count + 1))
     chosen = []
     for region in order:
@@ -115,28 +114,11 @@ def deciding_pairs(
             candidates = members[:: max(1, len(members) // 32)]
             areas = common_areas(pose, topology.faces, pairs.first[candidates], pairs.second[candidates])
             row = candidates[np.argmax(areas)][None]
-        chosen.append(_sufficient(row, members, signs, topology, pairs) if is_flipped else row)
+        chosen.append(row)
     low, high = low_and_high(pairs.first, pairs.second, signs)
     kept = np.concatenate(chosen)
     crossings = np.stack([high[kept], low[kept]], axis=1).astype(np.int32)
     return before if np.array_equal(crossings, before) else freeze(crossings)
-
-
-def _sufficient(row: Ints, members: Ints, signs: Ints, topology: Topology, pairs: FacePairs) -> Ints:
-    """The pairs ``row`` of one region, and as many others as it takes to restore its signs.
-
-    Where faces are flipped, pairs of a region need not be side by side.
-    """
-    arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
-    is_exchanged = bool(pairs.exchanged[pairs.regions[members[0]]])
-    while True:
-        found = np.zeros_like(signs)
-        found[row] = signs[row]
-        spread_signs(members, found, *arrays, is_exchanged)
-        wrong = members[found[members] != signs[members]]
-        if not len(wrong):
-            return row
-        row = np.concatenate([row, wrong])
 
 
 def recalled_signs(topology: Topology, pairs: FacePairs, crossings: Ints) -> tuple[Ints, Ints]:
