@@ -13,6 +13,7 @@ from ...editor.tools.base import BrushCircle, Crosshair, Markers, RotationRing
 from ...editor.tools.rotate import RING_RADIUS
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, packed
+from ..timeline.motion_paths import draw_motion_paths
 from .joint_markers import draw_joints
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
@@ -22,11 +23,12 @@ _PLUS, _MINUS, _TIMES = (_HORIZONTAL, _VERTICAL), (_HORIZONTAL,), (_FALLING, _RI
 
 
 def draw_markers(state: AppState, scale: float) -> None:
-    """Draw the pins and joints, if they are shown, and the markers of the active tool."""
+    """Draw the pins, joints and motion paths, if they are shown, and the markers of the active tool."""
     editor, session = state.editor, state.editor.session
     if session is None:
         return
     draw_joints(state, scale)
+    draw_motion_paths(state, scale)
     draw, markers = imgui.get_background_draw_list(), editor.tool.markers
     draw.push_clip_rect(ImVec2(*editor.canvas[:2]), ImVec2(*editor.canvas[2:]))
     if state.view.show_pins and "h" not in editor.held and not state.timeline.playback.is_playing:

@@ -37,6 +37,7 @@ STORED_SWITCHES = {  # name in the preferences: field
     "vectors": "show_vector_fields",
     "ghost": "show_rest_pose",
     "trails": "show_pin_trails",
+    "motion paths": "show_motion_paths",
     "show_reference": "show_reference",
 }
 
@@ -60,6 +61,7 @@ class ViewOptions:
     show_vector_fields: bool = False
     show_rest_pose: bool = False
     show_pin_trails: bool = False
+    show_motion_paths: bool = False
     show_reference: bool = True
     distortion_measure: Measure | None = None
     distortion_range: int = 2

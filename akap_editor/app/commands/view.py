@@ -93,7 +93,8 @@ SHOW_AREA = _distortion("Show Area Distortion", "area", SHIFT | Key.d)
 SHOW_ANGLE = _distortion("Show Angle Distortion", "angle", SHIFT | Key.a)
 SHOW_REST_POSE = _switch("Show Rest Pose", "show_rest_pose", (SHIFT | Key.g,), "", has_drawing)
 SHOW_TRAILS = _switch("Show Pin Trails", "show_pin_trails", (SHIFT | Key.l,), "", has_drawing)
-OVERLAYS = (SHOW_FIELD, SHOW_AREA, SHOW_ANGLE, SHOW_REST_POSE, SHOW_TRAILS)
+SHOW_MOTION_PATHS = _switch("Show Motion Paths", "show_motion_paths", (), "", has_drawing)
+OVERLAYS = (SHOW_FIELD, SHOW_AREA, SHOW_ANGLE, SHOW_REST_POSE, SHOW_TRAILS, SHOW_MOTION_PATHS)
 NEXT_RANGE = Command(
     "Next Distortion Range",
     lambda state: state.view.use_next_distortion_range(),

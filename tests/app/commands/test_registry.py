@@ -270,6 +270,7 @@ CASES = {
         lambda ui: ui.state.view.distortion_measure == "angle",
     ),
     "Show Rest Pose": (nothing, lambda ui: ui.state.view.show_rest_pose),
+    "Show Motion Paths": (nothing, lambda ui: ui.state.view.show_motion_paths),
     "Show Pin Trails": (nothing, lambda ui: ui.state.view.show_pin_trails),
     "Reference Picture...": (nothing, lambda ui: ui.file_request is not None),
     "Show Reference Picture": (

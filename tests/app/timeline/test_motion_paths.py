@@ -1,0 +1,67 @@
+"""Motion paths of the selected pins: where the pins are at each frame, and what is drawn."""
+
+import numpy as np
+import pytest
+
+from akap_editor.app.timeline.motion_paths import MotionPaths, dot_times
+from akap_editor.editor.document.pin import pin_points
+
+
+@pytest.fixture
+def keyed(pinned):
+    """Keyframes at 0 and 0.5 seconds, between which pin 3 moves; it is selected."""
+    state = pinned.state
+    state.timeline.is_shown, state.timeline.mode = True, "keyframes"
+    pinned.settle()
+    state.timeline.keyframe_playback.set_keyframe(0.0)
+    start = pinned.to_screen(pinned.pin_position(3))
+    pinned.drag(start, (start[0] - 20, start[1] - 80))
+    state.timeline.keyframe_playback.set_keyframe(0.5)
+    pinned.settle()
+    state.editor.select({3})
+    return pinned
+
+
+def test_a_dot_for_each_frame_and_each_keyframe():
+    assert len(dot_times((0.0, 1.0))) == 25
+    assert dot_times((1.0, 1.01, 1.1)) == [1.0, 1.01, 1.042, 1.083, 1.1]
+    assert dot_times((0.0,)) == dot_times(()) == []
+    assert len(dot_times((0.0, 3600.0))) <= 1002
+
+
+def test_dots_are_where_the_pin_is_at_their_times(keyed):
+    paths, playback = MotionPaths(lambda: 0.0), keyed.state.timeline.keyframe_playback
+    paths.update(keyed.state)
+    assert paths.is_complete
+    assert len(paths.points) == 13
+    place = pin_points([pin for pin in keyed.session.state.pins if pin.id == 3])
+    for time, points in zip(paths.times, paths.points, strict=True):
+        expected = keyed.session.drawing.mesh.evaluate(place, playback.pose(time))
+        np.testing.assert_array_equal(points, expected)
+    assert np.ptp(np.stack(paths.points), axis=0).max() > 5, "it moves"
+
+
+def test_paths_are_computed_beside_the_drawing_and_anew_after_a_change(keyed):
+    now = iter(np.arange(1000.0))
+    paths = MotionPaths(lambda: next(now))
+    for count in (1, 2, 3):
+        paths.update(keyed.state)
+        assert len(paths.points) == count
+    keyed.state.timeline.keyframe_playback.move_keyframe(0.5, 0.25)
+    paths.update(keyed.state)
+    assert len(paths.times) == 7
+    assert len(paths.points) == 1
+    keyed.state.editor.select(())
+    paths.update(keyed.state)
+    assert paths.times == paths.points == []
+
+
+def test_the_window_draws_them(keyed):
+    keyed.settle()
+    before = keyed.screenshot()
+    keyed.state.view.show_motion_paths = True
+    keyed.settle()
+    assert len(keyed.state.part(MotionPaths).points) == 13
+    x, y = keyed.state.editor.camera.to_screen(keyed.state.part(MotionPaths).points[6][0].tolist())
+    around = slice(int(y) - 3, int(y) + 4), slice(int(x) - 3, int(x) + 4)
+    assert (keyed.screenshot()[around] != before[around]).any()
