@@ -29,6 +29,7 @@ from ..meshing.faint import fitting_threshold
 from . import files
 from .app_state import AppState
 from .dialogs.file_dialog import FileDialog, FileRequest
+from .jobs.artwork_watch import ArtworkWatch, artwork_path
 from .jobs.background_task import background_task
 
 # -- masks --------------------------------------------------------------------------------------------------
@@ -129,17 +130,13 @@ def reload_artwork(state: AppState) -> None:
     document = state.document
     if document is None:
         return
-    known = [path for path in document.sources if _is_artwork(path) and path.exists()]
-    if known:
-        _reload(state, known[0])
+    known = artwork_path(state)
+    if known is not None:
+        _reload(state, known)
         return
     suffixes = (*PICTURE_SUFFIXES, *LAYER_SUFFIXES)
     use = partial(_reload, state)
     state.part(FileDialog).ask(FileRequest("Choose the picture painted anew", suffixes, state.folder, use))
-
-
-def _is_artwork(path: Path) -> bool:
-    return is_layered(path) or path.suffix.lower() in PICTURE_SUFFIXES
 
 
 def _reload(state: AppState, path: Path) -> None:
@@ -158,6 +155,7 @@ def _reload(state: AppState, path: Path) -> None:
         artwork, prepared = result
         is_current = state.editor.session is session and session.present is before
         state.editor.apply("Reload Artwork", ReloadArtwork(artwork, prepared if is_current else None))
+        state.part(ArtworkWatch).remember(path)
         state.notice = f"Reloaded {display_name(path)}"
 
     state.begin_task(background_task(f"Reloading {display_name(path)}", read, show, state.wake))

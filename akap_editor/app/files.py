@@ -24,6 +24,7 @@ from .app_state import AppState, error_message
 from .dialogs.file_dialog import FileDialog, FileRequest
 from .dialogs.replace_files import ReplaceFilesDialog, ReplaceQuestion
 from .dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
+from .jobs.artwork_watch import ArtworkWatch, artwork_path
 from .jobs.background_task import background_task
 from .jobs.open_recording import ReadRecording, read_for_replay, replay_task
 from .jobs.task import Task
@@ -44,6 +45,9 @@ def show_document(state: AppState, document: Document) -> None:
     except InputError:  # preferences that were written by hand, or by another version
         state.editor.open(document)
     state.view.selected_layer = state.view.selected_joint = None
+    path = artwork_path(state)
+    if path is not None:
+        state.part(ArtworkWatch).remember(path)
     if document.state.animation.keyframes:
         state.timeline.mode, state.timeline.is_shown = "keyframes", True
     opaque = document.path is None and not has_transparency(document.drawing.image)
@@ -54,6 +58,13 @@ def show_document(state: AppState, document: Document) -> None:
             "Remove Background in the Mesh section cuts out the drawing."
         )
     state.notice = ". ".join(notes)
+
+
+def notice_changed_artwork(state: AppState) -> None:
+    """Offer to reload the artwork if another program has written its file."""
+    path = artwork_path(state)
+    if path is not None and state.part(ArtworkWatch).has_changed(path):
+        state.notice = f"{display_name(path)} has changed on disk; Reload Artwork (F5) takes it over"
 
 
 def choose_and_open(state: AppState) -> None:

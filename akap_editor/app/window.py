@@ -379,10 +379,10 @@ class Window:
             glfw.set_window_title(self.handle, self._title)
 
     def _watch_focus(self) -> None:
-        """Cancel a gesture if another window gets the keyboard, since its release would not be seen."""
+        """Cancel a gesture if another window gets the keyboard; look for changed artwork on the return."""
         has_focus = bool(glfw.get_window_attrib(self.handle, glfw.FOCUSED))
-        if self._has_focus and not has_focus:
-            self._canvas.cancel_input(self.state)
+        if self._has_focus != has_focus:
+            (files.notice_changed_artwork if has_focus else self._canvas.cancel_input)(self.state)
         self._has_focus = has_focus
 
     def drop(self, paths: list[Path]) -> None:
