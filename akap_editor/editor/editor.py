@@ -135,10 +135,12 @@ class Editor:
             self.session.abort()
 
     def finish(self) -> None:
-        """Keep what the gesture under way has done, as a release of its button does."""
-        if self.last_pointer is not None and not self.tool.is_idle:
-            for button in ("left", "right", "middle"):
-                self.handle_event(PointerEvent("release", self.last_pointer, button))
+        """Keep what the gesture under way has done; on an error it is cancelled."""
+        try:
+            self.tool.finish()
+        except Exception:
+            self.cancel()
+            raise
 
     @property
     def is_busy(self) -> bool:
@@ -180,11 +182,10 @@ class Editor:
             self.held = self.held | {event.key} if event.pressed else self.held - {event.key}
         elif event.pressed and self.tool.key(event):
             return
+        elif event.key == "escape" and event.pressed and self.is_busy:
+            self.cancel()
         elif event.key == "escape" and event.pressed:
-            if self.is_busy:
-                self.cancel()
-            else:
-                self.select(())
+            self.select(())
         elif event.key in ARROWS and event.pressed:
             length = BIG_NUDGE if event.shift else NUDGE
             x, y = ARROWS[event.key]
@@ -393,6 +394,5 @@ class Editor:
         width, height = self.session.drawing.size
         pose = self.session.state.positions
         low, high = pose.min(axis=0), pose.max(axis=0)
-        left, top, right, bottom = self.canvas
         corners = (min(low[0], 0.0), min(low[1], 0.0)), (max(high[0], width), max(high[1], height))
-        self.camera = self._fitted = fit(*corners, (left, top), (right, bottom))
+        self.camera = self._fitted = fit(*corners, self.canvas[:2], self.canvas[2:])

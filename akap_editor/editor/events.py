@@ -1,11 +1,12 @@
 """Input events of the editor, independent of any window system."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from .camera import Point
 
 Button = Literal["left", "middle", "right"]
+BUTTONS: tuple[Button, ...] = get_args(Button)
 ARROWS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}  # keys and their directions
 
 

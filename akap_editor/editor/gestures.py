@@ -74,6 +74,22 @@ def add_pin(editor: EditContext, position: Point) -> int | None:
     return pin
 
 
+def add_pins(editor: EditContext, positions: Iterable[Point]) -> list[int]:
+    """Add pins at positions of the current pose, pixels, in one gesture, and deselect all.
+
+    If they were selected, a drag of one would move all of them. Returns their ids; positions outside the
+    drawing are left out. Raises InputError if one is not finite.
+    """
+
+    def add_all(session: Session) -> list[int]:
+        added = [pin_edits.add_pin(session, position) for position in positions]
+        return [pin for pin in added if pin is not None]
+
+    pins = editor.edit("Add Pins", add_all) or []
+    editor.select(())
+    return pins
+
+
 def rename_pin(editor: EditContext, pin: int, name: str) -> None:
     """Name a pin; an empty name is “Pin” and its id. Raises InputError if it is too long."""
     editor.edit("Rename Pin", lambda session: pin_edits.change_pin(session, pin, name=name.strip()))

@@ -35,6 +35,9 @@ def draw_markers(state: AppState, scale: float) -> None:
         _draw_pins(draw, editor, session, markers, scale)
         if markers.new_pin is not None:
             _draw_new_pin(draw, markers.new_pin, scale)
+        for number, center in enumerate(markers.suggested_pins):
+            is_hovered = number == markers.hovered_suggestion
+            _draw_suggestion(draw, center, scale, is_hovered, is_hovered and markers.removes_hovered_pin)
         if markers.ring is not None:
             _draw_ring(draw, markers.ring, scale)
     if markers.brush is not None:
@@ -106,6 +109,18 @@ def _draw_new_pin(draw: imgui.ImDrawList, center: Point, scale: float) -> None:
     draw.add_circle(position, 7.5 * scale, packed(DARK, 0.5), 0, 3.0 * scale)
     draw.add_circle(position, 7.5 * scale, packed(_WHITE, 0.9), 0, 1.5 * scale)
     _draw_sign(draw, center, 3.0 * scale, scale, _PLUS)
+
+
+def _draw_suggestion(
+    draw: imgui.ImDrawList, center: Point, scale: float, is_hovered: bool, is_removed: bool
+) -> None:
+    """Draw the ghost of a pin: paler, and only a ring."""
+    position, radius = ImVec2(*center), (8.0 if is_hovered else 7.0) * scale
+    draw.add_circle_filled(position, radius, packed(ACCENT, 0.45 if is_hovered else 0.25))
+    draw.add_circle(position, radius, packed(DARK, 0.65), 0, 4.0 * scale)
+    draw.add_circle(position, radius, packed(ACCENT), 0, 2.0 * scale)
+    if is_removed:
+        _draw_sign(draw, center, 4.0 * scale, scale, _TIMES)
 
 
 def _draw_ring(draw: imgui.ImDrawList, ring: RotationRing, scale: float) -> None:

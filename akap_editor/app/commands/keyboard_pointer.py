@@ -36,14 +36,14 @@ def _has_one_selected_pin(state: AppState) -> bool:
 
 def _finish(state: AppState) -> None:
     """Keep what the gesture under way has done; without one, deselect the pins."""
-    if state.editor.is_busy:
+    if state.editor.tool.can_finish:
         state.editor.finish()
     else:
         state.editor.select(())
 
 
 def _can_finish(state: AppState) -> bool:
-    return (state.editor.is_busy or bool(state.editor.selection)) and not _has_crosshair(state)
+    return (state.editor.tool.can_finish or bool(state.editor.selection)) and not _has_crosshair(state)
 
 
 def _open_context_menu(state: AppState) -> None:

@@ -11,6 +11,7 @@ from ...editor import gestures
 from ...editor.editor import Editor
 from ...editor.session.edits import SetStiffness
 from ...editor.tools.base import IdleTool
+from ...editor.tools.suggested_pins import suggest_pins
 from ...resources import bundled_drawings
 from .. import file_commands, files
 from ..app_state import AppState
@@ -183,6 +184,13 @@ REMOVE_LAST_PIN = Command(
     "Remove Last Pin", _on_editor(gestures.remove_last_pin), (Key.backspace,), "", _has_pins
 )
 SELECT_ALL = Command("Select All Pins", _on_editor(Editor.select_all), (CTRL | Key.a,), "", has_drawing)
+SUGGEST_PINS = Command(
+    "Suggest Pins",
+    _on_editor(suggest_pins),
+    (SHIFT | Key.s,),
+    icons.ICON_FA_WAND_MAGIC_SPARKLES,
+    has_drawing,
+)
 DESELECT = Command(
     "Deselect", _on_editor(lambda editor: editor.select(())), (CTRL | Key.d,), "", _has_selected_pins
 )
@@ -315,7 +323,7 @@ MENUS: tuple[Menu, ...] = (
         (
             *(UNDO, REDO, None),
             *(COPY_PICTURE, COPY_POSE, PASTE, None),
-            *(REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT),
+            *(SUGGEST_PINS, REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT),
             *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, FINISH, None),
             *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE, None),
             *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS, CLEAR_STIFFNESS, None),

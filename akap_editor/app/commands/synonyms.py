@@ -14,6 +14,7 @@ SYNONYMS = {
     "Copy as Picture": "clipboard screenshot image png",
     "Copy Pose": "clipboard pins",
     "Remove Selected Pins": "delete clear",
+    "Suggest Pins": "auto rig automatic joints skeleton propose place pins",
     "Deselect": "select none",
     "Pin Values": "coordinates position numbers transform",
     "Pin Tool": "puppet warp deform bend liquify mesh move",

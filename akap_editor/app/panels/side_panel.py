@@ -23,9 +23,10 @@ from ..commands.registry import (
     ZOOM_TOOL,
 )
 from ..dialogs.first_steps import FirstSteps
+from ..options import bar
 from ..theme import ACCENT, SECONDARY, TEXT, packed
 from ..timeline import panel as timeline_panel
-from . import bending, drawing, history, layers, measurements, mesh, pins, poses, stiffness_brush, view
+from . import bending, drawing, history, layers, measurements, mesh, pins, poses, view
 from .rig import joints
 
 _TOOLBAR: tuple[Command | None, ...] = (
@@ -87,7 +88,7 @@ def draw(state: AppState, scale: float) -> tuple[float, float, float, float]:
     viewport = imgui.get_main_viewport()
     left, top = viewport.work_pos.x, viewport.work_pos.y
     canvas = left, top, left + viewport.work_size.x, top + viewport.work_size.y
-    stiffness_brush.draw(state, canvas, scale)
+    bar.draw(state, canvas, scale)
     return canvas
 
 

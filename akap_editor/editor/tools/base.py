@@ -8,7 +8,7 @@ import numpy as np
 
 from ...geometry.validation import Floats
 from ..camera import Camera, Point
-from ..events import KeyEvent, PointerEvent, ScrollEvent
+from ..events import BUTTONS, KeyEvent, PointerEvent, ScrollEvent
 from ..gestures import EditContext
 from ..pin_trails import Trails
 from ..session.session import Session
@@ -60,12 +60,15 @@ class Markers:
 
     hovered_pin: the pin under the pointer, by id; removes_hovered_pin: whether a click removes it; new_pin:
     where a click would add a pin; pin_targets: of the pins that are dragged, by id; selection_box: its upper
-    left and lower right corners; hovered_joint: the joint under the pointer, by id; new_joint: where it goes.
+    left and lower right corners; hovered_joint: the joint under the pointer, by id; new_joint: where it goes;
+    suggested_pins: of which the number hovered_suggestion is under the pointer.
     """
 
     hovered_pin: int | None = None
     removes_hovered_pin: bool = False
     new_pin: Point | None = None
+    suggested_pins: tuple[Point, ...] = ()
+    hovered_suggestion: int | None = None
     pin_targets: Mapping[int, Point] = field(default_factory=dict)
     ring: RotationRing | None = None
     brush: BrushCircle | None = None
@@ -142,6 +145,11 @@ class Tool:
         return self.context.session
 
     @property
+    def can_finish(self) -> bool:
+        """Whether there is something that `finish` keeps."""
+        return not self.is_idle
+
+    @property
     def hint(self) -> str:
         """What the user can do now, in one sentence."""
         return ""
@@ -186,6 +194,12 @@ class Tool:
         """Bring a pin into view."""
         self.context.reveal(self.context.pins_on_screen()[pin])
 
+    def finish(self) -> None:
+        """Keep what the gesture has done, as a release of its button does."""
+        for button in BUTTONS:
+            if self.context.last_pointer is not None:
+                self.context.tool.release(PointerEvent("release", self.context.last_pointer, button))
+
     def cancel(self) -> None:
         """Leave the gesture and restore everything from before the press."""
         self.context.return_to_idle()
@@ -195,6 +209,9 @@ class IdleTool(Tool):
     """The root state of a tool: no gesture is under way, and a press starts one."""
 
     is_idle = True
+
+    def finish(self) -> None:
+        """Do nothing: there is no gesture to finish."""
 
     @property
     def hint(self) -> str:

@@ -33,6 +33,7 @@ class Panning(Tool):
     def __init__(self, context: ToolContext, event: PointerEvent) -> None:
         super().__init__(context)
         self._button, self._camera_before, self._last = event.button, context.camera, event.position
+        self._tool_before = context.tool
 
     def move(self, event: PointerEvent) -> None:
         dx, dy = event.position[0] - self._last[0], event.position[1] - self._last[1]
@@ -41,8 +42,14 @@ class Panning(Tool):
 
     def release(self, event: PointerEvent) -> None:
         if event.button == self._button:
-            self.context.return_to_idle()
+            self._leave()
 
     def cancel(self) -> None:
         self.context.camera = self._camera_before
-        super().cancel()
+        self._leave()
+
+    def _leave(self) -> None:
+        """Return to suggested pins, which a pan must not lose, or else to the idle tool."""
+        self.context.return_to_idle()
+        if self._tool_before.can_finish:
+            self.context.set_tool(self._tool_before)

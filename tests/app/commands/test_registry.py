@@ -244,6 +244,7 @@ CASES = {
     "Send Limb to Back": (folded, last_entry("Send Limb to Back")),
     "Remove Last Pin": (nothing, lambda ui: [pin.id for pin in ui.pins] == [1, 2]),
     "Select All Pins": (nothing, lambda ui: ui.editor.selection == {1, 2, 3}),
+    "Suggest Pins": (nothing, lambda ui: ui.tool == "SuggestedPins"),
     "Deselect": (one_selected, lambda ui: not ui.editor.selection),
     "Reset Pose": (bent, lambda ui: not ui.session.is_posed and len(ui.pins) == 3),
     "Set Rest Pose from Current": (bent, lambda ui: not ui.session.is_posed and ui.editor.is_modified),

@@ -1,8 +1,8 @@
-"""The options of the stiffness brush: a bar over the top of the canvas, while it is the current tool."""
+"""The options of the stiffness brush, in the bar over the canvas while it is the current tool."""
 
 from dataclasses import replace
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec4, imgui
 
 from ...deform.methods import get_method
 from ...editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
@@ -12,16 +12,7 @@ from ..app_state import AppState
 from ..commands.registry import CLEAR_STIFFNESS, ERASE
 from ..theme import SECONDARY
 
-WINDOW = "Brush"  # name of ImGui's window
 _SLIDER_WIDTH, _LABEL_WIDTH = 13.0, 4.6  # times the font size
-_MARGIN = 10  # design points between the canvas and the bar
-_FLAGS = (
-    imgui.WindowFlags_.no_decoration
-    | imgui.WindowFlags_.no_move
-    | imgui.WindowFlags_.no_saved_settings
-    | imgui.WindowFlags_.always_auto_resize
-    | imgui.WindowFlags_.no_focus_on_appearing
-)
 
 
 def is_shown(state: AppState) -> bool:
@@ -29,23 +20,13 @@ def is_shown(state: AppState) -> bool:
     return state.document is not None and state.editor.chosen_tool is state.editor.brush_tool
 
 
-def draw(state: AppState, canvas: tuple[float, float, float, float], scale: float) -> None:
-    """Draw the bar in one line, or in several on a narrow canvas, which stays where it is.
-
-    canvas: (left, top, right, bottom) in points; scale: points per design point.
-    """
-    if not is_shown(state) or state.document is None:
-        return
-    left, top, right, _ = canvas
-    imgui.set_next_window_pos(ImVec2(left + _MARGIN * scale, top + _MARGIN * scale))
-    imgui.set_next_window_bg_alpha(0.92)
-    if imgui.begin(WINDOW, None, _FLAGS)[0]:
-        is_wide = right - left > 48 * imgui.get_font_size()
-        _draw_options(state, is_wide, scale)
-        if not get_method(state.document.state.settings.method).deformer.takes_stiffness:
-            imgui.text_colored(ImVec4(*SECONDARY), "The current method ignores stiffness.")
-            widgets.show_tooltip("It is kept for other methods.")
-    imgui.end()
+def draw(state: AppState, is_wide: bool, scale: float) -> None:
+    """Draw the options in one line, or in several on a narrow canvas. scale: points per design point."""
+    assert state.document is not None
+    _draw_options(state, is_wide, scale)
+    if not get_method(state.document.state.settings.method).deformer.takes_stiffness:
+        imgui.text_colored(ImVec4(*SECONDARY), "The current method ignores stiffness.")
+        widgets.show_tooltip("It is kept for other methods.")
 
 
 def _draw_options(state: AppState, is_wide: bool, scale: float) -> None:
