@@ -8,6 +8,7 @@ from ...editor.tools.base import DRAG_DISTANCE, distance
 from .. import widgets
 from ..app_state import AppState
 from ..commands.timeline import PLAY
+from ..timeline.motion_paths import grab_keyframe
 from .cursors import show_cursor
 from .pin_popup import PinPopup, draw_canvas_menu
 
@@ -84,6 +85,8 @@ class Canvas:
                 if io.key_ctrl:
                     state.timeline.session_playback.start_take()
                     self._records_take = True
+                if button == "left":
+                    grab_keyframe(state, position)
                 editor.handle_event(PointerEvent("press", position, button, io.key_shift, io.key_alt, clicks))
             if imgui.is_mouse_released(index) and not editor.tool.is_idle:
                 editor.handle_event(PointerEvent("release", position, button, io.key_shift, io.key_alt))

@@ -6,7 +6,9 @@ from time import perf_counter
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 
+from ...editor.camera import Point
 from ...editor.document.pin import pin_points
+from ...editor.tools.base import distance
 from ...geometry.mesh import MeshPoints
 from ...geometry.validation import Floats
 from ..app_state import AppState
@@ -15,6 +17,7 @@ from ..theme import ACCENT, DARK, packed
 FPS = 24.0  # dots a second
 _MOST_DOTS = 1000  # of a pin; longer animations have fewer a second
 _SLICE = 0.008  # seconds of computing in a frame of the window
+_REACH = 8.0  # design points around a key
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 
 
@@ -72,11 +75,38 @@ def dot_times(keyframe_times: tuple[float, ...]) -> list[float]:
     return sorted({*frames.round(3).tolist(), *keyframe_times})
 
 
+def grab_keyframe(state: AppState, position: Point) -> None:
+    """If a key of a path is at a position of the screen, let the press that follows drag its pin.
+
+    The playhead goes to the keyframe, which brings the pin to the position; the drag updates the keyframe.
+    """
+    editor, playback = state.editor, state.timeline.keyframe_playback
+    if not _are_shown(state) or editor.is_busy or not editor.selection:
+        return
+    pin = editor.pin_at(position)
+    if pin is not None and pin not in editor.selection:
+        return
+    paths = state.part(MotionPaths)
+    near = []
+    for time, points in zip(paths.times, paths.points, strict=False):
+        if time in playback.animation.times:
+            reach = [distance(position, editor.camera.to_screen((x, y))) for x, y in points.tolist()]
+            near.append((min(reach), time))
+    nearest, time = min(near, default=(np.inf, 0.0))
+    if nearest <= _REACH * editor.ui_scale:
+        playback.scrub(time)
+        playback.auto_key.is_armed = True
+
+
+def _are_shown(state: AppState) -> bool:
+    if not state.view.show_motion_paths or not state.timeline.shows_keyframes:
+        return False
+    return not state.timeline.playback.is_playing and "h" not in state.editor.held
+
+
 def draw_motion_paths(state: AppState, scale: float) -> None:
     """Draw the paths, if they are shown. scale: points per design point."""
-    if not state.view.show_motion_paths or not state.timeline.shows_keyframes:
-        return
-    if state.timeline.playback.is_playing or "h" in state.editor.held:
+    if not _are_shown(state):
         return
     paths, editor = state.part(MotionPaths), state.editor
     paths.update(state)

@@ -10,10 +10,13 @@ from ..session.session import Session
 
 
 class AutoKey:
-    """Watches a session for gestures that change the pose. is_on: whether they make keyframes."""
+    """Watches a session for gestures that change the pose.
+
+    is_on: whether they make keyframes; is_armed: whether the next one does.
+    """
 
     def __init__(self) -> None:
-        self.is_on = False
+        self.is_on = self.is_armed = False
         self.forget()
 
     def forget(self) -> None:
@@ -32,12 +35,14 @@ class AutoKey:
         session = editor.session
         if session is None or editor.is_busy:
             return False
-        if not self.is_on or session is not self._session:
+        is_active = self.is_on or self.is_armed
+        if not is_active or session is not self._session:
             self.forget()
             self._session, self._commits = session, session.history.commits
             self._positions = session.present.positions
             return False
         due = self._due_time(session, time)
+        self.is_armed = self.is_armed and self._pending is not None
         if due is None:
             return False
         session.end_preview()

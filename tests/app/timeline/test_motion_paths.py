@@ -65,3 +65,34 @@ def test_the_window_draws_them(keyed):
     x, y = keyed.state.editor.camera.to_screen(keyed.state.part(MotionPaths).points[6][0].tolist())
     around = slice(int(y) - 3, int(y) + 4), slice(int(x) - 3, int(x) + 4)
     assert (keyed.screenshot()[around] != before[around]).any()
+
+
+def test_a_key_of_a_path_is_dragged(keyed):
+    state, playback = keyed.state, keyed.state.timeline.keyframe_playback
+    state.view.show_motion_paths = True
+    keyed.settle()
+    depth, before = keyed.session.history.depth, playback.animation.keyframes
+    x, y = state.editor.camera.to_screen(state.part(MotionPaths).points[0][0].tolist())
+    keyed.drag((x, y), (x - 25, y + 15))
+    keyed.settle()
+    assert playback.time == 0.0
+    first, last = keyed.session.present.animation.keyframes
+    assert (first.time, last.time) == (0.0, 0.5)
+    assert last.positions is before[1].positions
+    place = pin_points([pin for pin in keyed.session.state.pins if pin.id == 3])
+    (moved,) = keyed.session.drawing.mesh.evaluate(place, first.positions).tolist()
+    np.testing.assert_allclose(state.editor.camera.to_screen(moved), (x - 25, y + 15), atol=2.0)
+    assert keyed.session.history.depth == depth + 1
+    assert not playback.auto_key.is_armed
+
+
+def test_a_click_on_a_key_goes_there_and_edits_nothing(keyed):
+    state, playback = keyed.state, keyed.state.timeline.keyframe_playback
+    state.view.show_motion_paths = True
+    keyed.settle()
+    before = keyed.session.present
+    keyed.click(state.editor.camera.to_screen(state.part(MotionPaths).points[0][0].tolist()))
+    keyed.settle()
+    assert playback.time == 0.0
+    assert keyed.session.present.animation is before.animation
+    assert not playback.auto_key.is_armed
