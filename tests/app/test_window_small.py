@@ -149,7 +149,7 @@ def test_a_long_name_of_a_pose_moves_no_other(ui):
     found = {}
 
     def look(hand):
-        found.update({name: hand.item_info(f"//Panel/pose {name}").rect_full.min for name in names})
+        found.update({name: hand.item_info(f"//Panel/**/pose {name}").rect_full.min for name in names})
 
     ui.do(look)
     first, second, third = (found[name] for name in names)

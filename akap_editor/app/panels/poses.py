@@ -19,7 +19,7 @@ from ..theme import ACCENT, FRAME, HOVER, SECONDARY, packed
 from ..timeline.keyframe_track import POSE_PAYLOAD
 
 _SIDE, _GAP, _MARGIN = 66, 6, 4  # of a thumbnail, in design points
-_COLUMNS, _ROWS = 3, 4  # of thumbnails that are visible at once
+_COLUMNS, _ROWS = 3, 2  # of thumbnails that are visible at once
 _NAME_SIZE = 0.86  # of the font, relative to that of other text
 
 
@@ -48,29 +48,26 @@ class PosesSection:
         """Draw one frame. scale: points per design point."""
         assert state.document is not None
         poses = state.document.state.poses
-        if not poses:
-            widgets.secondary_text("None yet. Add a pose to return to it with a click.")
         self._draw_poses(state, poses, scale)
         if imgui.button(f"{icons.ICON_FA_PLUS}  Add to Poses", ImVec2(widgets.FULL, 0)):
             state.notice = ""
             state.run_reporting_errors(lambda: gestures.add_pose(state.editor))
-        if len(poses) > 1:
-            self._draw_blend(state, scale)
+        imgui.begin_disabled(len(poses) < 2)
+        self._draw_blend(state, scale)
+        imgui.end_disabled()
 
     def _draw_poses(self, state: AppState, poses: Sequence[NamedPose], scale: float) -> None:
-        """Draw the thumbnails in rows, which scroll if there are many."""
-        scrolls = len(poses) > _COLUMNS * _ROWS
-        if scrolls:
-            gaps = 2 * imgui.get_style().item_spacing.y
-            row_height = round(_SIDE * scale) + _NAME_SIZE * imgui.get_text_line_height() + gaps
-            height = (_ROWS + 0.5) * row_height  # half a row shows that there are more
-            imgui.begin_child("##poses", ImVec2(0, height), widgets.NAV_FLATTENED)
+        """Draw the thumbnails in a list of fixed height, so that nothing below it moves when one is added."""
+        gaps = 2 * imgui.get_style().item_spacing.y
+        row_height = round(_SIDE * scale) + _NAME_SIZE * imgui.get_text_line_height() + gaps
+        imgui.begin_child("##poses", ImVec2(0, _ROWS * row_height), widgets.NAV_FLATTENED)
+        if not poses:
+            widgets.secondary_text("None yet. Add a pose to return to it with a click.")
         for number, pose in enumerate(poses):
             if number % _COLUMNS:
                 imgui.same_line(0, _GAP * scale)
             self._draw_pose(state, pose, scale)
-        if scrolls:
-            imgui.end_child()
+        imgui.end_child()
 
     def _draw_pose(self, state: AppState, pose: NamedPose, scale: float) -> None:
         """Draw a thumbnail with its name: a click applies the pose, a right-click opens its menu."""
@@ -134,10 +131,9 @@ class PosesSection:
         """Draw two lists of poses and a slider that previews their blend; its release applies the blend."""
         session, blend = state.editor.session, self._blend
         assert session is not None
-        endpoints = blend.endpoints(session)
-        assert endpoints is not None
+        endpoints = blend.endpoints(session)  # None with fewer than two poses
         names = [pose.name for pose in session.state.poses]
-        start, end = (names.index(pose.name) for pose in endpoints)
+        start, end = (0, 0) if endpoints is None else (names.index(pose.name) for pose in endpoints)
         gap = 8 * scale
         width = (imgui.get_content_region_avail().x - gap) / 2
         imgui.set_next_item_width(width)

@@ -85,9 +85,9 @@ def test_a_pose_is_ordered_and_forgotten_from_its_menu(ui):
         gestures.add_pose(ui.editor)
     ui.settle()
     names = [pose.name for pose in ui.session.state.poses]
-    ui.walk_to(f"pose {names[2]}", SHIFT | Key.f10, *[Key.down_arrow] * 3, Key.enter)
+    ui.walk_to(f"**/pose {names[2]}", SHIFT | Key.f10, *[Key.down_arrow] * 3, Key.enter)
     assert [pose.name for pose in ui.session.state.poses] == [names[0], names[2], names[1]]
-    ui.walk_to(f"pose {names[2]}", Key.menu, *[Key.down_arrow] * 5, Key.enter)
+    ui.walk_to(f"**/pose {names[2]}", Key.menu, *[Key.down_arrow] * 5, Key.enter)
     assert [pose.name for pose in ui.session.state.poses] == [names[0], names[1]]
 
 

@@ -1,6 +1,7 @@
 """The Poses section of the side panel."""
 
 import numpy as np
+from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from akap_editor.app.panels.poses import PosesSection
@@ -12,7 +13,7 @@ def test_poses_are_kept_and_applied_with_a_click(pinned):
     pinned.drag(start, (start[0] - 20, start[1] - 100))
     gestures.add_pose(pinned.editor, "Up")
     gestures.reset_pose(pinned.editor)
-    pinned.panel("pose Up")
+    pinned.panel("**/pose Up")
     np.testing.assert_array_equal(pinned.session.state.positions, pinned.session.state.poses[0].positions)
     assert pinned.session.history.labels[-1] == "Apply Up"
 
@@ -22,7 +23,7 @@ def test_a_pose_is_renamed_with_f2(pinned):
     pinned.settle()
 
     def rename(hand):
-        hand.mouse_move("//Panel/pose Up")
+        hand.mouse_move("//Panel/**/pose Up")
         hand.key_press(imgui.Key.f2)
         hand.key_chars_replace_enter("Wave")
 
@@ -36,8 +37,8 @@ def test_a_pose_is_renamed_with_a_double_click(pinned):
     pinned.settle()
 
     def rename(hand):
-        hand.mouse_move("//Panel/pose Up")
-        picture = hand.item_info("//Panel/pose Up").rect_full
+        hand.mouse_move("//Panel/**/pose Up")
+        picture = hand.item_info("//Panel/**/pose Up").rect_full
         hand.mouse_move_to_pos(imgui.ImVec2(picture.min.x + 8, picture.max.y + 12))
         hand.mouse_double_click(0)
         hand.yield_(5)
@@ -46,3 +47,16 @@ def test_a_pose_is_renamed_with_a_double_click(pinned):
     pinned.do(rename)
     assert [pose.name for pose in pinned.session.present.poses] == ["Wave"]
     assert pinned.state.part(PosesSection).name_field.key is None
+
+
+def test_nothing_moves_when_a_pose_is_added(bent):
+    def places(hand):
+        labels = (f"{icons.ICON_FA_PLUS}  Add to Poses", "##mix", "###section Measurements")
+        found.append([hand.item_info(f"//Panel/**/{label}").rect_full.min.y for label in labels])
+
+    found = []
+    bent.do(places)
+    for _ in range(8):
+        gestures.add_pose(bent.editor)
+    bent.do(places)
+    assert found[0] == found[1]

@@ -166,11 +166,11 @@ def test_a_pose_is_dragged_to_the_timeline_and_to_another_place(keyed):
 
     keyed.state.timeline.keyframe_playback.move_keyframe(1.0, 0.5)
     keyed.settle()
-    keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Up", "//Timeline/##keys"))
+    keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/**/pose Up", "//Timeline/##keys"))
     assert times(keyed) == (0.0, 0.5, 1.0)
     kept = keyed.session.present.poses[0].positions
     np.testing.assert_array_equal(keyed.session.present.animation.keyframes[-1].positions, kept)
-    keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Down", "//Panel/pose Up"))
+    keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/**/pose Down", "//Panel/**/pose Up"))
     assert [pose.name for pose in keyed.session.present.poses] == ["Down", "Up"]
 
 
@@ -184,7 +184,7 @@ def test_a_pose_that_is_dragged_to_the_timeline_keeps_what_passes_in_front(keyed
     gestures.add_pose(keyed.editor, "Folded")
     gestures.reset_pose(keyed.editor)
     keyed.settle()
-    keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/pose Folded", "//Timeline/##keys"))
+    keyed.do(lambda hand: hand.item_drag_and_drop("//Panel/**/pose Folded", "//Timeline/##keys"))
     folded = session.present.poses[0]
     assert len(folded.crossings) > 0
     keyframe = session.present.animation.keyframes[-1]
