@@ -163,9 +163,10 @@ class Window:
         if document is not None:
             files.show_document(self.state, document)
         try:
-            with TerminationSignals(self.wake):
+            with TerminationSignals(self.wake) as signals:
                 while not self.state.is_closing:
                     self.loop_once()
+                    signals.check()
         except BaseException:
             files.rescue(self.state)
             raise
@@ -311,9 +312,7 @@ class Window:
         while self._dropped and not state.is_waiting:
             files.open_dropped(state, self._dropped.pop(0))
         handle_focus_keys(state)
-        is_modal = (
-            widgets.popup_is_open()
-        )  # also before, because the key that closes a dialog must do nothing else
+        is_modal = widgets.popup_is_open()  # before, too: the key that closes a dialog must do nothing else
         state.editor.canvas = split_view.draw(state, side_panel.draw(state, self.scale), self.scale)
         if state.document is None:
             start_page.draw(state, self.scale, self._density)
