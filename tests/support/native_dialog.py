@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-# The arguments are whole when they appear; the answer is read when there is one.
+# The arguments are whole when they appear; the answer is read when there is one. Like zenity it ends a while
+# after it has answered: portable_file_dialogs loses what comes between its look at the pipe and the end.
 _SCRIPT = """#!/bin/sh
 case "$1" in --version) exit 0;; esac
 printf '%s\\n' "$@" > "{folder}/asked.new"
@@ -13,6 +14,7 @@ mv "{folder}/asked.new" "{folder}/asked"
 answer=$(cat "{folder}/answer")
 rm "{folder}/asked"
 [ -n "$answer" ] && printf '%s\\n' "$answer"
+sleep 0.1
 """
 
 

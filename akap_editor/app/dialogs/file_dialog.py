@@ -139,7 +139,8 @@ class FileDialog:
             self._native, self._replaces_native = None, True
             return
         self._native, self.request = None, None
-        path = result if isinstance(result, str) else "\n".join(result)  # one name, cut at its line feeds
+        text = result if isinstance(result, str) else "\n".join(result)  # one name, cut at its line feeds
+        path = os.fsdecode(text.encode("utf-8"))
         if path:
             request.name = path
             has_new_ending = request.saving and request.path != Path(path)
@@ -204,12 +205,12 @@ class FileDialog:
 
 
 def _open_native(request: FileRequest) -> Any:
-    """Open the system's dialog. Raises UnicodeError if it cannot be told the suggested path."""
-    str(request.path if request.saving else request.folder).encode()
+    """Open the system's dialog, which takes UTF-8 in every locale. Raises UnicodeError for other names."""
+    suggested = os.fsencode(request.path if request.saving else request.folder).decode("utf-8")
     patterns = " ".join(f"*{suffix}" for suffix in request.suffixes)
     if request.saving:
-        return native.save_file(request.title, str(request.path), [patterns, patterns])
-    return native.open_file(request.title, str(request.folder), [patterns, patterns])
+        return native.save_file(request.title, suggested, [patterns, patterns])
+    return native.open_file(request.title, suggested, [patterns, patterns])
 
 
 def _draw_folder(request: FileRequest, scale: float) -> None:

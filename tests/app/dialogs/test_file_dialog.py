@@ -203,7 +203,7 @@ def test_a_folder_that_the_dialog_of_the_system_cannot_be_told(pinned, native, t
 
 def is_utf8(name):
     try:
-        name.encode()
-    except UnicodeEncodeError:
+        os.fsencode(name).decode("utf-8")
+    except UnicodeError:
         return False
     return True
