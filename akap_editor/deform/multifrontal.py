@@ -291,7 +291,7 @@ def multiply(matrix: Matrix, values: Complexes, result: Complexes) -> None:
         result[j] += complex(real, imaginary)
 
 
-@compiled
+@compiled_with_fast_sums
 def precondition(preconditioner: Preconditioner, right: Complexes, result: Complexes) -> float:
     """Set ``result`` (n,) to R A₀⁻¹ Rᵀ b for b = ``right`` (n,); returns its largest absolute value."""
     rotation, x = preconditioner.rotation, preconditioner.x
@@ -366,7 +366,7 @@ def iterate(
     return 0, first, last
 
 
-@compiled
+@compiled_with_fast_sums
 def _project_on_earlier(
     matrix: Matrix, frame: Complexes, earlier: Complexes, known: int, residual: Complexes, solution: Complexes
 ) -> None:

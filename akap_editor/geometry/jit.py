@@ -24,16 +24,21 @@ def compiled(function: F) -> F:
     The machine code is cached on disk if a folder for it is writable. Division by zero gives infinity or NaN,
     as in numpy. Other threads run meanwhile, because the function releases the global interpreter lock.
     """
-    return _compile(function, False)
+    return _compile(function)
 
 
 def compiled_with_fast_sums(function: F) -> F:
-    """Like `compiled`, but sums may be reordered, which lets scalar products be vectorized."""
-    return _compile(function, {"reassoc", "nsz", "contract"})
+    """Like `compiled`, but sums may be reordered, which lets scalar products be vectorized.
+
+    Compiled functions that call this one inline it. Otherwise it would have two copies in the run that
+    compiles it, one of its own and one in the caller that is cached; optimized apart, they may sum in other
+    orders. So functions between this one and one that Python calls must be compiled like this, too.
+    """
+    return _compile(function, fastmath={"reassoc", "nsz", "contract"}, forceinline=True)
 
 
-def _compile(function: F, fastmath: bool | set[str]) -> F:
-    options = {"nogil": True, "error_model": "numpy", "fastmath": fastmath}
+def _compile(function: F, **options: Any) -> F:
+    options |= {"nogil": True, "error_model": "numpy"}
     try:
         machine_code: F = numba.njit(function, cache=True, **options)
     except RuntimeError:  # neither the package's folder nor the user's cache is writable

@@ -86,3 +86,31 @@ def test_other_numbers_are_kept_as_they_are():
     unpack(kept, result)
     assert (kept == values).all()
     assert (result == values).all()
+
+
+def long_sum(values, factors):
+    """Too long to be inlined without being asked for."""
+    total = 0.0
+    for k in range(len(values)):
+        total += values[k] * factors[k]
+    for k in range(1, len(values)):
+        total += values[k] * factors[k - 1]
+    for k in range(2, len(values)):
+        total += np.sqrt(values[k]) * factors[k - 2] + np.exp(values[k - 1] * factors[k])
+    for k in range(3, len(values)):
+        total += np.sin(values[k]) * factors[k - 3] + np.cos(values[k - 2] * factors[k - 1])
+    return total
+
+
+def test_calls_are_inlined_so_that_a_first_run_sums_as_later_ones(unwritable):
+    """Otherwise a function has a copy of its own and one in its caller, optimized differently."""
+    called = jit.compiled_with_fast_sums(long_sum)
+
+    def three_sums(values, factors):
+        return called(values, factors) + 2 * called(factors, values) + 3 * called(values, values)
+
+    caller = jit.compiled(three_sums)
+    assert np.isfinite(caller(ABOVE, BELOW + 1))
+    (machine_code,) = caller.inspect_asm().values()
+    uses = [line for line in machine_code.splitlines() if "long_sum" in line and "NumbaEnv" not in line]
+    assert not uses
