@@ -26,6 +26,7 @@ run:
 # Without DISPLAY the tests open their windows on an Xvfb of their own, never on the user's screen.
 test:
 	@sh tools/setup.sh test
+	@$(BIN)/python tools/precompile.py
 	env -u DISPLAY -u WAYLAND_DISPLAY $(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
 lint:

@@ -46,17 +46,17 @@ def close(ui):
 
 
 def test_a_new_key_runs_the_command_and_the_old_one_does_not(page):
-    change(page, "Stiffness Brush", "key 0 of", Key.f5)
+    change(page, "Stiffness Brush", "key 0 of", Key.f9)
     close(page)
     editor = page.editor
     page.key(Key.b)
     assert editor.chosen_tool is editor.pins_tool
-    page.key(Key.f5)
+    page.key(Key.f9)
     assert editor.chosen_tool is editor.brush_tool
-    assert page.state.preferences.get("keys", {}) == {"Stiffness Brush": ["F5"]}
-    assert registry.BRUSH_TOOL.key_name == "F5"
+    assert page.state.preferences.get("keys", {}) == {"Stiffness Brush": ["F9"]}
+    assert registry.BRUSH_TOOL.key_name == "F9"
     shown = dict(groups(registry.MENUS, registry.COMMANDS))
-    assert ("F5", "Stiffness Brush") in shown["Tools"]
+    assert ("F9", "Stiffness Brush") in shown["Tools"]
 
 
 def test_a_key_of_another_command_is_taken_from_it(page):
@@ -76,7 +76,7 @@ def test_escape_keeps_the_old_key_and_then_closes(page):
 
 
 def test_one_command_and_all_return_to_the_keys_of_the_table(page):
-    change(page, "Stiffness Brush", "key 0 of", Key.f5)
+    change(page, "Stiffness Brush", "key 0 of", Key.f9)
     change(page, "Pin Tool", "key 0 of", Key.f7)
     change(page, "Stiffness Brush", "reset")
     assert KEYMAP.to_json() == {"Pin Tool": ["F7"]}
@@ -86,7 +86,7 @@ def test_one_command_and_all_return_to_the_keys_of_the_table(page):
 
 
 def test_stored_keys_are_those_of_the_next_run(page):
-    change(page, "Stiffness Brush", "key 0 of", Key.f5)
+    change(page, "Stiffness Brush", "key 0 of", Key.f9)
     KEYMAP.reset()
     registry.restore_keys(page.state.preferences)
-    assert registry.BRUSH_TOOL.key_name == "F5"
+    assert registry.BRUSH_TOOL.key_name == "F9"
