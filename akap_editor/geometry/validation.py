@@ -160,6 +160,16 @@ def as_channel(value: Any, name: str) -> NDArray[np.uint8]:
     return channel
 
 
+def read_only(array: Floats) -> Floats:
+    """A view of an array that cannot be written to.
+
+    Compiled functions have a version for arrays that can and one for those that cannot; each is compiled.
+    """
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
 def freeze(array: NDArray[Any]) -> NDArray[Any]:
     """Make an array read-only, and contiguous if it is not (then the result is a copy)."""
     array = np.ascontiguousarray(array)

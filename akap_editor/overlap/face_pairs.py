@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.jit import compiled
-from ..geometry.validation import Floats, Ints
+from ..geometry.validation import Floats, Ints, read_only
 from .seeds import overlap_seeds
 from .topology import Topology
 
@@ -55,6 +55,7 @@ def overlapping_faces(topology: Topology, pose: Floats, expected: int = 0) -> Fa
     expected: about how many pairs there are, to reserve memory. The result depends on mesh and pose only. In
     a pose with flipped faces some pairs may be missing.
     """
+    pose = read_only(pose)
     seeds, m = overlap_seeds(topology, pose), len(topology.faces)
     if not len(seeds):
         return no_face_pairs(m)

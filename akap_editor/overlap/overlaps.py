@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry.mesh import TriMesh
-from ..geometry.validation import Floats, Ints, freeze
+from ..geometry.validation import Floats, Ints, freeze, read_only
 from .circles import face_levels, low_and_high, satisfies, without_circles
 from .common_area import common_areas
 from .face_pairs import FacePairs, no_face_pairs, overlapping_faces
@@ -189,7 +189,7 @@ class _Decision:
     """
 
     def __init__(self, mesh: TriMesh, topology: Topology, pose: Floats, pairs: FacePairs) -> None:
-        self.mesh, self.topology, self.pose, self.pairs = mesh, topology, pose, pairs
+        self.mesh, self.topology, self.pose, self.pairs = mesh, topology, read_only(pose), pairs
         self.count = pairs.region_count
         self.signs = np.zeros(len(pairs), dtype=np.int8)
         self.known = np.zeros(len(pairs), dtype=bool)

@@ -21,9 +21,12 @@ def compiled():
 precompile()
 before = compiled()
 assert all(before[name] for name in before if name.endswith(("_flood", "cut_signs", "_borders"))), before
-overlaps = no_overlaps(ROPE)
-for share in np.linspace(0.5, 1, 21):
-    overlaps = next_overlaps(ROPE, rope_pose(share), overlaps)
+for is_writable in (True, False):  # the pose of a step is, that of a state is not
+    overlaps = no_overlaps(ROPE)
+    for share in np.linspace(0.5, 1, 21):
+        pose = rope_pose(share).copy()
+        pose.flags.writeable = is_writable
+        overlaps = next_overlaps(ROPE, pose, overlaps)
 limb = ROPE.vertices[ROPE.faces].mean(axis=1)[:, 0] % 300 < 150
 asked = asked_overlaps(ROPE, rope_pose(1.0), overlaps, limb, True)
 restored_overlaps(ROPE, rope_pose(1.0), asked.crossings)
