@@ -200,6 +200,13 @@ class WindowDriver:
                 return
         raise AssertionError(f"still busy after {MAX_FRAMES} frames")
 
+    def frame_until(self, holds: Callable[[], bool]) -> None:
+        """Draw frames until ``holds()``, for what a thread has to bring about while the window is busy."""
+        deadline = time.monotonic() + DEADLINE
+        while not holds():
+            assert time.monotonic() < deadline, f"not within {DEADLINE:g} s"
+            self.frame()
+
     def screenshot(self) -> NDArray[np.uint8]:
         """The idle window, (h, w, 3)."""
         snapshots: list[NDArray[np.uint8]] = []

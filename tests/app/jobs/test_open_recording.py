@@ -82,15 +82,13 @@ def test_opening_a_recording_is_stopped_half_way_or_cancelled(ui, tmp_path, monk
     monkeypatch.setattr("akap_editor.app.jobs.task.SLICE", 0.0)
     monkeypatch.setattr("akap_editor.app.jobs.task.Task.advance", one_step)
     files.open_path(ui.state, tmp_path / "wave.akaprec")
-    for _ in range(12):
-        ui.frame()
-    assert 0 < ui.state.task.progress.share < 1
+    ui.frame_until(lambda: ui.state.task.progress.share > 0)
+    assert ui.state.task.progress.share < 1
     ui.dialog("Opening wave.akaprec", "Cancel")
     assert ui.state.task is None
     assert ui.session is session
     files.open_path(ui.state, tmp_path / "wave.akaprec")
-    for _ in range(12):
-        ui.frame()
+    ui.frame_until(lambda: ui.state.task.progress.share > 0)
     ui.dialog("Opening wave.akaprec", "Stop Here")
     assert ui.session is not session
     assert 0 < len(ui.session.recording.events) < len(session.recording.events)
