@@ -8,7 +8,7 @@ from akap_editor.deform.methods import make_deformer, method_names
 from akap_editor.errors import InputError
 from akap_editor.geometry.joints import MeshJoints
 from akap_editor.geometry.mesh import TriMesh, signed_areas
-from tests.support.puppets import ARM, BODY, EYES, HAT, SKULL, puppet
+from tests.support.puppets import ARM, BODY, EYES, HAT, SKULL, joints, puppet
 
 MESH = puppet().mesh
 
@@ -106,15 +106,6 @@ def test_without_pins_nothing_moves():
 
 
 # --- joints ---
-
-
-def joints(*rows):
-    ends = [MESH.locate([place, place], layers=[a, b]) for a, b, place, _ in rows]
-    return MeshJoints(
-        np.array([end.faces for end in ends]),
-        np.array([end.weights for end in ends]),
-        np.array([row[3] for row in rows]),
-    )
 
 
 SHOULDER, NECK = (ARM, BODY, (92.0, 118.0), False), (SKULL, BODY, (80.0, 85.0), False)

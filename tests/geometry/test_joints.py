@@ -5,19 +5,9 @@ import pytest
 
 from akap_editor.errors import InputError
 from akap_editor.geometry.joints import NO_JOINTS, STRONG, JointRows, MeshJoints, joined_groups
-from tests.support.puppets import ARM, BODY, EYES, SKULL, puppet
+from tests.support.puppets import ARM, BODY, EYES, SKULL, joints, puppet
 
 MESH = puppet().mesh
-
-
-def joints(*rows):
-    """Joints from (layer, layer, place, is_weld)."""
-    ends = [MESH.locate([place, place], layers=[a, b]) for a, b, place, _ in rows]
-    return MeshJoints(
-        np.array([end.faces for end in ends]),
-        np.array([end.weights for end in ends]),
-        np.array([row[3] for row in rows]),
-    )
 
 
 SHOULDER, NECK = (ARM, BODY, (92.0, 118.0), False), (SKULL, BODY, (80.0, 85.0), True)

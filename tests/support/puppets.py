@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 
 from akap_editor.editor.document.drawing import Drawing, make_drawing
+from akap_editor.geometry.joints import MeshJoints
 from akap_editor.layers.layered_picture import Layer, LayeredPicture, LayerGroup
 from tests.support.layered_files import filled
 
@@ -48,3 +49,14 @@ BODY, ARM, SKULL, EYES, HAT = range(5)
 def puppet(vertices: int = 400) -> Drawing:
     """The drawing of `puppet_layers`."""
     return make_drawing(layers=puppet_layers(), vertices=vertices, name="puppet")
+
+
+def joints(*rows: tuple[int, int, tuple[float, float], bool]) -> MeshJoints:
+    """Joints of `puppet` from (layer, layer, place, is_weld)."""
+    mesh = puppet().mesh
+    ends = [mesh.locate([place, place], layers=[a, b]) for a, b, place, _ in rows]
+    return MeshJoints(
+        np.array([end.faces for end in ends]),
+        np.array([end.weights for end in ends]),
+        np.array([row[3] for row in rows]),
+    )
