@@ -1,6 +1,6 @@
 # The commands that people and CI type. Needs a POSIX system with GNU make 3.81 (macOS) or later.
 
-.PHONY: help run test lint format lock packages docs bundle clean
+.PHONY: help run test lint format translations lock packages docs bundle clean
 
 BIN := .venv/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 
@@ -11,6 +11,7 @@ help:
 	@echo 'make test ARGS="-k mesh"   pass options on to pytest'
 	@echo 'make lint                  ruff, ruff format --check, mypy, import contracts'
 	@echo 'make format                let ruff fix and format the code'
+	@echo 'make translations           bring akap_editor/locale/*.po up to date with the code'
 	@echo 'make lock                  update .ci/requirements.txt, what CI installs; needs uv'
 	@echo 'make packages              wheel and sdist in dist/'
 	@echo 'make docs                  the documentation as a site in out/site'
@@ -40,6 +41,10 @@ format:
 	@sh tools/setup.sh lint
 	$(BIN)/python -m ruff check --fix .
 	$(BIN)/python -m ruff format .
+
+translations:
+	@sh tools/setup.sh lint
+	$(BIN)/python tools/translations.py
 
 lock:
 	uv pip compile pyproject.toml --extra dev --universal --generate-hashes --quiet \

@@ -37,6 +37,12 @@ def preferences_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session", autouse=True)
+def english() -> None:
+    """Show English words, whatever the language of the system is."""
+    os.environ["AKAP_EDITOR_LANGUAGE"] = "en"
+
+
+@pytest.fixture(scope="session", autouse=True)
 def own_file_dialog() -> None:
     """Choose files in the editor's own dialog, also on a desktop that has one; see `NativeFileDialog`."""
     os.environ["AKAP_EDITOR_FILE_DIALOG"] = "own"

@@ -19,6 +19,7 @@ from ..geometry.distortion import Distortion, distortion
 from ..geometry.validation import Floats
 from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
+from ..words import use_language
 from .canvas.view_options import ViewOptions
 from .jobs.background_thread import BackgroundThread, Wake, no_window
 from .jobs.pose_export import PoseExportQueue
@@ -102,7 +103,8 @@ class AppState:
 
     @classmethod
     def from_preferences(cls, preferences: Preferences, wake: Wake = no_window) -> "AppState":
-        """The state as it was stored; steps of the solver are computed in a thread."""
+        """The state as it was stored, in the chosen language; a thread computes the solver's steps."""
+        use_language(preferences.language)
         editor = Editor(worker=BackgroundThread("engine", wake))
         state = cls(editor, wake, preferences=preferences, notice=preferences.problem)
         for name, option in _STORED_OPTIONS.items():

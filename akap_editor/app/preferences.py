@@ -101,6 +101,17 @@ class Preferences:
             raise FileError("open", self._path, f"expected a JSON object, got {type(values).__name__}")
         return values
 
+    # -- the language ----------------------------------------------------------------------------------------
+
+    @property
+    def language(self) -> str:
+        """The chosen language, one of `words.LANGUAGES`; empty: the system's."""
+        return self.get("language", "")
+
+    @language.setter
+    def language(self, name: str) -> None:
+        self.put("language", name)
+
     # -- the mesher of new drawings --------------------------------------------------------------------------
 
     @property

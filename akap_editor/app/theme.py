@@ -9,15 +9,18 @@ import imgui_bundle
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..render.overlays import Rgba
+from ..words import current_language
 
 FONT_SIZE = 15.0
-_SAMPLES = "猫한\N{CAT}"  # Chinese and Japanese, Korean, an emoji
+_SAMPLES = {"猫": "zh-cn", "한": "ko", "\N{CAT}": ""}  # characters, and the language of which they are
+_HAN = "猫"  # has other shapes in Japanese
 _QUERY_SECONDS = 5.0
 _FOLDERS = {"win32": Path("C:/Windows/Fonts"), "darwin": Path("/System/Library/Fonts")}
 _NAMES = {
     "win32": ("msyh.ttc", "malgun.ttf", "seguisym.ttf"),
     "darwin": ("Hiragino Sans GB.ttc", "AppleSDGothicNeo.ttc", "Apple Symbols.ttf"),
 }
+_JAPANESE_NAMES = {"win32": "YuGothM.ttc", "darwin": "ヒラギノ角ゴシック W3.ttc"}
 
 
 def _hex(color: str, alpha: float = 1.0) -> Rgba:
@@ -78,9 +81,13 @@ _COLORS: dict[imgui.Col_, Rgba] = {
 
 
 def load_fonts() -> None:
-    """Load Roboto for text and Font Awesome for icons, and fonts of the system for what these lack."""
+    """Load Roboto for text and Font Awesome for icons, and fonts of the system for what these lack.
+
+    May be called again, between two frames, when the language has changed.
+    """
     folder = Path(imgui_bundle.__path__[0]) / "assets" / "fonts"
     fonts = imgui.get_io().fonts
+    fonts.clear_fonts()
     fonts.add_font_from_file_ttf(str(folder / "Roboto" / "Roboto-Regular.ttf"), FONT_SIZE)
     icons = imgui.ImFontConfig()
     icons.merge_mode = True
@@ -97,17 +104,24 @@ def load_fonts() -> None:
 def system_fonts() -> list[tuple[Path, int]]:
     """The files of fonts with many characters, and the number of the font in each; none if there are none."""
     if sys.platform in _FOLDERS:
-        candidates = [(_FOLDERS[sys.platform] / name, 0) for name in _NAMES[sys.platform]]
+        names = list(_NAMES[sys.platform])
+        if current_language() == "ja":
+            names.insert(0, _JAPANESE_NAMES[sys.platform])
+        candidates = [(_FOLDERS[sys.platform] / name, 0) for name in names]
     elif shutil.which("fc-match"):
-        candidates = [found for sample in _SAMPLES if (found := _match(sample)) is not None]
+        samples = {**_SAMPLES, _HAN: "ja"} if current_language() == "ja" else _SAMPLES
+        candidates = [found for each in samples.items() if (found := _match(*each)) is not None]
     else:
         candidates = []
     return [(path, number) for path, number in dict.fromkeys(candidates) if path.is_file()]
 
 
-def _match(character: str) -> tuple[Path, int] | None:
-    """The font that fontconfig has for a character; a scalable one, as color bitmaps cannot be loaded."""
-    pattern = f":charset={ord(character):x}:scalable=true:color=false"
+def _match(character: str, language: str) -> tuple[Path, int] | None:
+    """The font that fontconfig has for a character, as it is written in a language; empty: in any.
+
+    A scalable one, as color bitmaps cannot be loaded.
+    """
+    pattern = f":charset={ord(character):x}:scalable=true:color=false" + (language and f":lang={language}")
     command = ["fc-match", "-f", "%{file}\n%{index}\n", pattern]
     try:
         run = subprocess.run(command, capture_output=True, timeout=_QUERY_SECONDS, check=True)

@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document.settings import Settings
 from ..render.overlays import Rgba
+from ..words import tr
 from .app_state import AppState
 from .commands.command import Command
 from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, SECONDARY, STRONG_LINE, TEXT, packed
@@ -291,9 +292,10 @@ def side_bar(name: str, side: imgui.Dir, size: float, padding: ImVec2, scrolls: 
 def begin_dialog(title: str) -> bool:
     """Begin a dialog in the middle of the window, which dims everything else.
 
+    title: in English, which also identifies it; it is shown in the user's language.
     Returns whether it is shown; if it is, `imgui.end_popup` must follow.
     """
-    name = f"{title}###dialog {title}"
+    name = f"{tr(title)}###dialog {title}"
     if not imgui.is_popup_open(name):
         imgui.open_popup(name)
     viewport = imgui.get_main_viewport()

@@ -3,6 +3,7 @@
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -13,8 +14,12 @@ from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.open_document import open_document
 from ..io.outputs import unused_path
 from ..resources import bundled_drawings, resource
+from ..words import use_language
 from . import replay
 from .options import FILE, bundled, check_threshold, merge_layers_option, mesher_option, threshold_option
+
+if TYPE_CHECKING:
+    from ..app.preferences import Preferences
 
 FIRST_DRAWING = "elephant"
 OUTPUT_FOLDER = Path("out")
@@ -57,6 +62,8 @@ def edit(
     Without a display and without FILE, a bundled recording is replayed offscreen instead.
     """
     _check_arguments(file, mask, name)
+    preferences = _stored_preferences()
+    use_language(preferences.language)  # that of errors, which the window shows
     document, problem, recording = None, None, None
     source = bundled(name) if name is not None else file
     try:
@@ -69,7 +76,7 @@ def edit(
             recording = source
         elif source is not None:
             document = open_document(
-                source, mask, check_threshold(threshold), mesher or _preferred_mesher(), merge_layers
+                source, mask, check_threshold(threshold), mesher or preferences.mesher, merge_layers
             )
     except InputError as error:
         problem = error
@@ -87,11 +94,11 @@ def edit(
         replay.replay_recording(recording, None, animation, animation.with_suffix(".png"), fps=24.0, size=480)
 
 
-def _preferred_mesher() -> str:
-    """The mesher that was chosen in the window last."""
+def _stored_preferences() -> "Preferences":
+    """What was chosen in the window last."""
     from ..app.preferences import Preferences, preferences_path
 
-    return Preferences(preferences_path()).mesher
+    return Preferences(preferences_path())
 
 
 def _check_arguments(file: Path | None, mask: Path | None, name: str | None) -> None:

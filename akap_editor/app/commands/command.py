@@ -6,6 +6,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from ...words import tr
 from ..app_state import AppState
 from .keymap import ALT, CTRL, KEYMAP, SHIFT, Key, chord_name
 
@@ -36,10 +37,11 @@ def has_drawing(state: AppState) -> bool:
 class Command:
     """Something that the user can run.
 
-    label: in menus, "..." at its end if it opens a dialog; chords: keys, the first one is shown; icon: in the
-    toolbar; enabled: whether it can be run now; checked: for a switch, whether it is on; typed: a character
-    that runs it, too, wherever a keyboard has it; repeats: whether it runs repeatedly while its key is held;
-    missing: a sentence for the status bar if its key is pressed while it cannot be run.
+    label: in English, which also identifies it, "..." at its end if it opens a dialog; chords: keys, the
+    first one is shown; icon: in the toolbar; enabled: whether it can be run now; checked: for a switch,
+    whether it is on; typed: a character that runs it, too, wherever a keyboard has it; repeats: whether it
+    runs repeatedly while its key is held; missing: a sentence (`mark`) for the status bar if its key is
+    pressed while it cannot be run.
     """
 
     label: str
@@ -53,9 +55,14 @@ class Command:
     missing: str = ""
 
     @property
+    def text(self) -> str:
+        """The label in the user's language."""
+        return tr(self.label)
+
+    @property
     def name(self) -> str:
-        """The label without the dots."""
-        return self.label.rstrip(".")
+        """The label in the user's language, without the dots."""
+        return self.text.rstrip(".…")
 
     @property
     def key_name(self) -> str:
@@ -83,10 +90,15 @@ class Command:
 
 @dataclass(frozen=True)
 class Submenu:
-    """A menu of files to open. files: returns the name and the path of each."""
+    """A menu of files to open. label: in English; files: returns the name and the path of each."""
 
     label: str
     files: Callable[[AppState], list[tuple[str, Path]]]
+
+    @property
+    def text(self) -> str:
+        """The label in the user's language."""
+        return tr(self.label)
 
 
 Menu = tuple[str, tuple[Command | Submenu | None, ...]]  # its name and its lines; None: a separator

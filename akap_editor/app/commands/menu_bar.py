@@ -1,8 +1,12 @@
-"""The menu bar, for mouse and keyboard: F10, or Alt and a menu's first letter, opens a menu."""
+"""The menu bar, for mouse and keyboard: F10, or Alt and a letter of a menu's name, opens a menu."""
+
+from collections.abc import Sequence
+from string import ascii_lowercase
 
 from imgui_bundle import imgui
 
 from ...display_text import display_text
+from ...words import tr
 from .. import files, widgets
 from ..app_state import AppState
 from .command import ALT, Command, Submenu
@@ -21,14 +25,14 @@ def draw(state: AppState) -> None:
         return
     requested = _requested_by_key()
     for name, items in MENUS:
-        if imgui.begin_menu(name):
+        if imgui.begin_menu(tr(name)):
             takes_arrows = [_draw_item(state, item) for item in items]
             if not any(takes_arrows) and imgui.is_window_focused():
                 requested = _neighbor_by_key(name)
             imgui.end_menu()
     if requested:
         imgui.internal.nav_move_request_cancel()  # otherwise ImGui would leave the menus
-        imgui.open_popup(requested)
+        imgui.open_popup(tr(requested))
         imgui.set_nav_cursor_visible(True)  # otherwise Enter would not run the first line
     imgui.end_main_menu_bar()
 
@@ -39,10 +43,20 @@ def _requested_by_key() -> str:
         return ""
     if imgui.is_key_pressed(imgui.Key.f10, False) and not imgui.get_io().key_shift:  # opens context menus
         return _NAMES[0]
-    for name in _NAMES:
-        if imgui.is_key_chord_pressed(ALT | imgui.Key[name[0].lower()]):
+    letters = access_letters([tr(name) for name in _NAMES])
+    for name, letter in zip(_NAMES, letters, strict=True):
+        if letter and imgui.is_key_chord_pressed(ALT | imgui.Key[letter]):
             return name
     return ""
+
+
+def access_letters(names: Sequence[str]) -> list[str]:
+    """For each menu the letter that opens it with Alt: its first one that no menu before has; empty: none."""
+    letters: list[str] = []
+    for name in names:
+        free = (each for each in name.lower() if each in ascii_lowercase and each not in letters)
+        letters.append(next(free, ""))
+    return letters
 
 
 def _neighbor_by_key(name: str) -> str:
@@ -59,7 +73,7 @@ def _draw_item(state: AppState, item: Command | Submenu | None) -> bool:
         imgui.separator()
     elif isinstance(item, Submenu):
         return _draw_submenu(state, item)
-    elif imgui.menu_item(item.label, item.key_name, item.is_checked(state), item.enabled(state))[0]:
+    elif imgui.menu_item(item.text, item.key_name, item.is_checked(state), item.enabled(state))[0]:
         widgets.run(state, item)
     return False
 
@@ -67,7 +81,7 @@ def _draw_item(state: AppState, item: Command | Submenu | None) -> bool:
 def _draw_submenu(state: AppState, item: Submenu) -> bool:
     """Draw a submenu and its files; return whether it uses the arrow keys."""
     entries = item.files(state)
-    is_open = imgui.begin_menu(item.label, bool(entries))
+    is_open = imgui.begin_menu(item.text, bool(entries))
     if is_open:
         room = _MAX_NAME_WIDTH * imgui.get_font_size()
         for index, (name, path) in enumerate(entries):

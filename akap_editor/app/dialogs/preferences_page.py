@@ -1,20 +1,23 @@
-"""The page of preferences: the keys of all commands, which can be changed."""
+"""The page of preferences: the language, and the keys of all commands, which can be changed."""
 
 from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from .. import widgets
+from ... import words
+from ...words import mark, tr
+from .. import theme, widgets
 from ..app_state import AppState
 from ..commands.command import Command
 from ..commands.keymap import KEYMAP, chord_name, pressed_chord
 from ..theme import ACCENT, SECONDARY
 
 _WIDTH, _HEIGHT = 520, 380  # of the list, in design points
-_OTHER_HEIGHT = 190  # of everything around the list, in design points
+_OTHER_HEIGHT = 240  # of everything around the list, in design points
 _NAME_WIDTH = 230  # design points
-_HINT = "Type a few letters of a command"
+_HINT = mark("Type a few letters of a command")
+_LANGUAGES = ("", *words.LANGUAGES)  # the first one: the system's
 
 
 class PreferencesPage:
@@ -38,9 +41,10 @@ class PreferencesPage:
             return
         was_awaiting = self._awaited is not None
         self._read_key(state)
+        self._draw_language(state)
         imgui.set_next_item_width(_WIDTH * scale)
         imgui.begin_disabled(was_awaiting)
-        _, self._query = imgui.input_text_with_hint("##query", _HINT, self._query)
+        _, self._query = imgui.input_text_with_hint("##query", tr(_HINT), self._query)
         imgui.end_disabled()
         height = min(_HEIGHT * scale, imgui.get_main_viewport().size.y - _OTHER_HEIGHT * scale)
         imgui.begin_child("##keys", ImVec2(_WIDTH * scale, height), widgets.NAV_FLATTENED)
@@ -48,17 +52,34 @@ class PreferencesPage:
             if self._query.lower() in command.name.lower():
                 self._draw_command(state, command, scale)
         imgui.end_child()
-        note = "Press the new key, or Esc to keep the old one" if self._awaited is not None else self._note
+        waiting = tr("Press the new key, or Esc to keep the old one")
+        note = waiting if self._awaited is not None else self._note
         imgui.text_colored(ImVec4(*ACCENT), widgets.shortened(note, _WIDTH * scale))
-        if widgets.button("Reset All Keys") and not was_awaiting:
+        if widgets.button(tr("Reset All Keys")) and not was_awaiting:
             KEYMAP.reset()
-            self._store(state, "All commands have their first keys again")
+            self._store(state, tr("All commands have their first keys again"))
         imgui.same_line()
-        is_closed = widgets.button("Close", primary=True) or widgets.cancel_pressed()
+        is_closed = widgets.button(tr("Close"), primary=True) or widgets.cancel_pressed()
         if is_closed and not was_awaiting:
             self.is_open = False
             widgets.close_popup()
         imgui.end_popup()
+
+    def _draw_language(self, state: AppState) -> None:
+        """Draw the choice of the language, which takes effect at once."""
+        widgets.label(tr("Language"), 10 * imgui.get_font_size())
+        imgui.set_next_item_width(widgets.FULL)
+        own = words.LANGUAGES[words.system_language()]
+        labels = [tr("System ({language})", language=own), *words.LANGUAGES.values()]
+        chosen = state.preferences.language
+        index = _LANGUAGES.index(chosen) if chosen in _LANGUAGES else 0
+        is_changed, index = imgui.combo("##language", index, labels)
+        if is_changed:
+            state.preferences.language = _LANGUAGES[index]
+            state.save_preferences()
+            words.use_language(_LANGUAGES[index])
+            self.open(self._commands)  # in the order of their new names
+            state.run_after_frame(theme.load_fonts)  # its signs may have other shapes in another language
 
     def _draw_command(self, state: AppState, command: Command, scale: float) -> None:
         """Draw the name of a command, a button for each of its keys, and one that adds a key."""
@@ -72,19 +93,19 @@ class PreferencesPage:
             label = "..." if self._awaited == (command, index) else chord_name(chord)
             if imgui.button(f"{label}###key {index} of {command.label}"):
                 self._awaited = command, index
-            widgets.show_tooltip("Click for another key, right-click to remove this one")
+            widgets.show_tooltip(tr("Click for another key, right-click to remove this one"))
             if imgui.is_item_clicked(imgui.MouseButton_.right):
                 self._change(state, command, (*chords[:index], *chords[index + 1 :]))
             imgui.same_line(0, 4 * scale)
         label = "..." if self._awaited == (command, len(chords)) else "+"
         if imgui.button(f"{label}###key {len(chords)} of {command.label}"):
             self._awaited = command, len(chords)
-        widgets.show_tooltip("Add a key")
+        widgets.show_tooltip(tr("Add a key"))
         if is_changed:
             imgui.same_line(0, 4 * scale)
             if imgui.button(f"{icons.ICON_FA_ARROW_ROTATE_LEFT}###reset {command.label}"):
                 self._change(state, command, command.chords)
-            widgets.show_tooltip("The first keys of this command")
+            widgets.show_tooltip(tr("The first keys of this command"))
 
     def _read_key(self, state: AppState) -> None:
         """Take the pressed key for the command that waits for one; Esc ends the wait."""
@@ -110,7 +131,7 @@ class PreferencesPage:
                 KEYMAP.change(other.label, kept, other.chords)
                 taken.append(other.name)
         KEYMAP.change(command.label, chords, command.chords)
-        self._store(state, f"Taken from {', '.join(taken)}" if taken else "")
+        self._store(state, tr("Taken from {commands}", commands=", ".join(taken)) if taken else "")
 
     def _store(self, state: AppState, note: str) -> None:
         self._note = note

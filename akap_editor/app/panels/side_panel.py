@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..commands import menu_bar
@@ -43,9 +44,9 @@ _PANEL_WIDTH, _TOOLBAR_WIDTH, _BUTTON_SIZE = 268, 48, 36  # design points
 class Section:
     """A part of the side panel that can be folded.
 
-    title: also the name in the preferences; draw: draws the content, given the points per design point;
-    shown: whether the section is listed; note: a short text at the right end of its title; opened: whether it
-    is unfolded for a new user.
+    title: in English, also the name in the preferences; draw: draws the content, given the points per design
+    point; shown: whether the section is listed; note: a short text at the right end of its title; opened:
+    whether it is unfolded for a new user.
     """
 
     title: str
@@ -152,7 +153,7 @@ def _draw_heading(state: AppState, section: Section) -> bool:
     imgui.separator()
     imgui.push_style_color(imgui.Col_.text, ImVec4(*SECONDARY))
     imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
-    is_clicked = imgui.selectable(f"{section.title.upper()}###section {section.title}", False)[0]
+    is_clicked = imgui.selectable(f"{tr(section.title).upper()}###section {section.title}", False)[0]
     arrow = icons.ICON_FA_CHEVRON_DOWN if was_open else icons.ICON_FA_CHEVRON_RIGHT
     note = f"{section.note(state)}   {arrow}"
     right = imgui.get_content_region_avail().x + imgui.get_cursor_pos_x()
