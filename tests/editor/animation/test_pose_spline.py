@@ -105,6 +105,25 @@ def test_at_keys_of_a_steady_pace_second_differences_are_within_twice_the_median
         assert (second[round(time / STEP) - 1, moves] <= 2 * median).all()
 
 
+BACK_AND_FORTH = {
+    "wave": lambda mesh: [(0.4 * k, curled(mesh, 0.8 * (k % 2))) for k in range(7)],
+    "bounce": lambda mesh: [(0.4 * k, moved(mesh, 0, -40.0 * (k % 2))) for k in range(5)],
+    "swing": MOTIONS["swing"],
+    "growth": lambda mesh: [(0.4 * k, rotated(mesh, 0, factor=1 + 0.3 * (k % 2))) for k in range(5)],
+    "more than half a turn": lambda mesh: [(0.5 * k, curled(mesh, 4.0 * (k % 2))) for k in range(4)],
+}
+
+
+@pytest.mark.parametrize("name", BACK_AND_FORTH)
+def test_where_a_motion_turns_back_second_differences_are_within_twice_the_median(mesh, name):
+    keys = BACK_AND_FORTH[name](mesh)
+    second = second_differences(played(mesh, keys)[1])
+    moves = second.max(axis=0) > 0.05 * second.max()
+    median = np.median(second[:, moves], axis=0)
+    for time, _ in keys[1:-1]:
+        assert (second[round(time / STEP) - 1, moves] <= 2 * median).all()
+
+
 @pytest.mark.parametrize("name", MOTIONS)
 def test_the_speed_at_a_key_is_the_same_on_both_sides(mesh, name):
     keys = MOTIONS[name](mesh)
@@ -117,9 +136,9 @@ def test_the_speed_at_a_key_is_the_same_on_both_sides(mesh, name):
         np.testing.assert_allclose(before, after, atol=1e-3 * np.abs(after).max() + 1e-2)
 
 
-@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize("name", [*MOTIONS, *BACK_AND_FORTH])
 def test_no_face_is_worse_than_at_the_worse_end(mesh, name):
-    keys = MOTIONS[name](mesh)
+    keys = {**MOTIONS, **BACK_AND_FORTH}[name](mesh)
     times, poses = played(mesh, keys)
     for (start, first), (end, last) in pairwise(keys):
         worst = max(distortion(mesh, first).area, distortion(mesh, last).area)
