@@ -49,8 +49,8 @@ class PoseInterpolation:
     def between(self, start: Floats, end: Floats) -> Callable[[float], Floats]:
         """A function of time from 0 to 1 that returns the pose (n, 2) between ``start`` and ``end``, (n, 2).
 
-        At 0 and 1 it returns exactly these poses. Raises InputError for other shapes, and in
-        the function for a time out of range.
+        At 0 and 1 it returns exactly these poses; from -1 to 0 and from 1 to 2 it goes on beyond them. Raises
+        InputError for other shapes, and in the function for a time out of range.
         """
         n = len(self._mesh.vertices)
         first, last = as_points(start, "start", n), as_points(end, "end", n)
@@ -62,15 +62,16 @@ class PoseInterpolation:
         max_factor = max(worst_area_factor(self._mesh, first), worst_area_factor(self._mesh, last))
 
         def pose(t: float) -> Floats:
-            t = as_number(t, "t", 0, 1)
+            t = as_number(t, "t", -1, 2)
             if t in (0.0, 1.0):
                 return first if t == 0.0 else last
+            bound = max_factor ** (1 + 2 * max(-t, t - 1, 0.0))
             fitted = self._fit(edges * np.exp(t * rates))
             offsets = weights * (a + (b - a) * _progress(vertex_rates, t) - fitted)
             component = self._mesh.component
             shift = np.bincount(component, offsets.real) + 1j * np.bincount(component, offsets.imag)
             placed = to_points(fitted + shift[component])
-            return bound_face_areas(self._mesh, placed, max_factor) if np.isfinite(max_factor) else placed
+            return bound_face_areas(self._mesh, placed, bound) if np.isfinite(bound) else placed
 
         return pose
 
@@ -144,7 +145,7 @@ class InterpolationCache:
         return self._pairs[pair][2]
 
     def pose(self, mesh: TriMesh, start: Floats, end: Floats, t: float) -> Floats:
-        """The pose (n, 2) at time ``t`` from 0, ``start`` (n, 2) itself, to 1, ``end`` (n, 2) itself."""
+        """The pose (n, 2) at time ``t``; at 0 ``start`` (n, 2) itself, at 1 ``end`` (n, 2) itself."""
         return start if t == 0 or start is end else end if t == 1 else self.prepare(mesh, start, end)(t)
 
 

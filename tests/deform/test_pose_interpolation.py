@@ -144,7 +144,7 @@ def test_a_collapsed_pose_gives_finite_in_betweens(mesh):
     [
         (lambda between, v: between(v[1:], v), "start: expected"),
         (lambda between, v: between(v, v * np.nan), "end: expected"),
-        (lambda between, v: between(v, v)(1.5), "t: expected"),
+        (lambda between, v: between(v, v)(2.5), "t: expected"),
         (lambda between, v: between(v, v)(float("nan")), "t: expected"),
     ],
 )
@@ -188,3 +188,13 @@ def test_real_cartoons_are_distorted_no_more_than_at_the_worse_end(shared_data, 
         worst = [each.face_area.max() for each in measured]
         assert max(worst) <= 1.01 * max(worst[0], worst[-1]), "also that of the worst single face"
         assert max(each.flipped for each in measured) == 0
+
+
+def test_beyond_its_ends_the_motion_goes_on_and_no_face_flips(mesh):
+    between = PoseInterpolation(mesh).between(mesh.vertices, 1.4 * mesh.vertices)
+    for t in (-0.5, 1.5):
+        np.testing.assert_allclose(
+            np.ptp(between(t), axis=0), 1.4**t * np.ptp(mesh.vertices, axis=0), rtol=1e-6
+        )
+    with pytest.raises(InputError, match="t: expected"):
+        between(2.1)

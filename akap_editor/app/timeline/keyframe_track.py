@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from ...editor.animation.keyframe_playback import KeyframePlayback
 from ...editor.animation.keyframe_times import stretch_times
 from ...editor.animation.playback import VisibleRange
-from ...editor.document.easing import EASING_LABELS
+from ...editor.document.easing import easing_label
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, FRAME, SECONDARY, STRONG_LINE, TEXT, packed
@@ -169,7 +169,7 @@ def _show_tooltip(playback: KeyframePlayback, time_scale: TimeScale, scale: floa
     time = _time_at_pointer(playback, time_scale, scale)
     keyframe = next((each for each in playback.animation.keyframes if each.time == time), None)
     if keyframe is not None:
-        easing = EASING_LABELS[keyframe.ease or playback.animation.ease]
+        easing = easing_label(keyframe.ease or playback.animation.ease)
         widgets.show_tooltip(
             f"{keyframe.time:.2f} s, {easing}. Drag to move, Ctrl-drag to copy, Alt-drag to stretch; "
             "right-click for more."

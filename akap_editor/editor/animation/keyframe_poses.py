@@ -8,7 +8,7 @@ import numpy as np
 from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats
-from ..document.easing import END_VELOCITIES
+from ..document.easing import end_velocities
 from ..document.keyframes import Animation, Keyframe
 from .frames import POSE_TOLERANCE
 from .pose_spline import Interval, PoseSpline
@@ -17,7 +17,8 @@ from .pose_spline import Interval, PoseSpline
 class Moment(NamedTuple):
     """A time between two keyframes.
 
-    share: of the motion from ``start`` to ``end`` that is over, 0 to 1; pose_at: the pose (n, 2) at a share.
+    share: of the motion from ``start`` to ``end`` that is over, 0 to 1 unless a curve overshoots; pose_at:
+    the pose (n, 2) at a share.
     """
 
     start: Keyframe
@@ -77,7 +78,7 @@ def _intervals_around(
 
 def _interval(animation: Animation, index: int) -> Interval:
     start, end = animation.keyframes[index : index + 2]
-    velocity = END_VELOCITIES[animation.easing_after(start)]
+    velocity = end_velocities(animation.easing_after(start))
     return Interval(start.positions, end.positions, end.time - start.time, velocity)
 
 

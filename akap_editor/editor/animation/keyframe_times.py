@@ -2,8 +2,9 @@
 
 from collections.abc import Iterable, Sequence
 
+from ..document.easing import mirrored_easing
+
 TIME_STEP = 0.05  # seconds: times snap to multiples of it, and keys move by it
-_MIRRORED = {"in": "out", "out": "in"}  # easings of an interval that is played backwards; others stay
 
 
 def stretch_times(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:
@@ -27,5 +28,4 @@ def mirror_easings(easings: Sequence[str]) -> list[str]:
 
     easings: those after them now; that after the last one leads on from the group, and does so afterwards.
     """
-    backwards = [_MIRRORED.get(name, name) for name in easings[:-1]]
-    return [easings[-1], *backwards]
+    return [easings[-1], *map(mirrored_easing, easings[:-1])]

@@ -18,7 +18,7 @@ TIME_DECIMALS = 3  # whole milliseconds, so that a keyframe can be found by its 
 class Keyframe:
     """A pose (n, 2) float64, in pixels, at a time in seconds.
 
-    ease: the easing from here to the next keyframe, a name of `easing.KEYFRAME_EASINGS`; None for that of
+    ease: the easing from here to the next keyframe, see `easing.check_keyframe_easing`; None for that of
     the animation. crossings: which part passes in front, (s, 2), see `EditState`. Raises InputError on a time
     or easing out of range.
     """
@@ -74,7 +74,7 @@ class Animation:
         return [keyframe for keyframe in self.keyframes if keyframe.time in chosen]
 
     def keyframes_around(self, time: float) -> tuple[Keyframe, Keyframe, float]:
-        """The keyframes before and after a time, and the eased share of the motion between them, 0 to 1.
+        """The keyframes before and after a time, and the eased share of the motion between them.
 
         Before the first keyframe and after the last one, that keyframe twice and 0. There must be one.
         """

@@ -180,7 +180,9 @@ def test_stretching_keeps_the_other_end(dragged, to, expected):
     assert tuple(stretch_times((0.0, 1.0, 2.0), dragged, to).values()) == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("ease", ["none", "in", "out", "in-out", "smooth"])
+@pytest.mark.parametrize(
+    "ease", ["none", "in", "out", "in-out", "smooth", "cubic-bezier(0.2, 0.6, 0.4, 1.3)"]
+)
 def test_reversed_keyframes_play_the_motion_backwards(playback, pinned, ease):
     playback.selected = frozenset({0.0})
     playback.set_easing(ease)
@@ -221,6 +223,7 @@ def test_only_selected_keyframes_are_reversed(playback, pinned):
 
 def test_easings_of_intervals_are_mirrored():
     assert mirror_easings(["in", "out", "hold", "smooth"]) == ["smooth", "out", "in", "hold"]
+    assert mirror_easings(["cubic-bezier(0.1, 0, 0.4, 1)", "in"]) == ["in", "cubic-bezier(0.6, 0, 0.9, 1)"]
 
 
 def test_playing_goes_on_and_starts_over(playback, pinned, clock):

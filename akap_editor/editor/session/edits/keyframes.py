@@ -38,7 +38,7 @@ class KeyframeEdit(Edit):
 class SetKeyframe(KeyframeEdit):
     """Make a keyframe of a pose (n, 2), by default the current one, at a time in seconds.
 
-    Replaces a keyframe at this time. ease: a name of `easing.KEYFRAME_EASINGS`; None keeps the easing of a
+    Replaces a keyframe at this time. ease: see `easing.check_keyframe_easing`; None keeps the easing of a
     replaced keyframe. crossings: which part passes in front in ``positions``, see `EditState`.
     """
 
@@ -110,7 +110,7 @@ class MoveKeyframes(KeyframeEdit):
 class SetEasing(KeyframeEdit):
     """Set the easing after the keyframes at ``times``, seconds; times None sets that of the animation.
 
-    ease: a name of `easing.KEYFRAME_EASINGS`; None lets keyframes follow the animation.
+    ease: see `easing.check_keyframe_easing`; None lets keyframes follow the animation.
     """
 
     name = "ease"
