@@ -10,8 +10,7 @@ import click
 
 from ..display_text import display_text
 from ..editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
-from ..editor.animation.keyframe_playback import animation_frame
-from ..editor.animation.keyframe_poses import KeyframePoses
+from ..editor.animation.keyframe_poses import KeyframePoses, animation_frame
 from ..editor.animation.motion import Motion, shorten_pauses
 from ..editor.document.easing import EASINGS
 from ..editor.document.settings import Settings

@@ -38,6 +38,7 @@ STORED_SWITCHES = {  # name in the preferences: field
     "ghost": "show_rest_pose",
     "trails": "show_pin_trails",
     "motion paths": "show_motion_paths",
+    "speed graph": "show_speed_graph",
     "show_reference": "show_reference",
 }
 
@@ -62,6 +63,7 @@ class ViewOptions:
     show_rest_pose: bool = False
     show_pin_trails: bool = False
     show_motion_paths: bool = False
+    show_speed_graph: bool = False
     show_reference: bool = True
     distortion_measure: Measure | None = None
     distortion_range: int = 2

@@ -46,6 +46,7 @@ SYNONYMS = {
     "Actual Size": "100 % zoom pixels",
     "Play": "preview animate run spacebar",
     "Add Keyframe": "key insert animate pose",
+    "Speed Graph": "curve editor graph editor velocity easing handles",
     "Onion Skin": "ghost frames light table",
     "Preferences": "settings options hotkeys shortcuts keyboard bindings customize",
     "Keyboard Shortcuts": "hotkeys bindings keys help cheat sheet",

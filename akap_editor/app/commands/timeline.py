@@ -89,6 +89,11 @@ def _toggle_auto_key(state: AppState) -> None:
     auto_key.is_on = not auto_key.is_on
 
 
+def _toggle_speed_graph(state: AppState) -> None:
+    state.view.show_speed_graph = not (state.timeline.is_shown and state.view.show_speed_graph)
+    state.timeline.is_shown = True
+
+
 def _select_all(playback: KeyframePlayback) -> None:
     playback.selected = frozenset(playback.stored_animation.times)
 
@@ -219,6 +224,14 @@ ONION_SKIN = Command(
     has_keyframes,
     lambda state: state.timeline.keyframe_playback.onion_skin.is_shown,
 )
+SPEED_GRAPH = Command(
+    "Speed Graph",
+    _toggle_speed_graph,
+    (),
+    icons.ICON_FA_CHART_LINE,
+    has_drawing,
+    lambda state: state.timeline.is_shown and state.view.show_speed_graph,
+)
 ZOOM_IN_TIMELINE = Command("Zoom In Timeline", _on_playback(_zoom(_ZOOM_FACTOR)), (), "", _is_shown)
 ZOOM_OUT_TIMELINE = Command("Zoom Out Timeline", _on_playback(_zoom(1 / _ZOOM_FACTOR)), (), "", _is_shown)
 
@@ -229,5 +242,5 @@ ANIMATION: tuple[Command | None, ...] = (
     *(ADD_KEYFRAME, DELETE_KEYFRAME, DUPLICATE_KEYFRAME, SELECT_ALL_KEYFRAMES),
     *(REVERSE_KEYFRAMES, DUPLICATE_REVERSED, AUTO_KEY, None),
     *(PREVIOUS_KEYFRAME, NEXT_KEYFRAME, MOVE_EARLIER, MOVE_LATER, None),
-    *(ONION_SKIN, ZOOM_IN_TIMELINE, ZOOM_OUT_TIMELINE),
+    *(ONION_SKIN, SPEED_GRAPH, ZOOM_IN_TIMELINE, ZOOM_OUT_TIMELINE),
 )

@@ -1,11 +1,21 @@
 """Buttons and menus for keyframes: add, easing, onion skin, and the context menu of a keyframe."""
 
+from dataclasses import replace
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor.animation.keyframe_playback import MAX_ONION_POSES, KeyframePlayback, OnionSkin
 from ...editor.animation.keyframe_times import TIME_STEP
-from ...editor.document.easing import EASING_LABELS, KEYFRAME_EASINGS
+from ...editor.document.easing import (
+    CURVE_LABEL,
+    EASING_LABELS,
+    KEYFRAME_EASINGS,
+    MAX_PROGRESS,
+    MIN_PROGRESS,
+    curve_like,
+    easing_curve,
+)
 from ...editor.document.keyframes import Keyframe
 from .. import widgets
 from ..app_state import AppState
@@ -61,10 +71,7 @@ def draw_keyframe_menu(state: AppState) -> None:
     if len(playback.selected) == 1:
         _draw_time_field(state, playback, keyframe)
     imgui.separator()
-    for name in (None, *KEYFRAME_EASINGS):
-        label = "Default Easing" if name is None else EASING_LABELS[name]
-        if imgui.menu_item(label, "", keyframe.ease == name)[0]:
-            state.run_reporting_errors(lambda name=name: playback.set_easing(name))  # type: ignore[misc]
+    _draw_easings(state, playback, keyframe)
     imgui.separator()
     if imgui.menu_item("Update from Current Pose", "", False)[0]:
         state.run_reporting_errors(lambda: _update_keyframe(playback, keyframe.time))
@@ -77,6 +84,30 @@ def draw_keyframe_menu(state: AppState) -> None:
             state.run_reporting_errors(lambda: playback.reverse_keyframes(copy=True))
     if imgui.menu_item("Delete", "Shift+K", False)[0]:
         state.run_reporting_errors(playback.delete_keyframes)
+
+
+def _draw_easings(state: AppState, playback: KeyframePlayback, keyframe: Keyframe) -> None:
+    """Draw a line for each easing, and the numbers of a curve."""
+    easing = keyframe.ease or playback.animation.ease
+    curve = curve_like(easing)
+    is_curve = keyframe.ease is not None and easing_curve(keyframe.ease) is not None
+    choices = [(None, "Default Easing"), *((name, EASING_LABELS[name]) for name in KEYFRAME_EASINGS)]
+    for name, label in choices:
+        if imgui.menu_item(label, "", keyframe.ease == name)[0]:
+            state.run_reporting_errors(lambda name=name: playback.set_easing(name))  # type: ignore[misc]
+    if imgui.menu_item(CURVE_LABEL, "", is_curve)[0]:
+        state.view.show_speed_graph = True
+        state.run_reporting_errors(lambda: playback.set_easing(curve.name))
+    if not is_curve:
+        return
+    for number, x, y in ((1, curve.x1, curve.y1), (2, curve.x2, curve.y2)):
+        imgui.set_next_item_width(9 * imgui.get_font_size())
+        flags = imgui.InputTextFlags_.enter_returns_true
+        is_entered, (x, y) = imgui.input_float2(f"Handle {number}", [x, y], "%.3f", flags)
+        if is_entered:
+            x, y = min(max(x, 0.0), 1.0), min(max(y, MIN_PROGRESS), MAX_PROGRESS)
+            changed = replace(curve, **{f"x{number}": x, f"y{number}": y})
+            state.run_reporting_errors(lambda changed=changed: playback.set_easing(changed.name))  # type: ignore[misc]
 
 
 def _begin_menu(name: str, scale: float) -> bool:

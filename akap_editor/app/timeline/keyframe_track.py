@@ -39,8 +39,8 @@ class KeyframeTrack:
         self._dragged: Literal["start", "end", "playhead", "keyframes", "nothing"] = "playhead"
         self._pressed_time = 0.0  # of the keyframe that was pressed
 
-    def draw(self, state: AppState, scale: float) -> None:
-        """Draw one frame. scale: points per design point."""
+    def draw(self, state: AppState, scale: float) -> TimeScale:
+        """Draw one frame and return the scale of its time. scale: points per design point."""
         playback = state.timeline.keyframe_playback
         is_unkeyed = playback.shows_unkeyed_pose
         label = f"{playback.time:.2f}{'*' * is_unkeyed} / {playback.duration:.2f} s"
@@ -71,6 +71,7 @@ class KeyframeTrack:
             widgets.show_tooltip(
                 "* The pose on the canvas is not the animation's at this time. K keeps it there."
             )
+        return time_scale
 
     def _handle_mouse(self, state: AppState, time_scale: TimeScale, top: float, scale: float) -> None:
         """Press, drag and release on the track, Escape during a drag, and the context menu."""

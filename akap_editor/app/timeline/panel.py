@@ -8,15 +8,17 @@ from .. import widgets
 from ..app_state import AppState
 from ..dialogs.export.animation import ExportAnimationDialog
 from ..theme import ACCENT, SECONDARY, TEXT
-from . import keyframe_menus
+from . import keyframe_menus, speed_graph
 from .keyframe_track import KeyframeTrack
 from .session_track import SessionTrack
+from .speed_graph import SpeedGraph
 from .timeline import TimelineMode
 from .track import RED
 
 _HEIGHT = 64  # design points, as all sizes here; the same in both modes, so that the canvas stays
 _BUTTON_WIDTH, _BUTTON_HEIGHT = 30, 28
 _MIN_LABELED_WIDTH = 800  # of the panel for names beside the icons of the modes
+_GRAPH_GAP = 8  # between the track and the speed graph
 _TRACK_RISE = 10  # the top of the keyframe track above that of the buttons
 _MODES: tuple[tuple[TimelineMode, str, str], ...] = (
     ("session", icons.ICON_FA_CLOCK_ROTATE_LEFT, "Session: look back at what was done, and continue there"),
@@ -38,7 +40,8 @@ def draw(state: AppState, scale: float, is_hidden: bool = False) -> None:
     timeline.playback.advance()
     if is_hidden:
         return
-    if widgets.side_bar("Timeline", imgui.Dir.down, _HEIGHT * scale, ImVec2(10 * scale, 8 * scale)):
+    height = _HEIGHT + (_GRAPH_GAP + speed_graph.HEIGHT) * state.view.show_speed_graph
+    if widgets.side_bar("Timeline", imgui.Dir.down, height * scale, ImVec2(10 * scale, 8 * scale)):
         _draw_content(state, scale)
     imgui.end()
 
@@ -58,9 +61,12 @@ def _draw_content(state: AppState, scale: float) -> None:
     imgui.same_line(0, 12 * scale)
     if shows_keyframes:
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - rise)
-        state.part(KeyframeTrack).draw(state, scale)
+        time_scale = state.part(KeyframeTrack).draw(state, scale)
     else:
-        state.part(SessionTrack).draw(state, scale)
+        time_scale = state.part(SessionTrack).draw(state, scale)
+    if state.view.show_speed_graph:
+        top = imgui.get_window_pos().y + (_HEIGHT - 8 + _GRAPH_GAP) * scale
+        state.part(SpeedGraph).draw(state, time_scale, top, scale)
 
 
 def _draw_mode_buttons(state: AppState, scale: float) -> None:
@@ -96,6 +102,13 @@ def _draw_playback_buttons(state: AppState, scale: float) -> None:
     if _icon_button(icons.ICON_FA_REPEAT, "loop", scale, ACCENT if playback.loop else SECONDARY):
         playback.loop = not playback.loop
     widgets.show_tooltip("Loop")
+    imgui.same_line(0, 4 * scale)
+    view = state.view
+    if _icon_button(icons.ICON_FA_CHART_LINE, "speed", scale, ACCENT if view.show_speed_graph else SECONDARY):
+        view.show_speed_graph = not view.show_speed_graph
+    widgets.show_tooltip(
+        "Speed graph: how fast pins or drawing move, and the easing of the selected interval"
+    )
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(playback.played_range[1] <= playback.played_range[0])
     if _icon_button(icons.ICON_FA_FILM, "export", scale, TEXT):

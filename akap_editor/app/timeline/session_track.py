@@ -28,8 +28,8 @@ class SessionTrack:
     def __init__(self) -> None:
         self._dragged: Literal["start", "end", "playhead"] = "playhead"
 
-    def draw(self, state: AppState, scale: float) -> None:
-        """Draw one frame. scale: points per design point."""
+    def draw(self, state: AppState, scale: float) -> TimeScale:
+        """Draw one frame and return the scale of its time. scale: points per design point."""
         playback = state.timeline.session_playback
         label = f"{playback.playhead:.1f} / {playback.duration:.1f} s"
         label_width = imgui.calc_text_size("000.0 / 000.0 s").x + 12 * scale
@@ -50,6 +50,7 @@ class SessionTrack:
         imgui.same_line(0, 12 * scale)
         imgui.align_text_to_frame_padding()
         imgui.text_colored(ImVec4(*SECONDARY), label)
+        return time_scale
 
     def _handle_mouse(
         self, playback: SessionPlayback, time_scale: TimeScale, marks_top: float, scale: float

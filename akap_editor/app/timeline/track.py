@@ -16,26 +16,26 @@ _PAN_STEP = 0.1  # of the visible part, for a notch of the wheel
 class TimeScale:
     """Converts between times in seconds and places on a track in points of the screen.
 
-    left, width: of the track; visible_range: the times that it shows.
+    left, width: of the time on the track; visible_range: the times that it shows.
     """
 
     def __init__(self, left: float, width: float, visible_range: VisibleRange) -> None:
-        self._left, self._width, self._visible_range = left, width, visible_range
+        self.left, self.width, self._visible_range = left, width, visible_range
 
     def x(self, time: float) -> float:
         """The x coordinate of a time; on an unzoomed track, times outside of it are at its ends."""
         share = (time - self._visible_range.start) / self._visible_range.seconds
         if not self._visible_range.is_zoomed:
             share = min(max(share, 0.0), 1.0)
-        return self._left + self._width * share
+        return self.left + self.width * share
 
     def seconds(self, length: float) -> float:
         """How many seconds ``length`` points of the track last."""
-        return length / self._width * self._visible_range.seconds
+        return length / self.width * self._visible_range.seconds
 
     def time(self, x: float) -> float:
         """The time at an x coordinate, 0 or later; on a zoomed track, one that it shows."""
-        share = (x - self._left) / self._width
+        share = (x - self.left) / self.width
         if self._visible_range.is_zoomed:
             share = min(max(share, 0.0), 1.0)
         return max(self._visible_range.start + share * self._visible_range.seconds, 0.0)

@@ -1,19 +1,16 @@
 """Playback and editing of the keyframes: scrub, play, select, drag, ease; and the onion skin."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from time import monotonic
 from typing import Literal
 
 import numpy as np
 
-from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
 from ..document.crossings import draw_order
-from ..document.document import Document
 from ..document.drawing import Drawing
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
-from ..document.pin import Pin
 from ..document.pin_angles import pins_fixed_at_pose
 from ..gestures import EditContext
 from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop
@@ -22,8 +19,8 @@ from ..session.session import Session
 from .auto_key import AutoKey, key_edits
 from .crossing_blend import CrossingBlend
 from .frames import Frame
-from .keyframe_poses import KeyframePoses
-from .keyframe_times import mirror_easings, mirror_times
+from .keyframe_poses import KeyframePoses, animation_crossings
+from .keyframe_times import EasingDrag, TimesDrag, mirror_easings, mirror_times
 from .playback import Playback, VisibleRange
 
 MAX_ONION_POSES = 6  # on each side
@@ -68,7 +65,7 @@ class KeyframePlayback(Playback):
         self.marked_range = self._last_update = None
         self.selected: frozenset[float] = frozenset()
         self.visible_range = VisibleRange(_MIN_TOTAL_SECONDS)
-        self._drag: tuple[dict[float, float], bool] | None = None  # old times to new ones, whether it copies
+        self._drag: TimesDrag | EasingDrag | None = None
         self._present_pose: Floats | None = None  # while the pose at the playhead is shown instead
 
     # -- state ---------------------------------------------------------------------------------------------
@@ -83,7 +80,7 @@ class KeyframePlayback(Playback):
     def animation(self) -> Animation:
         """The animation as the drag under way would leave it."""
         animation = self.stored_animation
-        return animation if self._drag is None else animation.with_moved_keyframes(*self._drag)
+        return animation if self._drag is None else self._drag.apply(animation)
 
     @property
     def duration(self) -> float:
@@ -106,15 +103,15 @@ class KeyframePlayback(Playback):
 
     @property
     def is_dragging(self) -> bool:
-        """Whether keyframes are being dragged."""
+        """Whether keyframes, or handles of their easing, are being dragged."""
         return self._drag is not None
 
     @property
     def selected_in_drag(self) -> frozenset[float]:
         """Times of the selected keyframes, as the drag under way would leave them."""
-        if self._drag is None:
+        if not isinstance(self._drag, TimesDrag):
             return self.selected
-        return frozenset(self._drag[0].get(time, time) for time in self.selected)
+        return frozenset(self._drag.moves.get(time, time) for time in self.selected)
 
     def pose(self, time: float) -> Floats | None:
         """The pose (n, 2) at a time; None without keyframes."""
@@ -322,7 +319,14 @@ class KeyframePlayback(Playback):
 
         moves: old times to new ones; copy: whether the keyframes also stay at the old times.
         """
-        self._drag = {old: _within_limits(new) for old, new in moves.items()}, copy
+        self._show_drag(TimesDrag({old: _within_limits(new) for old, new in moves.items()}, copy))
+
+    def drag_easing(self, time: float, easing: str) -> None:
+        """Show the animation with another easing after a keyframe; `drop_keyframes` makes it an edit."""
+        self._show_drag(EasingDrag(time, easing))
+
+    def _show_drag(self, drag: TimesDrag | EasingDrag) -> None:
+        self._drag = drag
         if self.is_previewing:
             self._show()
 
@@ -330,9 +334,11 @@ class KeyframePlayback(Playback):
         """End the drag: edit the animation as it is shown, or return to the one before the drag."""
         if self._drag is None:
             return
-        (moves, copy), self._drag = self._drag, None
-        if keep and any(old != new for old, new in moves.items()):
-            self._move(moves, copy)
+        drag, self._drag = self._drag, None
+        if keep and isinstance(drag, EasingDrag):
+            self._edit("Change Easing", SetEasing([drag.time], drag.easing))
+        elif keep and isinstance(drag, TimesDrag) and drag.changes_times:
+            self._move(drag.moves, drag.copy)
         elif self.is_previewing:
             self._show()
 
@@ -360,28 +366,6 @@ class KeyframePlayback(Playback):
         self._editor.apply(label, *edits)
         if self.is_previewing:
             self._show()
-
-
-def animation_crossings(
-    poses: KeyframePoses,
-    blend: CrossingBlend,
-    mesh: TriMesh,
-    pins: Sequence[Pin],
-    animation: Animation,
-    time: float,
-) -> tuple[Floats, Ints]:
-    """The pose (n, 2) of an animation at a time and its crossings (s, 2); there must be keyframes."""
-    start, end, share, pose_at = poses.moment(mesh, animation, time)
-    return blend.crossings(mesh, pins, start, end, share, pose_at)
-
-
-def animation_frame(
-    document: Document, poses: KeyframePoses, time: float, blend: CrossingBlend | None = None
-) -> Frame:
-    """The frame of a document's animation at a time; there must be keyframes."""
-    mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
-    pose, crossings = animation_crossings(poses, blend or CrossingBlend(), mesh, pins, animation, time)
-    return Frame(document.drawing, pose, draw_order(document.drawing, pins, pose, crossings))
 
 
 def _within_limits(time: float) -> float:

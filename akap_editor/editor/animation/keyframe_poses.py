@@ -1,16 +1,20 @@
 """The poses of an animation between its keyframes, by the easing of each interval."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import Floats
+from ...geometry.validation import Floats, Ints
+from ..document.crossings import draw_order
+from ..document.document import Document
 from ..document.easing import end_velocities
 from ..document.keyframes import Animation, Keyframe
-from .frames import POSE_TOLERANCE
+from ..document.pin import Pin
+from .crossing_blend import CrossingBlend
+from .frames import POSE_TOLERANCE, Frame
 from .pose_spline import Interval, PoseSpline
 
 
@@ -61,6 +65,28 @@ class KeyframePoses:
         if self._spline is None or mesh is not self._mesh:
             self._mesh, self._spline = mesh, PoseSpline(mesh)
         return self._spline
+
+
+def animation_crossings(
+    poses: KeyframePoses,
+    blend: CrossingBlend,
+    mesh: TriMesh,
+    pins: Sequence[Pin],
+    animation: Animation,
+    time: float,
+) -> tuple[Floats, Ints]:
+    """The pose (n, 2) of an animation at a time and its crossings (s, 2); there must be keyframes."""
+    start, end, share, pose_at = poses.moment(mesh, animation, time)
+    return blend.crossings(mesh, pins, start, end, share, pose_at)
+
+
+def animation_frame(
+    document: Document, poses: KeyframePoses, time: float, blend: CrossingBlend | None = None
+) -> Frame:
+    """The frame of a document's animation at a time; there must be keyframes."""
+    mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
+    pose, crossings = animation_crossings(poses, blend or CrossingBlend(), mesh, pins, animation, time)
+    return Frame(document.drawing, pose, draw_order(document.drawing, pins, pose, crossings))
 
 
 def _intervals_around(

@@ -1,10 +1,41 @@
-"""New times of keyframes that are stretched or reversed, and the easings that go with them."""
+"""New times of keyframes that are dragged, stretched or reversed, and the easings that go with them."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from ..document.easing import mirrored_easing
+from ..document.keyframes import Animation
 
 TIME_STEP = 0.05  # seconds: times snap to multiples of it, and keys move by it
+
+
+@dataclass(frozen=True)
+class TimesDrag:
+    """Keyframes that are being dragged. moves: old times to new ones; copy: whether they also stay."""
+
+    moves: dict[float, float]
+    copy: bool = False
+
+    @property
+    def changes_times(self) -> bool:
+        """Whether a keyframe gets another time."""
+        return any(old != new for old, new in self.moves.items())
+
+    def apply(self, animation: Animation) -> Animation:
+        """The animation as the drag would leave it."""
+        return animation.with_moved_keyframes(self.moves, self.copy)
+
+
+@dataclass(frozen=True)
+class EasingDrag:
+    """An easing whose handle is being dragged. time: of the keyframe before it."""
+
+    time: float
+    easing: str
+
+    def apply(self, animation: Animation) -> Animation:
+        """The animation as the drag would leave it."""
+        return animation.with_easing([self.time], self.easing)
 
 
 def stretch_times(times: Iterable[float], dragged: float, to: float) -> dict[float, float]:

@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...editor.animation.crossing_blend import CrossingBlend
-from ...editor.animation.keyframe_playback import animation_crossings
-from ...editor.animation.keyframe_poses import KeyframePoses
+from ...editor.animation.keyframe_poses import KeyframePoses, animation_crossings
 from ...editor.document.crossings import depth_order, overlaps_of
 from ...editor.document.document import Document
 from ...geometry.validation import Floats, Ints

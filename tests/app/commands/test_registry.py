@@ -216,6 +216,7 @@ CASES = {
     "Previous Keyframe": (looking_between, lambda ui: ui.state.timeline.keyframe_playback.time == 0.0),
     "Move Keyframe Earlier": (keyed, lambda ui: times(ui) == (0.0, 0.95)),
     "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
+    "Speed Graph": (nothing, lambda ui: ui.state.timeline.is_shown and ui.state.view.show_speed_graph),
     "Onion Skin": (keyed, lambda ui: ui.state.timeline.keyframe_playback.onion_skin.is_shown),
     "Open...": (nothing, lambda ui: ui.file_request is not None and not ui.file_request.saving),
     "Merge Layers": (

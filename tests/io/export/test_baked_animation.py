@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.animation.frames import Frame
-from akap_editor.editor.animation.keyframe_playback import animation_frame
-from akap_editor.editor.animation.keyframe_poses import KeyframePoses
+from akap_editor.editor.animation.keyframe_poses import KeyframePoses, animation_frame
 from akap_editor.editor.document.document import Document
 from akap_editor.editor.document.keyframes import NO_ANIMATION
 from akap_editor.io.export.baked_animation import TOLERANCE, BakedAnimation, bake_animation
