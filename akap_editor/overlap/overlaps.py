@@ -1,6 +1,5 @@
 """The overlaps of a pose, each with the decision which of its two sheets is in front."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,7 +12,7 @@ from .common_area import common_areas
 from .face_pairs import FacePairs, no_face_pairs, overlapping_faces
 from .least_cut import cut_signs, spread_signs
 from .memory import carried_signs, deciding_pairs, recalled_signs, tally
-from .rules import Rules
+from .rules import Rules, RulesSource, signs_after_drag, size_squared
 from .topology import Topology, face_centers, mesh_topology
 
 _JUMP = 0.15  # share of the mesh's length: a region that moved less far on both sheets is the same one
@@ -21,6 +20,7 @@ _NEGLIGIBLE = 1e-4  # share of the mesh's area on which decisions may be dropped
 _SEAM_TRAVEL = 2e-4  # share of the mesh's area that seams may pass over in one step
 _PULL = 50.0  # a pair turned over costs its area over this part of the mesh's length
 _GUESS = 0.3  # firmness of a sign that was inferred from a neighbor
+_TRAVEL = 3e-4  # share of size² that may turn over in one step
 _WEAK = 0.1  # firmness of signs beside a limb that is brought to the front
 NO_CROSSINGS: Ints = freeze(np.zeros((0, 2), dtype=np.int32))
 
@@ -66,9 +66,6 @@ def no_overlaps(mesh: TriMesh, crossings: Ints = NO_CROSSINGS) -> Overlaps:
     return Overlaps(no_face_pairs(len(mesh.faces)), none, none.astype(np.int64), None, crossings)
 
 
-RulesSource = Callable[[], Rules]
-
-
 def next_overlaps(
     mesh: TriMesh, pose: Floats, before: Overlaps, rules: RulesSource = Rules, other: Overlaps | None = None
 ) -> Overlaps:
@@ -91,7 +88,9 @@ def next_overlaps(
         decision.carry_over(other, mesh)
     decision.decide_new(before, rules)
     decision.part_contradictions()
-    return decision.result(before)
+    arguments = mesh, decision.pose, pairs, decision.signs, decision.known, decision.by_age(), rules
+    swept = signs_after_drag(*arguments, _TRAVEL * size_squared(mesh) - _SEAM_TRAVEL * mesh.length**2)
+    return decision.result(before, swept)
 
 
 def transferred_overlaps(
@@ -293,6 +292,10 @@ class _Decision:
             given = rules() if given is None else given
             self.signs[members] = given.sign(self.mesh, first, second, self.areas(members))
 
+    def by_age(self) -> Ints:
+        """The regions, the oldest first and of one age the largest."""
+        return np.lexsort((-np.diff(self.ends), self.ages))
+
     def part_contradictions(self) -> None:
         """Cut the regions in which two decisions have met, along the least visible seams."""
         if not self.contradictory:
@@ -321,20 +324,29 @@ class _Decision:
         hidden: Ints = covered[high]
         return hidden
 
-    def result(self, before: Overlaps) -> Overlaps:
-        """The decisions without circles, with the pairs that restore them."""
+    def result(self, before: Overlaps, swept: Ints | None = None) -> Overlaps:
+        """The decisions without circles, with the pairs that restore them.
+
+        swept: signs (p,) that are preferred if no circle arises.
+        """
         pairs, m = self.pairs, len(self.topology.faces)
-        order = np.argsort(self.ages, kind="stable")
+        order = self.by_age()
         ages = np.empty(self.count, dtype=np.int64)
         ages[order] = np.arange(self.count)
-        low, high = low_and_high(pairs.first, pairs.second, self.signs)
-        levels = before.levels
-        if levels is None or not satisfies(levels, low, high):
-            levels, placed = face_levels(m, low, high)
-            if not placed.all():
-                self.signs, levels = without_circles(
-                    m, pairs.first, pairs.second, pairs.regions, self.signs, ages, self.firm
-                )
+        for signs in (self.signs,) if swept is None else (swept, self.signs):
+            low, high = low_and_high(pairs.first, pairs.second, signs)
+            levels = before.levels
+            if levels is not None and satisfies(levels, low, high):
+                placed = np.ones(m, dtype=bool)
+            else:
+                levels, placed = face_levels(m, low, high)
+            if placed.all():
+                self.signs = signs
+                break
+        else:
+            self.signs, levels = without_circles(
+                m, pairs.first, pairs.second, pairs.regions, self.signs, ages, self.firm
+            )
         old = before.crossings
         crossings = deciding_pairs(self.topology, self.pose, pairs, self.signs, order, old)
         return Overlaps(pairs, freeze(self.signs), ages, levels, crossings)

@@ -25,6 +25,7 @@ PIN_TOLERANCE = 0.25  # pixels: a pin nearer than this to its target has arrived
 ANGLE_TOLERANCE = 0.002  # radians: a pin nearer than this to its angle has arrived
 VISIBLE_OFFSET, VISIBLE_ROTATION = 1.0, 0.05  # pixels, radians: less is not seen while the drawing moves
 SETTLED_MOTION = 0.02  # pixels: a step that moves no vertex farther has settled
+_DRAGGED_SHARE = 0.2  # of the largest distance from a target: a pin nearer to its own is not dragged itself
 MAX_SETTLING_STEPS = 400  # after the last change of a target, in case a pose never settles
 
 
@@ -236,8 +237,10 @@ class Stepper:
         targets = state.targets if share == 1.0 else pin_positions + share * (state.targets - pin_positions)
         angles = (state.angles - (1.0 - share) * errors,) if np.isfinite(errors).any() else ()
 
-        is_dragged = np.linalg.norm(state.pin_offsets(self._mesh), axis=1) > PIN_TOLERANCE
-        is_dragged |= np.nan_to_num(np.abs(errors)) > ANGLE_TOLERANCE
+        # What a drag pulls along is also off its target, but less so
+        offsets, turns = np.linalg.norm(state.pin_offsets(self._mesh), axis=1), np.nan_to_num(np.abs(errors))
+        is_dragged = offsets > max(PIN_TOLERANCE, _DRAGGED_SHARE * offsets.max(initial=0.0))
+        is_dragged |= turns > max(ANGLE_TOLERANCE, _DRAGGED_SHARE * turns.max(initial=0.0))
         dragged_ids = {pin.id for pin, dragged in zip(state.pins, is_dragged, strict=True) if dragged}
 
         def step() -> StepResult:
