@@ -1,6 +1,6 @@
 """Functions that edit an open session, each in one gesture: one entry of the history."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any, Protocol, TypeVar
 
@@ -17,6 +17,7 @@ from .session.edits import (
     AddPose,
     DeletePose,
     Edit,
+    KeyLayers,
     OrderLayers,
     OrderLimb,
     ResetPose,
@@ -28,6 +29,7 @@ from .session.edits import (
     SetRestPose,
     SetSettings,
     SetTargets,
+    ShowGroup,
 )
 from .session.history import HistoryEntry
 from .session.session import Session
@@ -236,6 +238,17 @@ def move_layer(editor: EditContext, layer: int, place: int) -> None:
         order = [number for number in editor.session.drawing.layer_order if number != layer]
         order.insert(place, layer)
         editor.apply("Reorder Layers", OrderLayers(order))
+
+
+def show_group(editor: EditContext, path: Sequence[str], visible: bool) -> None:
+    """Open or close the eye of a group of layers, see `ShowGroup`. Raises InputError."""
+    editor.apply("Show Group" if visible else "Hide Group", ShowGroup(tuple(path), visible))
+
+
+def key_layers(editor: EditContext, layers: Iterable[int], visible: bool) -> None:
+    """Show or hide layers in all keyframes, too, see `KeyLayers`. Raises InputError."""
+    label = "Show in All Keyframes" if visible else "Hide in All Keyframes"
+    editor.apply(label, KeyLayers(tuple(layers), visible))
 
 
 def set_joints(editor: EditContext, label: str, joints: Iterable[Joint]) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..display_text import display_text
+from ..errors import InputError
 from ..geometry.validation import Ints, as_choice, as_number, as_picture, as_switch, freeze
 from .composite import composite
 from .layered_picture import BLEND_MODES, MAX_NAME, Layer, LayeredPicture
@@ -40,7 +41,9 @@ class DrawingLayer:
 
     name, groups: as in the file that it comes from, the outermost group first; opacity: 0 to 1; blend: one of
     `BLEND_MODES`; visible: whether its eye is open; solo: whether only this one and other such layers are
-    shown; locked: whether clicks go through it. Raises InputError on other values.
+    shown; locked: whether clicks go through it; slot: name of the slot that it is in, of whose layers one is
+    shown (see `layer_view`), empty for none; closed_groups: indices of its groups whose eye is closed, which
+    hides it. Raises InputError on other values.
     """
 
     artwork: Artwork
@@ -51,6 +54,8 @@ class DrawingLayer:
     visible: bool = True
     solo: bool = False
     locked: bool = False
+    slot: str = ""
+    closed_groups: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", display_text(self.name)[:MAX_NAME])
@@ -58,6 +63,11 @@ class DrawingLayer:
         object.__setattr__(self, "groups", groups)
         object.__setattr__(self, "opacity", as_number(self.opacity, "opacity", 0, 1))
         as_choice(self.blend, "blend", BLEND_MODES)
+        object.__setattr__(self, "slot", display_text(self.slot)[:MAX_NAME])
+        closed = tuple(sorted(set(self.closed_groups)))
+        if any(type(index) is not int or not 0 <= index < len(groups) for index in closed):
+            raise InputError(f"closed_groups: expected indices of {len(groups)} groups, got {closed!r:.60}")
+        object.__setattr__(self, "closed_groups", closed)
         for name in ("visible", "solo", "locked"):
             object.__setattr__(self, name, as_switch(getattr(self, name), name))
 
@@ -68,9 +78,13 @@ class DrawingLayer:
 
 
 def shown_layers(layers: Sequence[DrawingLayer]) -> NDArray[np.bool_]:
-    """Whether each layer is shown, (l,): by its eye, and if others are solo, only if it is, too."""
+    """Whether each layer is shown, (l,).
+
+    By its eye and those of its groups; and if there are solo layers, only if it is one of them.
+    """
     any_solo = any(layer.solo for layer in layers)
-    return np.array([layer.visible and (layer.solo or not any_solo) for layer in layers], dtype=bool)
+    shown = (layer.visible and not layer.closed_groups and (layer.solo or not any_solo) for layer in layers)
+    return np.array(list(shown), dtype=bool)
 
 
 def stacked_faces(

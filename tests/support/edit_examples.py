@@ -14,6 +14,7 @@ from akap_editor.editor.session.edits import (
     DeleteKeyframes,
     DeletePose,
     Edit,
+    KeyLayers,
     MoveKeyframes,
     OrderLayers,
     OrderLimb,
@@ -29,6 +30,7 @@ from akap_editor.editor.session.edits import (
     SetJoints,
     SetKeyframe,
     SetLayers,
+    SetLayerView,
     SetLoop,
     SetPins,
     SetPose,
@@ -36,8 +38,10 @@ from akap_editor.editor.session.edits import (
     SetSettings,
     SetStiffness,
     SetTargets,
+    ShowGroup,
 )
 from akap_editor.editor.session.session import Session
+from akap_editor.layers.layer_view import LayerView
 from akap_editor.layers.layered_picture import Layer, LayeredPicture
 
 
@@ -65,12 +69,20 @@ def _painted_anew(drawing: Drawing) -> LayeredPicture:
     return LayeredPicture(drawing.size, (Layer(drawing.name, image),))
 
 
+def _mirrored_view(drawing: Drawing) -> LayerView:
+    """The other layers visible, in the reverse order."""
+    shown = tuple(not layer.visible for layer in drawing.layers)
+    return LayerView(shown, tuple(reversed(drawing.layer_order)))
+
+
 def _first_pose(session: Session) -> str:
     return next((pose.name for pose in session.state.poses), "no pose")
 
 
 # An edit for the current state of a session. It may be refused by InputError, for example without poses.
-LAYER_EDITS = frozenset({"layers", "layer-order", "joints"})  # which need a drawing in layers
+LAYER_EDITS = frozenset(
+    {"layers", "layer-order", "layer-view", "key-layers", "group", "joints"}
+)  # which need a drawing in layers
 EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "pins": _pins,
     "targets": lambda session: SetTargets({pin.id: (90.0, 65.0) for pin in session.state.pins[-1:]}),
@@ -86,6 +98,9 @@ EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "limb": lambda session: OrderLimb([pin.id for pin in session.state.pins[-1:]], False),
     "crossings": lambda session: SetCrossings(np.array([[3, 1]], dtype=np.int32)),
     "layers": lambda session: SetLayers([0], "trunk", 0.5, False, True, True),
+    "layer-view": lambda session: SetLayerView(_mirrored_view(session.drawing)),
+    "key-layers": lambda session: KeyLayers([0], False),
+    "group": lambda session: ShowGroup(["head"], False),
     "joints": _joints,
     "layer-order": lambda session: OrderLayers(list(reversed(session.drawing.layer_order))),
     "keep": lambda session: AddPose("wave"),

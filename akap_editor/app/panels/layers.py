@@ -1,26 +1,27 @@
 """The Layers section: the layers of the drawing from front to back, with their switches."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
-import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
-from PIL import Image
 
 from ...editor import gestures
-from ...io.images import Picture
 from ...layers.drawing_layer import DrawingLayer, shown_layers
+from ...layers.layer_view import slot_members, unused_slot_name
 from .. import widgets
 from ..app_state import AppState
 from ..commands.command import context_menu_pressed
 from ..pending_values import NameField
-from ..theme import ACCENT, FRAME, HOVER, SECONDARY, TEXT, packed
+from ..theme import SECONDARY, TEXT, packed
+from .rig.layer_thumbnails import THUMBNAIL_SIDE, draw_thumbnail
+from .rig.slots import SlotPickers, switch_to
 
 LAYER_PAYLOAD = "LAYER"  # of drag and drop: the number of a layer
 _ROWS = 8  # layers that are visible at once
-_SIDE = 26  # of a thumbnail, in design points
 _ICON_WIDTH = 1.7  # times the font size
 _LABEL_WIDTH = 4.6  # times the font size
+_INDENT = 0.9  # of what is in a group, times the font size
 
 
 def layer_count(state: AppState) -> str:
@@ -41,12 +42,15 @@ def draw(state: AppState, scale: float) -> None:
 class LayerList:
     """The list; a double click on a name, or F2, renames the layer there.
 
-    The selected layer is `ViewOptions.selected_layer`. A click on the canvas that selects a pin selects the
-    pin's layer, too.
+    The selected layer is `ViewOptions.selected_layer`; Ctrl-click and Shift-click select more of them for the
+    menu. A click on the canvas that selects a pin selects the pin's layer, too.
     """
 
     def __init__(self) -> None:
         self._name_field = NameField()
+        self._slot_pickers = SlotPickers()
+        self._more: set[int] = set()  # layers that are selected beside the one
+        self._folded: set[tuple[str, ...]] = set()  # groups whose layers are not listed
         self._pin: int | None = None  # the one that chose the layer
 
     def draw(self, state: AppState, scale: float) -> None:
@@ -55,12 +59,21 @@ class LayerList:
         drawing = state.document.drawing
         self._follow_pins(state)
         shown = shown_layers(drawing.layers)
-        step = _SIDE * scale + imgui.get_style().item_spacing.y
-        imgui.begin_child("##layers", ImVec2(0, min(len(shown), _ROWS) * step), widgets.NAV_FLATTENED)
-        for place in range(len(shown) - 1, -1, -1):
+        step = THUMBNAIL_SIDE * scale + imgui.get_style().item_spacing.y
+        rows = list(_rows(drawing.layers, drawing.layer_order))
+        imgui.begin_child("##layers", ImVec2(0, min(len(rows), _ROWS) * step), widgets.NAV_FLATTENED)
+        for index, (path, place) in enumerate(rows):
+            if any(path[:depth] in self._folded for depth in range(1, len(path) + (place is not None))):
+                continue
+            if place is None:
+                self._draw_group(state, index, path, scale)
+                continue
             number = drawing.layer_order[place]
+            imgui.indent(max(_INDENT * imgui.get_font_size() * len(path), 0.01))
             self._draw_row(state, number, place, bool(shown[number]), scale)
+            imgui.unindent(max(_INDENT * imgui.get_font_size() * len(path), 0.01))
         imgui.end_child()
+        self._slot_pickers.draw(state, scale)
         selected = selected_layer(state)
         imgui.begin_disabled(selected is None)
         _draw_opacity(state, drawing.layers, selected)
@@ -76,18 +89,44 @@ class LayerList:
             if pin in faces and state.document is not None:
                 state.view.selected_layer = int(state.document.drawing.face_layers[faces[pin]])
 
+    def _draw_group(self, state: AppState, index: int, path: tuple[str, ...], scale: float) -> None:
+        """Draw the row of a group: its eye, and its name, a click on which folds it."""
+        assert state.document is not None
+        layers = state.document.drawing.layers
+        first = next(layer for layer in layers if layer.groups[: len(path)] == path)
+        is_open = len(path) - 1 not in first.closed_groups
+        font_size, side = imgui.get_font_size(), round(THUMBNAIL_SIDE * scale)
+        top, left = imgui.get_cursor_pos_y(), imgui.get_cursor_pos_x()
+        indent = left + _INDENT * font_size * (len(path) - 1)
+        middle = top + (side - imgui.get_text_line_height()) / 2
+        imgui.set_cursor_pos(ImVec2(indent, middle))
+        eye = icons.ICON_FA_EYE if is_open else icons.ICON_FA_EYE_SLASH
+        if widgets.icon_switch(eye, f"eye of group {index}", is_open, "Show or hide the group", _ICON_WIDTH):
+            state.notice = ""
+            state.run_reporting_errors(lambda: gestures.show_group(state.editor, path, not is_open))
+        imgui.set_cursor_pos(ImVec2(indent + _ICON_WIDTH * font_size, top))
+        corner, is_folded = imgui.get_cursor_screen_pos(), path in self._folded
+        room = imgui.get_content_region_avail().x
+        if imgui.selectable(f"###group {index}", False, size=ImVec2(room, side))[0]:
+            self._folded ^= {path}
+        widgets.show_tooltip(" / ".join(path))
+        icon = icons.ICON_FA_FOLDER if is_folded else icons.ICON_FA_FOLDER_OPEN
+        text = widgets.shortened(f"{icon}  {path[-1]}", room)
+        place = ImVec2(corner.x + 0.3 * font_size, corner.y + middle - top)
+        imgui.get_window_draw_list().add_text(place, packed(TEXT if is_open else SECONDARY), text)
+        imgui.set_cursor_pos(ImVec2(left, top + side + imgui.get_style().item_spacing.y))
+        imgui.dummy(ImVec2(0, 0))
+        imgui.set_cursor_pos(ImVec2(left, top + side + imgui.get_style().item_spacing.y))
+
     def _draw_row(self, state: AppState, number: int, place: int, shown: bool, scale: float) -> None:
         assert state.document is not None
         layer = state.document.drawing.layers[number]
         font_size, top = imgui.get_font_size(), imgui.get_cursor_pos_y()
         left, room = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
-        side = round(_SIDE * scale)
+        side = round(THUMBNAIL_SIDE * scale)
         middle = top + (side - imgui.get_text_line_height()) / 2
         imgui.set_cursor_pos_y(middle)
-        eye = icons.ICON_FA_EYE if layer.visible else icons.ICON_FA_EYE_SLASH
-        if widgets.icon_switch(eye, f"eye {number}", layer.visible, "Show or hide", _ICON_WIDTH):
-            label = "Hide Layer" if layer.visible else "Show Layer"
-            _set(state, label, number, visible=not layer.visible)
+        _draw_eye(state, layer, number)
         imgui.set_cursor_pos(ImVec2(left + _ICON_WIDTH * font_size, top))
         corner = imgui.get_cursor_screen_pos()
         name_left = left + _ICON_WIDTH * font_size + side + 0.5 * font_size
@@ -104,7 +143,7 @@ class LayerList:
             text = ImVec2(corner.x + side + 0.5 * font_size, corner.y + middle - top)
             label = widgets.shortened(layer.name, name_width)
             imgui.get_window_draw_list().add_text(text, packed(color), label)
-        _draw_thumbnail(state, layer, corner, side, scale)
+        draw_thumbnail(state, layer, corner, side, scale, layer.solo)
         imgui.set_cursor_pos(ImVec2(left + room - 2 * _ICON_WIDTH * font_size, middle))
         if widgets.icon_switch(
             icons.ICON_FA_STAR,
@@ -127,16 +166,17 @@ class LayerList:
     def _draw_name(self, state: AppState, layer: DrawingLayer, number: int, place: int, size: ImVec2) -> None:
         """Draw the part of a row that is clicked, dragged and has a menu."""
         flags = imgui.SelectableFlags_.allow_double_click
-        is_selected = selected_layer(state) == number
+        is_selected = selected_layer(state) == number or number in self._more
         if imgui.selectable(f"###layer {number}", is_selected, flags, size)[0]:
-            state.view.selected_layer = number
+            self._select(state, number)
             if imgui.is_mouse_double_clicked(0):
                 self._name_field.begin(number)
         is_at = imgui.is_item_hovered() or imgui.is_item_focused()
         if is_at and imgui.is_key_pressed(imgui.Key.f2, False):
             self._name_field.begin(number)
         widgets.show_tooltip(
-            f"{' / '.join(layer.path)}: drag to change the order, double-click or F2 to rename"
+            f"{' / '.join(layer.path)}: drag to change the order, double-click or F2 to rename, "
+            "Ctrl-click to select more"
         )
         _drag_and_drop(state, number, place)
         if imgui.is_item_focused() and context_menu_pressed():
@@ -160,6 +200,93 @@ class LayerList:
         ):
             if imgui.menu_item(label, "", False, possible)[0]:
                 _move(state, number, new_place)
+        chosen = self._chosen(state, number)
+        _draw_slot_items(state, chosen)
+        if state.document.state.animation.keyframes:
+            imgui.separator()
+            for label, visible in (("Show in All Keyframes", True), ("Hide in All Keyframes", False)):
+                if imgui.menu_item(label, "", False)[0]:
+                    _run(state, partial(gestures.key_layers, state.editor, chosen, visible))
+
+    def _select(self, state: AppState, number: int) -> None:
+        """Select a layer; with Ctrl one more or one less, with Shift all up to it."""
+        assert state.document is not None
+        selected, order = selected_layer(state), state.document.drawing.layer_order
+        keys = imgui.get_io()
+        if keys.key_ctrl and selected is not None and selected != number:
+            self._more ^= {number}
+            return
+        if keys.key_shift and selected is not None:
+            low, high = sorted((order.index(selected), order.index(number)))
+            self._more = set(order[low : high + 1]) - {selected}
+            return
+        self._more = set()
+        state.view.selected_layer = number
+
+    def _chosen(self, state: AppState, number: int) -> list[int]:
+        """The layers that the menu of a layer is for: all selected ones if it is one of them."""
+        selected = selected_layer(state)
+        all_selected = self._more | ({selected} if selected is not None else set())
+        return sorted(all_selected) if number in all_selected else [number]
+
+
+def _rows(
+    layers: Sequence[DrawingLayer], order: Sequence[int]
+) -> Iterator[tuple[tuple[str, ...], int | None]]:
+    """The rows of the list from front to back.
+
+    The path of a group and None, or the groups of a layer and its place among the layers.
+    """
+    open_path: tuple[str, ...] = ()
+    for place in range(len(order) - 1, -1, -1):
+        groups = layers[order[place]].groups
+        common = 0
+        while common < min(len(groups), len(open_path)) and groups[common] == open_path[common]:
+            common += 1
+        for depth in range(common + 1, len(groups) + 1):
+            yield groups[:depth], None
+        open_path = groups
+        yield groups, place
+
+
+def _draw_eye(state: AppState, layer: DrawingLayer, number: int) -> None:
+    """Draw the eye of a layer; in a slot a dot that chooses it."""
+    if layer.slot:
+        icon = icons.ICON_FA_CIRCLE_DOT if layer.visible else icons.ICON_FA_CIRCLE
+        tooltip = f"Show it in place of the other layers of “{layer.slot}”"
+    else:
+        icon = icons.ICON_FA_EYE if layer.visible else icons.ICON_FA_EYE_SLASH
+        tooltip = "Show or hide"
+    if widgets.icon_switch(icon, f"eye {number}", layer.visible, tooltip, _ICON_WIDTH):
+        if layer.slot and not layer.visible:
+            switch_to(state, number)
+        else:
+            label = "Hide Layer" if layer.visible else "Show Layer"
+            _set(state, label, number, visible=not layer.visible)
+
+
+def _draw_slot_items(state: AppState, chosen: list[int]) -> None:
+    """Draw the items of a menu that put layers into slots and take them out."""
+    assert state.document is not None
+    layers = state.document.drawing.layers
+    imgui.separator()
+
+    def put(label: str, slot: str) -> None:
+        _run(state, lambda: gestures.set_layers(state.editor, label, chosen, slot=slot))
+
+    if imgui.menu_item("Make Switch Layers", "", False, len(chosen) > 1)[0]:
+        put("Make Switch Layers", unused_slot_name(layers, chosen))
+    widgets.show_tooltip("One of the selected layers is shown at a time. Ctrl-click selects several.")
+    for slot in slot_members(layers):
+        name = widgets.as_label(slot)
+        if (
+            any(layers[number].slot != slot for number in chosen)
+            and imgui.menu_item(f"Add to “{name}”", "", False)[0]
+        ):
+            put("Add to Switch Layers", slot)
+    slots = {layers[number].slot for number in chosen} - {""}
+    if slots and imgui.menu_item("Remove from Switch Layers", "", False)[0]:
+        put("Remove from Switch Layers", "")
 
 
 def selected_layer(state: AppState) -> int | None:
@@ -170,15 +297,16 @@ def selected_layer(state: AppState) -> int | None:
 
 
 def _set(state: AppState, label: str, number: int, join: bool = False, **values: object) -> None:
-    state.notice = ""
-    state.run_reporting_errors(
-        lambda: gestures.set_layers(state.editor, label, [number], join=join, **values)
-    )
+    _run(state, lambda: gestures.set_layers(state.editor, label, [number], join=join, **values))
 
 
 def _move(state: AppState, number: int, place: int) -> None:
+    _run(state, lambda: gestures.move_layer(state.editor, number, place))
+
+
+def _run(state: AppState, work: Callable[[], None]) -> None:
     state.notice = ""
-    state.run_reporting_errors(lambda: gestures.move_layer(state.editor, number, place))
+    state.run_reporting_errors(work)
 
 
 def _drag_and_drop(state: AppState, number: int, place: int) -> None:
@@ -204,24 +332,3 @@ def _draw_opacity(state: AppState, layers: Sequence[DrawingLayer], selected: int
     if is_moved and selected is not None:
         opacity = round(percent) / 100
         _set(state, "Change Layer Opacity", selected, join=not begins, opacity=opacity)
-
-
-def _draw_thumbnail(state: AppState, layer: DrawingLayer, corner: ImVec2, side: int, scale: float) -> None:
-    """Draw the picture of a layer in a square."""
-    draw, end = imgui.get_window_draw_list(), ImVec2(corner.x + side, corner.y + side)
-    is_hovered = imgui.is_mouse_hovering_rect(corner, end)
-    draw.add_rect_filled(corner, end, packed(HOVER if is_hovered else FRAME), 4 * scale)
-    if layer.solo:
-        draw.add_rect(corner, end, packed(ACCENT), 4 * scale)
-    pixels = side - 4
-    if imgui.is_rect_visible(corner, end):
-        state.thumbnails.draw((layer.artwork, pixels), corner, side, lambda: _small(layer, pixels))
-
-
-def _small(layer: DrawingLayer, pixels: int) -> Picture:
-    """The picture of a layer, at most ``pixels`` wide and high."""
-    picture = layer.artwork.picture
-    step = 1 + max(picture.shape[:2]) // (8 * pixels)
-    image = Image.fromarray(np.ascontiguousarray(picture[::step, ::step]))
-    image.thumbnail((pixels, pixels))
-    return np.asarray(image)

@@ -1,12 +1,19 @@
 """Auto-key: each pose that a gesture leaves becomes a keyframe at the playhead."""
 
 from ...geometry.validation import Floats, Ints
+from ...layers.layer_view import LayerView
 from ..document.easing import NEW_EASING
 from ..document.keyframes import Animation, as_keyframe_time
 from ..gestures import EditContext
 from ..session.edits import SetEasing, SetKeyframe
 from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
+
+_Seen = tuple[Floats, LayerView | None]  # a pose (n, 2), and what is shown of the layers
+
+
+def _seen(session: Session) -> _Seen:
+    return session.present.positions, session.present_document.drawing.layer_view
 
 
 class AutoKey:
@@ -23,7 +30,7 @@ class AutoKey:
         """Disregard what has been done so far; to be called while the keyframes are not shown."""
         self._session: Session | None = None
         self._commits = 0
-        self._positions: Floats | None = None  # those of the last keyframe, or of the last time without one
+        self._seen: _Seen | None = None  # at the last keyframe, or at the last time without one
         self._pending: tuple[float, int] | None = None  # time of a keyframe to make, and depth of the history
 
     def update(self, editor: EditContext, time: float) -> bool:
@@ -39,7 +46,7 @@ class AutoKey:
         if not is_active or session is not self._session:
             self.forget()
             self._session, self._commits = session, session.history.commits
-            self._positions = session.present.positions
+            self._seen = _seen(session)
             return False
         due = self._due_time(session, time)
         self.is_armed = self.is_armed and self._pending is not None
@@ -63,21 +70,26 @@ class AutoKey:
         if self._pending is not None and history.depth < self._pending[1]:
             self._pending = None  # it was undone before it had settled
         if self._pending is None:
-            self._positions = session.present.positions
+            self._seen = _seen(session)
             return None
         if session.is_moving and not session.is_previewing:
             return None
         (due, _), self._pending = self._pending, None
-        is_changed = session.present.positions is not self._positions
-        self._positions = session.present.positions
+        seen = _seen(session)
+        is_changed = self._seen is None or seen[0] is not self._seen[0] or seen[1] != self._seen[1]
+        self._seen = seen
         return due if is_changed else None
 
 
 def key_edits(
-    animation: Animation, time: float, positions: Floats | None = None, crossings: Ints | None = None
+    animation: Animation,
+    time: float,
+    positions: Floats | None = None,
+    crossings: Ints | None = None,
+    layers: LayerView | None = None,
 ) -> list[KeyframeEdit]:
-    """The edits that make a keyframe of a pose (n, 2), by default the present one."""
-    key = SetKeyframe(time, positions, None, crossings)
+    """The edits that make a keyframe of a pose (n, 2) and a layer list, by default the present ones."""
+    key = SetKeyframe(time, positions, None, crossings, layers)
     if not animation.keyframes and animation.ease != NEW_EASING:
         return [SetEasing(None, NEW_EASING), key]
     return [key]

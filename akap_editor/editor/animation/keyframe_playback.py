@@ -138,15 +138,19 @@ class KeyframePlayback(Playback):
         session, pose = self._editor.session, self.pose(time)
         assert session is not None
         assert pose is not None, "expected keyframes"
-        return session.drawing, pose
+        return self._drawing(session, time), pose
+
+    def _drawing(self, session: Session, time: float) -> Drawing:
+        """The drawing with the layers that are visible at a time."""
+        return self._poses.drawing(session.present_document.drawing, self.animation, time)
 
     def frame(self, time: float) -> Frame:
         """The frame at a time; there must be keyframes."""
         session, pose = self._editor.session, self._pose_and_crossings(time)
         assert session is not None
         assert pose is not None, "expected keyframes"
-        order = draw_order(session.drawing, session.present.pins, *pose)
-        return Frame(session.drawing, pose[0], order)
+        drawing = self._drawing(session, time)
+        return Frame(drawing, pose[0], draw_order(drawing, session.present.pins, *pose))
 
     def onion_poses(self) -> tuple[list[Floats], list[Floats]]:
         """The poses of the onion skin before and after the playhead, the nearest ones first."""
@@ -201,7 +205,9 @@ class KeyframePlayback(Playback):
         session = self._editor.session
         if session is None or not self.animation.keyframes or self.is_previewing:
             return False
-        pose = self.pose(self.time)
+        pose, drawing = self.pose(self.time), session.drawing
+        if self._drawing(session, self.time) is not drawing:
+            return True
         return pose is not None and not np.array_equal(pose, session.state.positions)
 
     def scrub(self, time: float) -> None:
@@ -220,7 +226,14 @@ class KeyframePlayback(Playback):
         present = session.present
         self._present_pose = present.positions
         pins = pins_fixed_at_pose(session.drawing.mesh, present.pins, pose[0])
-        shown = replace(present, positions=pose[0], crossings=pose[1], pins=pins)
+        drawing, current = self._drawing(session, self.time), session.present_document.drawing
+        shown = replace(
+            present,
+            positions=pose[0],
+            crossings=pose[1],
+            pins=pins,
+            drawing=present.drawing if drawing is current else drawing,
+        )
         session.preview(shown, takes_pose=True)
 
     def show_present(self) -> None:
@@ -255,10 +268,11 @@ class KeyframePlayback(Playback):
         if session is None or self._editor.is_busy:
             return
         time = as_keyframe_time(self.time if time is None else time)
+        layers = session.drawing.layer_view
         if positions is None and self.is_previewing:
             positions, crossings = session.state.positions, session.state.crossings
         label = "Update Keyframe" if time in self.animation.times else "Add Keyframe"
-        self._edit(label, *key_edits(self.animation, time, positions, crossings))
+        self._edit(label, *key_edits(self.animation, time, positions, crossings, layers))
         self.selected, self.time = frozenset({time}), time
 
     def delete_keyframes(self) -> None:

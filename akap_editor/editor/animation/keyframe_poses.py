@@ -8,8 +8,10 @@ import numpy as np
 from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
+from ...layers.layer_view import LayerView
 from ..document.crossings import draw_order
 from ..document.document import Document
+from ..document.drawing import Drawing
 from ..document.easing import end_velocities
 from ..document.keyframes import Animation, Keyframe
 from ..document.pin import Pin
@@ -43,6 +45,17 @@ class KeyframePoses:
         self._interpolation = InterpolationCache()
         self._mesh: TriMesh | None = None
         self._spline: PoseSpline | None = None
+        self._drawing: Drawing | None = None
+        self._views: dict[LayerView | None, Drawing] = {}  # of the drawing
+
+    def drawing(self, drawing: Drawing, animation: Animation, time: float) -> Drawing:
+        """The drawing with the layers that are visible at a time; the same object for the same ones."""
+        if drawing is not self._drawing:
+            self._drawing, self._views = drawing, {}
+        view = animation.layer_view_at(time) if drawing.layers else None
+        if view not in self._views:
+            self._views[view] = drawing.with_layer_view(view)
+        return self._views[view]
 
     def moment(self, mesh: TriMesh, animation: Animation, time: float) -> Moment:
         """The moment of an animation of a mesh at a time in seconds; there must be keyframes."""
@@ -86,7 +99,8 @@ def animation_frame(
     """The frame of a document's animation at a time; there must be keyframes."""
     mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
     pose, crossings = animation_crossings(poses, blend or CrossingBlend(), mesh, pins, animation, time)
-    return Frame(document.drawing, pose, draw_order(document.drawing, pins, pose, crossings))
+    drawing = poses.drawing(document.drawing, animation, time)
+    return Frame(drawing, pose, draw_order(drawing, pins, pose, crossings))
 
 
 def _intervals_around(

@@ -13,6 +13,7 @@ from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.validation import Floats, Ints, as_channel, as_instance, as_picture, as_points, freeze
 from ...layers.atlas import pack
 from ...layers.drawing_layer import Artwork, DrawingLayer
+from ...layers.layer_view import LayerView
 from ...layers.layered_picture import Layer, LayeredPicture
 from ...layers.merging import movable_layers
 from ...meshing.background import remove_background
@@ -104,6 +105,28 @@ class Drawing:
     def is_opaque(self) -> bool:
         """Whether no pixel of the picture is transparent; the mesh then covers its whole rectangle."""
         return bool((self.image[..., 3] == 255).all())
+
+    @property
+    def layer_view(self) -> LayerView | None:
+        """Which layers are visible, and their order; None without layers."""
+        if not self.layers:
+            return None
+        return LayerView(tuple(layer.visible for layer in self.layers), self.layer_order)
+
+    def with_layer_view(self, view: LayerView | None) -> "Drawing":
+        """This drawing with other layers visible, in another order; itself for None or its own view.
+
+        Raises InputError on a view of other layers.
+        """
+        if view is None or view == self.layer_view:
+            return self
+        if not view.fits(len(self.layers)):
+            raise InputError(f"layers: expected a view of {len(self.layers)} layers, got {view!r:.60}")
+        layers = (
+            layer if layer.visible is visible else replace(layer, visible=visible)
+            for layer, visible in zip(self.layers, view.visible, strict=True)
+        )
+        return replace(self, layers=tuple(layers), layer_order=view.order)
 
     @property
     def size(self) -> tuple[int, int]:

@@ -6,6 +6,7 @@ from typing import Any
 
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints, as_number
+from ...layers.layer_view import LayerView
 from .crossings import as_crossings, no_crossings
 from .easing import check_keyframe_easing, keyframe_easing_function
 from .named_poses import as_pose
@@ -19,14 +20,16 @@ class Keyframe:
     """A pose (n, 2) float64, in pixels, at a time in seconds.
 
     ease: the easing from here to the next keyframe, see `easing.check_keyframe_easing`; None for that of
-    the animation. crossings: which part passes in front, (s, 2), see `EditState`. Raises InputError on a time
-    or easing out of range.
+    the animation. crossings: which part passes in front, (s, 2), see `EditState`. layers: which layers are
+    visible from here on, and their order; None leaves them as they are. Raises InputError on a time or easing
+    out of range.
     """
 
     time: float
     positions: Floats
     ease: str | None = None
     crossings: Ints = field(default_factory=no_crossings)
+    layers: LayerView | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", as_keyframe_time(self.time))
@@ -86,6 +89,23 @@ class Animation:
         start, end = self.keyframes[later - 1 : later + 1]
         ease = keyframe_easing_function(self.easing_after(start))
         return start, end, ease((time - start.time) / (end.time - start.time))
+
+    def layer_view_at(self, time: float) -> LayerView | None:
+        """The layers that are visible at a time, and their order: a step at each keyframe, never blended.
+
+        Before the first keyframe that has some, those of that one. None if no keyframe has any.
+        """
+        views = [(each.time, each.layers) for each in self.keyframes if each.layers is not None]
+        past = [view for start, view in views if start <= time]
+        return past[-1] if past else views[0][1] if views else None
+
+    def map_layers(self, change: Callable[[LayerView], LayerView]) -> "Animation":
+        """Replace the layers of each keyframe that has some by ``change(layers)``."""
+        keyframes = (
+            each if each.layers is None else replace(each, layers=change(each.layers))
+            for each in self.keyframes
+        )
+        return replace(self, keyframes=tuple(keyframes))
 
     def with_keyframe(self, keyframe: Keyframe) -> "Animation":
         """Add a keyframe; replaces one at the same time, and keeps its easing unless it has its own."""

@@ -12,6 +12,7 @@ from ...geometry.validation import Floats, Ints
 from ...layers.atlas import pack
 from ...layers.composite import composite
 from ...layers.drawing_layer import Artwork, DrawingLayer
+from ...layers.layer_view import LayerView
 from ...layers.layered_picture import Layer, LayeredPicture
 from ...layers.merging import movable_layers
 from ...meshing.layer_mesh import mesh_layers
@@ -119,6 +120,16 @@ def _order(old_order: Sequence[int], old_of: Sequence[int]) -> tuple[int, ...]:
     return tuple(order)
 
 
+def _reloaded_view(view: LayerView, reloaded: Drawing, origins: LayerOrigins) -> LayerView:
+    """What a keyframe holds of the layer list, for the layers of the reloaded artwork."""
+    old_of: list[int] = origins.layers.tolist()
+    visible = (
+        view.visible[old] if old >= 0 else layer.visible
+        for old, layer in zip(old_of, reloaded.layers, strict=True)
+    )
+    return LayerView(tuple(visible), _order(view.order, old_of))
+
+
 def with_artwork(state: EditState, drawing: Drawing, artwork: LayeredPicture) -> EditState:
     """A state with the artwork of another picture in place of the drawing's.
 
@@ -127,7 +138,9 @@ def with_artwork(state: EditState, drawing: Drawing, artwork: LayeredPicture) ->
     """
     if drawing.layers:
         reloaded, origins = reload_layers(drawing, artwork)
-        return transfer_state(state, drawing.mesh, reloaded, origins)
+        transferred = transfer_state(state, drawing.mesh, reloaded, origins)
+        animation = transferred.animation.map_layers(lambda view: _reloaded_view(view, reloaded, origins))
+        return replace(transferred, animation=animation)
     check_lies_on_picture(drawing)
     meshing = drawing.meshing or Meshing()
     image = composite(artwork)

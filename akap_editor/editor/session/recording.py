@@ -107,7 +107,8 @@ def opening_edits(document: Document) -> list[Edit]:
         edits.append(SetCrossings(state.crossings))
     edits += [AddPose(pose.name, pose.positions, pose.crossings) for pose in state.poses]
     edits += [
-        SetKeyframe(key.time, key.positions, key.ease, key.crossings) for key in state.animation.keyframes
+        SetKeyframe(key.time, key.positions, key.ease, key.crossings, key.layers)
+        for key in state.animation.keyframes
     ]
     if state.animation.ease != Animation.ease:
         edits.append(SetEasing(None, state.animation.ease))

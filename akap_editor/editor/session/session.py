@@ -17,7 +17,7 @@ from ..document.crossings import crossings_in_pose
 from ..document.document import Document, EditState
 from ..document.drawing import Drawing
 from ..document.pin_angles import pin_angles
-from .edits import Edit, Effect, SetPins, SetPose
+from .edits import Edit, Effect, SetLayerView, SetPins, SetPose
 from .event_log import EventLog
 from .history import History
 from .recording import Recording, drawing_header, opening_edits
@@ -267,6 +267,9 @@ class Session:
         self._stepper.reset_full_turns()
         self._record("begin", label=label)
         if preview is not None and preview.takes_pose:
+            view = (preview.shown.drawing or self._opened_drawing).layer_view
+            if view is not None:
+                self.apply(SetLayerView(view))
             self.apply(SetPose(preview.shown.positions, preview.shown.crossings))
             self._taken_pose = self.state
 

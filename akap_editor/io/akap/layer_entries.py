@@ -12,6 +12,7 @@ from ...editor.document.rig.joint import MAX_JOINTS, Joint
 from ...errors import InputError, error_context
 from ...geometry.validation import MAX_COORDINATE, Ints, freeze
 from ...layers.drawing_layer import Artwork, DrawingLayer
+from ...layers.layer_view import LayerView
 from ..images import decode_image, encode_png
 from .archive import Archive, ArchiveEntry
 from .json_records import Json, numbers, optional, require
@@ -57,6 +58,8 @@ def _describe(layer: DrawingLayer, vertices: int) -> Json:
         "visible": layer.visible,
         "solo": layer.solo,
         "locked": layer.locked,
+        **({"slot": layer.slot} if layer.slot else {}),
+        **({"closedGroups": list(layer.closed_groups)} if layer.closed_groups else {}),
     }
 
 
@@ -128,6 +131,8 @@ def _read_layer(record: Json, artwork: Artwork) -> DrawingLayer:
         optional(record, "visible", bool, True),
         optional(record, "solo", bool, False),
         optional(record, "locked", bool, False),
+        optional(record, "slot", str, ""),
+        tuple(optional(record, "closedGroups", list, [])),
     )
 
 
@@ -146,6 +151,29 @@ def _pair(record: Json, name: str) -> tuple[int, int]:
     if len(values) != 2 or any(type(v) is not int or abs(v) > MAX_COORDINATE for v in values):
         raise InputError(f"{name}: expected two whole numbers of pixels, got {reprlib.repr(values)}")
     return values[0], values[1]
+
+
+def write_layer_view(view: LayerView | None) -> Json:
+    """The entry of a keyframe for what is visible of the layers, and their order; empty if there is none."""
+    if view is None:
+        return {}
+    visible = [number for number, on in enumerate(view.visible) if on]
+    return {"layers": {"visible": visible, "order": list(view.order)}}
+
+
+def read_layer_view(record: Json) -> LayerView | None:
+    """What `write_layer_view` wrote, None if absent. Raises InputError on values of other kinds."""
+    if "layers" not in record:
+        return None
+    value = require(record, "layers", dict)
+    visible, order = require(value, "visible", list), require(value, "order", list)
+    count = len(order)
+    if count > MAX_LAYERS or any(type(number) is not int for number in [*visible, *order]):
+        raise InputError(f"expected numbers of at most {MAX_LAYERS} layers, got {reprlib.repr(value)}")
+    if sorted(order) != list(range(count)) or any(not 0 <= number < count for number in visible):
+        raise InputError(f"expected each layer once in the order, got {reprlib.repr(order)}")
+    shown = set(visible)
+    return LayerView(tuple(number in shown for number in range(count)), tuple(order))
 
 
 def read_joints(record: Json) -> tuple[Joint, ...]:

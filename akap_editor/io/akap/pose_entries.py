@@ -9,6 +9,7 @@ from ...errors import InputError, error_context
 from ...geometry.validation import Floats, freeze
 from .archive import Archive, ArchiveEntry
 from .json_records import Json, numbers, optional, parse_record, require
+from .layer_entries import read_layer_view, write_layer_view
 from .state_records import read_crossings, write_crossings
 
 POSES_INDEX, KEYFRAMES_INDEX = "poses.json", "animation.json"
@@ -94,6 +95,7 @@ def keyframe_entries(animation: Animation) -> list[ArchiveEntry]:
             "pose": poses[id(key.positions)][0],
             **({} if key.ease is None else {"ease": key.ease}),
             **write_crossings(key.crossings),
+            **write_layer_view(key.layers),
         }
         for key in animation.keyframes
     ]
@@ -135,7 +137,7 @@ def _read_keyframe(record: Json, poses: list[Floats]) -> Keyframe:
     if not 0 <= number < len(poses):
         raise InputError(f"expected a pose below {len(poses)}, got {number}")
     ease = require(record, "ease", str) if "ease" in record else None
-    return Keyframe(float(time), poses[number], ease, read_crossings(record))
+    return Keyframe(float(time), poses[number], ease, read_crossings(record), read_layer_view(record))
 
 
 # -- arrays --------------------------------------------------------------------------------------------------

@@ -154,6 +154,11 @@ def _check(document: Document) -> None:
     of_poses = [pose.crossings for pose in state.poses]
     for crossings in [*of_poses, *(keyframe.crossings for keyframe in state.animation.keyframes)]:
         check_crossings(crossings, len(mesh.faces))
+    count = len(document.drawing.layers)
+    for keyframe in state.animation.keyframes:
+        if keyframe.layers is not None and not keyframe.layers.fits(count):
+            actual = len(keyframe.layers.order)
+            raise InputError(f"keyframes: expected {count} layers in each, got {actual}")
 
 
 def _check_meshing(meshing: Meshing) -> None:

@@ -9,6 +9,7 @@ from ...editor.animation.crossing_blend import CrossingBlend
 from ...editor.animation.keyframe_poses import KeyframePoses, animation_crossings
 from ...editor.document.crossings import depth_order, overlaps_of
 from ...editor.document.document import Document
+from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
 from ...layers.drawing_layer import stacked_faces
 from ...overlap.circles import face_levels
@@ -24,13 +25,15 @@ _INSTANT = 0.001  # seconds before a keyframe, at which a pose that is held stil
 class DrawingOrder:
     """An order in which faces are drawn, and when.
 
-    order: (m,) the faces from back to front; low, high: (p,) pairs of faces that it keeps in order; spans:
-    from when until when it is shown, in seconds.
+    order: (q,) the faces from back to front, without those of hidden layers; low, high: (p,) pairs of faces
+    that it keeps in order; layer_order: the layers from back to front; spans: from when until when it is
+    shown, in seconds.
     """
 
     order: Ints
     low: Ints
     high: Ints
+    layer_order: tuple[int, ...] = ()
     spans: list[tuple[float, float]] = field(default_factory=list)
 
 
@@ -50,7 +53,7 @@ def bake_animation(document: Document) -> BakedAnimation | None:
     """The keyframes of a document; None if there are fewer than two.
 
     Poses are kept where straight lines between the others would be off by more than `TOLERANCE`, and at each
-    keyframe. One order serves as long as its pairs are in no circle.
+    keyframe. One order serves as long as its pairs are in no circle and the same layers are shown.
     """
     drawing, state = document.drawing, document.state
     mesh, animation = drawing.mesh, state.animation
@@ -62,7 +65,8 @@ def bake_animation(document: Document) -> BakedAnimation | None:
     numbers = []
     for time in times:
         pose, crossings = animation_crossings(interpolation, blend, mesh, state.pins, animation, time)
-        numbers.append(collected.number_for(*overlaps_of(mesh, state.pins, pose, crossings).low_and_high))
+        pairs = overlaps_of(mesh, state.pins, pose, crossings).low_and_high
+        numbers.append(collected.number_for(interpolation.drawing(drawing, animation, time), *pairs))
         poses.append(pose)
     orders = collected.orders()
     starts = [k for k, number in enumerate(numbers) if k == 0 or number != numbers[k - 1]]
@@ -78,7 +82,7 @@ def _sample_times(document: Document) -> list[float]:
     count = max(2, int(min(_RATE * animation.duration, most)))
     times = {0.0, *np.linspace(0, animation.duration, count + 1).round(4).tolist(), *animation.times}
     for start, end in zip(animation.keyframes, animation.keyframes[1:], strict=False):
-        if animation.easing_after(start) == "hold":
+        if animation.easing_after(start) == "hold" or start.layers != end.layers:
             times.add(max(start.time, end.time - _INSTANT))
     return sorted(times)
 
@@ -110,7 +114,6 @@ class _Orders:
 
     def __init__(self, document: Document) -> None:
         mesh, state = document.drawing.mesh, document.state
-        self._drawing = document.drawing
         self._count = len(mesh.faces)
         depths = depth_order(mesh, state.pins)
         self._rank = np.arange(self._count)
@@ -118,30 +121,36 @@ class _Orders:
             self._rank[depths] = np.arange(self._count)
         overlaps = overlaps_of(mesh, state.pins, state.positions, state.crossings)
         self._pairs = [np.unique(self._codes(*overlaps.low_and_high))]  # of each order
+        self._drawings = [document.drawing]  # with the layers that each order shows
 
-    def number_for(self, low: Ints, high: Ints) -> int:
-        """The number of an order that keeps these pairs, too: the last one if it can, else another one."""
+    def number_for(self, drawing: Drawing, low: Ints, high: Ints) -> int:
+        """The number of an order that keeps these pairs, too: the last one if it can, else another one.
+
+        drawing: with the layers that are to be visible.
+        """
         codes = np.unique(self._codes(low, high))
         for number in reversed(range(len(self._pairs))):
+            if self._drawings[number].layer_view != drawing.layer_view:
+                continue
             joint = np.union1d(self._pairs[number], codes)
             if len(joint) == len(self._pairs[number]) or self._is_possible(joint):
                 self._pairs[number] = joint
                 return number
         self._pairs.append(codes)
+        self._drawings.append(drawing)
         return len(self._pairs) - 1
 
     def orders(self) -> list[DrawingOrder]:
         """All orders."""
         result = []
-        for codes in self._pairs:
+        for codes, drawing in zip(self._pairs, self._drawings, strict=True):
             low, high = self._low_and_high(codes)
             levels, _ = face_levels(self._count, low, high)
             order: Ints = np.lexsort((self._rank, levels))
-            if self._drawing.layers:
-                layers, layer_order = self._drawing.layers, self._drawing.layer_order
-                stacked = stacked_faces(order, self._drawing.face_layers, layers, layer_order)
+            if drawing.layers:
+                stacked = stacked_faces(order, drawing.face_layers, drawing.layers, drawing.layer_order)
                 order = order if stacked is None else stacked
-            result.append(DrawingOrder(order, low, high))
+            result.append(DrawingOrder(order, low, high, drawing.layer_order))
         return result
 
     def _codes(self, low: Ints, high: Ints) -> Ints:

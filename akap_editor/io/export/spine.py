@@ -1,7 +1,7 @@
 """Exports Spine skeletons in its JSON format, https://esotericsoftware.com/spine-json-format."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Hashable, Sequence
 from typing import Any
 
 import numpy as np
@@ -34,32 +34,31 @@ def encode_spine(
     several slots where it passes both behind and in front of another one. Slots are named after their layers,
     and hidden layers are left out. The setup pose is the rest pose, the animation "pose" holds ``positions``
     (n, 2) as a deform key. order: see `Document.draw_order`. baked: keyframes, which are the animation
-    "keyframes"; where they need several orders, there are slots for each of these, and no faces are cut along
-    seams.
+    "keyframes"; where they need several orders, there are slots for each of these, which share what they can,
+    and no faces are cut along seams.
     """
     texture = texture_name(stem)
     region = texture.removesuffix(".png")
     drawn = drawn_faces(drawing, positions, order if baked is None else None)
     rest, mesh = y_up(drawing, drawn.rest), drawing.mesh
     if baked is None:
-        orders = [DrawingOrder(np.arange(len(drawn.faces)), *drawn.low_and_high)]
+        orders = [DrawingOrder(np.arange(len(drawn.faces)), *drawn.low_and_high, drawing.layer_order)]
     else:
         orders = baked.orders
     parts = {number: _Part(mesh, drawn, number) for number in np.unique(drawn.components).tolist()}
     slots: list[dict[str, str]] = []
     attachments, slot_parts = {}, []  # by slot
-    slots_of_orders: list[list[str]] = []
+    runs_of_orders = [_layered_runs(drawing, drawn, each) for each in orders]
+    slots_of_orders: list[list[str]] = [[] for _ in orders]
     slot_names = _SlotNames()
-    for number, each in enumerate(orders):
-        runs = _layered_runs(drawing, drawn, each)
-        names = [slot_names.next(_title(drawing, drawn, faces)) for _, faces in runs]
-        for name, (component, faces) in zip(names, runs, strict=True):
-            shown = {"attachment": name} if number == 0 else {}
-            slots.append({"name": name, "bone": "root", **shown})
-            part = parts[component]
-            slot_parts.append(part)
-            attachments[name] = {name: _attachment(drawing, drawn, part, faces, region)}
-        slots_of_orders.append(names)
+    for (component, faces), numbers in _shared_runs(runs_of_orders):
+        name = slot_names.next(_title(drawing, drawn, faces))
+        shown = {"attachment": name} if 0 in numbers else {}
+        slots.append({"name": name, "bone": "root", **shown})
+        slot_parts.append(parts[component])
+        attachments[name] = {name: _attachment(drawing, drawn, parts[component], faces, region)}
+        for number in numbers:
+            slots_of_orders[number].append(name)
     part_of = dict(zip(attachments, slot_parts, strict=True))
     offsets = _Offsets(drawing, rest, part_of)
     animations = {
@@ -130,21 +129,34 @@ def _animation(
     """The animation of keyframes: deform keys; the slots of an order have attachments while it is shown."""
     switches: dict[str, Any] = {}
     deform: dict[str, Any] = {}
-    for number, (names, order) in enumerate(zip(slots_of_orders, baked.orders, strict=True)):
-        deform |= offsets.timelines(names, _keys_in_spans(baked, order.spans))
-        if len(baked.orders) == 1:
-            continue
+    spans_of: dict[str, list[tuple[float, float]]] = {}
+    for names, order in zip(slots_of_orders, baked.orders, strict=True):
         for name in names:
-            keys: list[dict[str, Any]] = (
-                [] if number and order.spans and order.spans[0][0] == 0 else [{"name": None}]
-            )
-            for start, end in order.spans:
-                keys += [{"time": start, "name": name}, {"time": end, "name": None}]
-            if order.spans and order.spans[-1][1] == baked.times[-1]:
-                keys.pop()  # it stays at the end
-            switches[name] = {"attachment": _without_doubles(keys)}
+            spans_of.setdefault(name, []).extend(order.spans)
+    for name, spans in spans_of.items():
+        spans = _joined(spans)
+        deform |= offsets.timelines([name], _keys_in_spans(baked, spans))
+        if name in slots_of_orders[0] and spans == [(baked.times[0], baked.times[-1])]:
+            continue
+        keys: list[dict[str, Any]] = [{"name": None}]
+        for start, end in spans:
+            keys += [{"time": start, "name": name}, {"time": end, "name": None}]
+        if spans and spans[-1][1] == baked.times[-1]:
+            keys.pop()  # it stays at the end
+        switches[name] = {"attachment": _without_doubles(keys)}
     slots = {"slots": switches} if switches else {}
     return {**slots, "attachments": {"default": deform}}
+
+
+def _joined(spans: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Spans of time in order, those that meet as one."""
+    result: list[tuple[float, float]] = []
+    for start, end in sorted(spans):
+        if result and start <= result[-1][1]:
+            result[-1] = result[-1][0], max(end, result[-1][1])
+        else:
+            result.append((start, end))
+    return result
 
 
 def _without_doubles(keys: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -161,6 +173,36 @@ def _keys_in_spans(baked: BakedAnimation, spans: Sequence[tuple[float, float]]) 
         last = min(k for k, time in enumerate(times) if time >= end)
         needed |= set(range(first, last + 1))
     return [(times[k], baked.poses[k]) for k in sorted(needed)] or [(0.0, baked.poses[0])]
+
+
+_Run = tuple[int, Ints]  # a component and some of its faces, from back to front
+
+
+def _shared_runs(runs_of_orders: Sequence[Sequence[_Run]]) -> list[tuple[_Run, list[int]]]:
+    """The runs of several orders from back to front, each with the numbers of the orders that have it.
+
+    Orders share runs, for example all layers that stay when others are switched, unless these follow one
+    another differently.
+    """
+    stacks: list[dict[tuple[int, bytes], tuple[_Run, list[int]]]] = []
+    for number, runs in enumerate(runs_of_orders):
+        own = {(component, faces.tobytes()): (component, faces) for component, faces in runs}
+        index = next((k for k, stack in enumerate(stacks) if _follow_alike(stack, own)), len(stacks))
+        stack = stacks[index] if index < len(stacks) else {}
+        left, merged = list(stack), {}
+        for key, run in own.items():
+            while key in stack and left[0] != key:
+                merged[left[0]] = stack[left.pop(0)]
+            earlier = stack[left.pop(0)][1] if key in stack else []
+            merged[key] = (run, [*earlier, number])
+        merged |= {key: stack[key] for key in left}
+        stacks[index:] = [merged, *stacks[index + 1 :]]
+    return [each for stack in stacks for each in stack.values()]
+
+
+def _follow_alike(first: Collection[Hashable], second: Collection[Hashable]) -> bool:
+    """Whether what two sequences have in common follows one another in the same order."""
+    return [key for key in first if key in second] == [key for key in second if key in first]
 
 
 class _SlotNames:
@@ -184,7 +226,7 @@ def _layered_runs(drawing: Drawing, drawn: DrawnFaces, order: DrawingOrder) -> l
         return component_runs(drawn.components, order.order, order.low, order.high)
     runs: list[tuple[int, Ints]] = []
     layers = drawn.layers
-    for layer in drawing.layer_order:
+    for layer in order.layer_order:
         faces = order.order[layers[order.order] == layer]
         if not len(faces):
             continue

@@ -3,7 +3,7 @@
 from .crossings import OrderLimb, SetCrossings
 from .edit import Edit, Effect, ReplayTarget
 from .keyframes import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
-from .layers import OrderLayers, SetJoints, SetLayers
+from .layers import KeyLayers, OrderLayers, SetJoints, SetLayers, SetLayerView, ShowGroup
 from .method import PaintStiffness, SetSettings, SetStiffness
 from .named_poses import AddPose, DeletePose, RenamePose, ReorderPoses
 from .pins import SetAngles, SetPins, SetTargets
@@ -16,7 +16,7 @@ EDITS: dict[str, type[Edit]] = {
         *(SetSettings, SetStiffness, PaintStiffness),
         *(SetPose, ResetPose, SetRestPose, Remesh, ReloadArtwork),
         *(OrderLimb, SetCrossings),
-        *(SetLayers, OrderLayers, SetJoints),
+        *(SetLayers, OrderLayers, SetLayerView, KeyLayers, ShowGroup, SetJoints),
         *(AddPose, DeletePose, RenamePose, ReorderPoses),
         *(SetKeyframe, DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop),
     )
@@ -29,6 +29,7 @@ __all__ = [
     "DeletePose",
     "Edit",
     "Effect",
+    "KeyLayers",
     "MoveKeyframes",
     "OrderLayers",
     "OrderLimb",
@@ -44,6 +45,7 @@ __all__ = [
     "SetEasing",
     "SetJoints",
     "SetKeyframe",
+    "SetLayerView",
     "SetLayers",
     "SetLoop",
     "SetPins",
@@ -52,4 +54,5 @@ __all__ = [
     "SetSettings",
     "SetStiffness",
     "SetTargets",
+    "ShowGroup",
 ]

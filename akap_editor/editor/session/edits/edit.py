@@ -10,6 +10,7 @@ import numpy as np
 from ....errors import InputError
 from ....geometry.mesh import TriMesh
 from ....geometry.validation import Floats, Ints, as_points
+from ....layers.layer_view import LayerView
 from ...document.crossings import as_crossings, crossings_in_pose
 from ...document.document import EditState
 from ...document.drawing import Drawing
@@ -107,6 +108,25 @@ def crossings_to_json(crossings: Any) -> Json:
 def crossings_from_json(event: Json) -> Ints | None:
     """The optional crossings (s, 2) of an event, None if absent. Raises InputError."""
     return as_crossings(event["crossings"]) if "crossings" in event else None
+
+
+def layer_view_to_json(view: LayerView) -> Json:
+    """Which layers are visible, and their order, as a value of an event."""
+    return {"visible": [number for number, on in enumerate(view.visible) if on], "order": [*view.order]}
+
+
+def layer_view_from_json(value: Json) -> LayerView:
+    """The value that `layer_view_to_json` made. Raises InputError."""
+    visible, order = value["visible"], value["order"]
+    count = len(order)
+    for name, numbers in (("visible", visible), ("order", order)):
+        if any(type(number) is not int or not 0 <= number < count for number in numbers):
+            raise InputError(f"{name}: expected numbers of {count} layers, got {numbers!r:.60}")
+    chosen = set(visible)
+    view = LayerView(tuple(number in chosen for number in range(count)), tuple(order))
+    if not view.fits(count):
+        raise InputError(f"order: expected each of {count} layers once, got {order!r:.60}")
+    return view
 
 
 def pose_and_crossings(

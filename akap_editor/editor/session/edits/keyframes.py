@@ -8,6 +8,7 @@ from typing import Self
 from numpy.typing import ArrayLike
 
 from ....errors import InputError
+from ....layers.layer_view import LayerView
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.keyframes import Animation, Keyframe, as_keyframe_time
@@ -17,6 +18,8 @@ from .edit import (
     ReplayTarget,
     crossings_from_json,
     crossings_to_json,
+    layer_view_from_json,
+    layer_view_to_json,
     pose_and_crossings,
     positions_from_json,
     positions_to_json,
@@ -39,7 +42,8 @@ class SetKeyframe(KeyframeEdit):
     """Make a keyframe of a pose (n, 2), by default the current one, at a time in seconds.
 
     Replaces a keyframe at this time. ease: see `easing.check_keyframe_easing`; None keeps the easing of a
-    replaced keyframe. crossings: which part passes in front in ``positions``, see `EditState`.
+    replaced keyframe. crossings: which part passes in front in ``positions``, see `EditState`. layers: which
+    are visible from here on, and their order, by default the current ones.
     """
 
     name = "key"
@@ -49,20 +53,26 @@ class SetKeyframe(KeyframeEdit):
     positions: ArrayLike | None = None
     ease: str | None = None
     crossings: ArrayLike | None = None
+    layers: LayerView | None = None
 
     def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
         positions, crossings = pose_and_crossings(self.positions, self.crossings, state, drawing)
-        return animation.with_keyframe(Keyframe(self.time, positions, self.ease, crossings))
+        layers = drawing.layer_view
+        if self.layers is not None:
+            layers = drawing.with_layer_view(self.layers).layer_view
+        return animation.with_keyframe(Keyframe(self.time, positions, self.ease, crossings, layers))
 
     def to_json(self, drawing: Drawing) -> Json:
         ease = {} if self.ease is None else {"ease": self.ease}
         pose = {**positions_to_json(self.positions), **crossings_to_json(self.crossings)}
-        return {"time": self.time, **ease, **pose}
+        layers = {} if self.layers is None else {"layers": layer_view_to_json(self.layers)}
+        return {"time": self.time, **ease, **pose, **layers}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         positions = positions_from_json(event, target, drawing)
-        return cls(event["time"], positions, event.get("ease"), crossings_from_json(event))
+        layers = layer_view_from_json(event["layers"]) if "layers" in event else None
+        return cls(event["time"], positions, event.get("ease"), crossings_from_json(event), layers)
 
 
 @dataclass(frozen=True)

@@ -8,20 +8,24 @@ from ....display_text import display_text
 from ....errors import InputError
 from ....geometry.validation import as_number, as_points, as_switch
 from ....layers.drawing_layer import DrawingLayer
+from ....layers.layer_view import LayerView, view_with_one_shown, with_one_shown
 from ....layers.layered_picture import MAX_NAME
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.rig.joint import Joint, check_joints, make_joint
-from .edit import Edit, Effect, Json, ReplayTarget
+from .edit import Edit, Effect, Json, ReplayTarget, layer_view_from_json, layer_view_to_json
 
 _SWITCHES = ("visible", "solo", "locked")
+_VALUES = ("title", "opacity", *_SWITCHES, "slot")
 
 
 @dataclass(frozen=True)
 class SetLayers(Edit):
-    """Change layers: name, opacity, visible, solo, locked; None leaves a value as it is.
+    """Change layers: name, opacity, visible, solo, locked, slot; None leaves a value as it is.
 
-    layers: their numbers in `Drawing.layers`. No vertex moves.
+    layers: their numbers in `Drawing.layers`; slot: the name of the slot that they are put into, empty for
+    none. Of each slot at most one layer stays visible, also in keyframes: the one that is made so, or the
+    foremost. No vertex moves.
     """
 
     name = "layers"
@@ -33,6 +37,7 @@ class SetLayers(Edit):
     visible: bool | None = None
     solo: bool | None = None
     locked: bool | None = None
+    slot: str | None = None
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         count = len(drawing.layers)
@@ -43,9 +48,13 @@ class SetLayers(Edit):
         layers = tuple(
             self._changed(layer) if number in chosen else layer for number, layer in enumerate(drawing.layers)
         )
+        layers = with_one_shown(layers, drawing.layer_order, chosen if self.visible else ())
         if all(a is b for a, b in zip(layers, drawing.layers, strict=True)):
             return state
-        return replace(state, drawing=replace(drawing, layers=layers))
+        animation = state.animation
+        if self.slot:
+            animation = animation.map_layers(lambda view: view_with_one_shown(view, layers))
+        return replace(state, drawing=replace(drawing, layers=layers), animation=animation)
 
     def _changed(self, layer: DrawingLayer) -> DrawingLayer:
         values: Json = {
@@ -57,25 +66,111 @@ class SetLayers(Edit):
             values["opacity"] = as_number(self.opacity, "opacity", 0, 1)
         if self.title is not None:
             values["name"] = _as_title(self.title)
+        if self.slot is not None:
+            values["slot"] = _as_title(self.slot) if self.slot else ""
         if all(getattr(layer, name) == value for name, value in values.items()):
             return layer
         return replace(layer, **values)
 
     def to_json(self, drawing: Drawing) -> Json:
-        names = ("title", "opacity", *_SWITCHES)
-        given = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+        given = {name: getattr(self, name) for name in _VALUES if getattr(self, name) is not None}
         return {"layers": list(self.layers), **given}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
-        names = ("title", "opacity", *_SWITCHES)
-        return cls(tuple(event["layers"]), **{name: event[name] for name in names if name in event})
+        return cls(tuple(event["layers"]), **{name: event[name] for name in _VALUES if name in event})
 
 
 def _as_title(value: object) -> str:
     if not isinstance(value, str) or not 0 < len(value.strip()) <= MAX_NAME:
         raise InputError(f"name: expected a name of 1 to {MAX_NAME} characters, got {value!r:.60}")
     return display_text(value.strip())
+
+
+@dataclass(frozen=True)
+class ShowGroup(Edit):
+    """Open or close the eye of a group of layers; those of its layers stay. No vertex moves.
+
+    path: the names of the groups from the outermost one to this one.
+    """
+
+    name = "group"
+    fields = ("path", "visible")
+
+    path: Sequence[str]
+    visible: bool
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        path, visible = tuple(self.path), as_switch(self.visible, "visible")
+        index = len(path) - 1
+        if index < 0 or not any(layer.groups[: len(path)] == path for layer in drawing.layers):
+            raise InputError(f"group: expected the names of one around layers, got {list(path)!r:.60}")
+
+        def changed(layer: DrawingLayer) -> DrawingLayer:
+            if layer.groups[: len(path)] != path or (index not in layer.closed_groups) is visible:
+                return layer
+            closed = set(layer.closed_groups) ^ {index}
+            return replace(layer, closed_groups=tuple(closed))
+
+        layers = tuple(map(changed, drawing.layers))
+        if all(a is b for a, b in zip(layers, drawing.layers, strict=True)):
+            return state
+        return replace(state, drawing=replace(drawing, layers=layers))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"path": list(self.path), "visible": self.visible}
+
+
+@dataclass(frozen=True)
+class SetLayerView(Edit):
+    """Set which layers are visible, and their order, for example those of a keyframe. No vertex moves."""
+
+    name = "layer-view"
+    fields = ("view",)
+
+    view: LayerView
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        changed = drawing.with_layer_view(self.view)
+        return state if changed is drawing else replace(state, drawing=changed)
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"view": layer_view_to_json(self.view)}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls(layer_view_from_json(event["view"]))
+
+
+@dataclass(frozen=True)
+class KeyLayers(Edit):
+    """Make layers visible or invisible in all keyframes, too. No vertex moves.
+
+    layers: their numbers. Of each slot at most one layer stays visible.
+    """
+
+    name = "key-layers"
+    fields = ("layers", "visible")
+
+    layers: Sequence[int]
+    visible: bool
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        state = SetLayers(self.layers, visible=self.visible).apply(state, drawing)
+        layers, chosen = drawing.layers, set(self.layers)
+
+        def changed(view: LayerView) -> LayerView:
+            seen = [
+                replace(layer, visible=self.visible if number in chosen else on)
+                for number, (layer, on) in enumerate(zip(layers, view.visible, strict=True))
+            ]
+            seen = list(with_one_shown(seen, view.order, chosen if self.visible else ()))
+            return replace(view, visible=tuple(layer.visible for layer in seen))
+
+        return replace(state, animation=state.animation.map_layers(changed))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"layers": list(self.layers), "visible": self.visible}
 
 
 @dataclass(frozen=True)
