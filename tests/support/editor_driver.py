@@ -47,7 +47,7 @@ def bits(state: EditState) -> tuple[Any, ...]:
     stiffness = None if state.stiffness is None else state.stiffness.tobytes()
     poses = tuple((pose.name, pose.positions.tobytes(), pose.crossings.tobytes()) for pose in state.poses)
     keyframes = tuple(
-        (key.time, key.positions.tobytes(), key.ease, key.crossings.tobytes())
+        (key.time, key.positions.tobytes(), key.ease, key.crossings.tobytes(), key.layers)
         for key in state.animation.keyframes
     )
     animation = keyframes, state.animation.ease, state.animation.loop
@@ -60,7 +60,7 @@ def bits(state: EditState) -> tuple[Any, ...]:
 
 
 def _layer_bits(layer: DrawingLayer) -> tuple[Any, ...]:
-    switches = layer.visible, layer.solo, layer.locked
+    switches = layer.visible, layer.solo, layer.locked, layer.slot, layer.closed_groups
     return layer.path, layer.opacity, layer.blend, switches, layer.artwork.picture.tobytes()
 
 

@@ -250,13 +250,9 @@ def _rows(
 
 
 def _draw_eye(state: AppState, layer: DrawingLayer, number: int) -> None:
-    """Draw the eye of a layer; in a slot a dot that chooses it."""
-    if layer.slot:
-        icon = icons.ICON_FA_CIRCLE_DOT if layer.visible else icons.ICON_FA_CIRCLE
-        tooltip = f"Show it in place of the other layers of “{layer.slot}”"
-    else:
-        icon = icons.ICON_FA_EYE if layer.visible else icons.ICON_FA_EYE_SLASH
-        tooltip = "Show or hide"
+    """Draw the eye of a layer; to open that of one in a slot closes those of the others."""
+    icon = icons.ICON_FA_EYE if layer.visible else icons.ICON_FA_EYE_SLASH
+    tooltip = f"Show it in place of the others of “{layer.slot}”" if layer.slot else "Show or hide"
     if widgets.icon_switch(icon, f"eye {number}", layer.visible, tooltip, _ICON_WIDTH):
         if layer.slot and not layer.visible:
             switch_to(state, number)

@@ -67,6 +67,7 @@ class KeyframePlayback(Playback):
         self.visible_range = VisibleRange(_MIN_TOTAL_SECONDS)
         self._drag: TimesDrag | EasingDrag | None = None
         self._present_pose: Floats | None = None  # while the pose at the playhead is shown instead
+        self._present_drawing: Drawing | None = None
 
     # -- state ---------------------------------------------------------------------------------------------
 
@@ -186,7 +187,8 @@ class KeyframePlayback(Playback):
             self.visible_range.fit(max(_MIN_TOTAL_SECONDS, 1.2 * self.duration, self.time))
         if self._present_pose is None or session.is_previewing or session.history.is_open:
             return
-        if session.state.positions is self._present_pose:  # an edit ended the preview and kept the pose
+        kept_layers = session.drawing is self._present_drawing
+        if session.state.positions is self._present_pose and kept_layers:  # an edit of something else
             self._show()
         else:
             self._present_pose = self._last_update = None
@@ -224,7 +226,7 @@ class KeyframePlayback(Playback):
             self.show_present()
             return
         present = session.present
-        self._present_pose = present.positions
+        self._present_pose, self._present_drawing = present.positions, session.present_document.drawing
         pins = pins_fixed_at_pose(session.drawing.mesh, present.pins, pose[0])
         drawing, current = self._drawing(session, self.time), session.present_document.drawing
         shown = replace(

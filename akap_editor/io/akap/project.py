@@ -156,7 +156,7 @@ def _check(document: Document) -> None:
         check_crossings(crossings, len(mesh.faces))
     count = len(document.drawing.layers)
     for keyframe in state.animation.keyframes:
-        if keyframe.layers is not None and not keyframe.layers.fits(count):
+        if count and keyframe.layers is not None and not keyframe.layers.fits(count):
             actual = len(keyframe.layers.order)
             raise InputError(f"keyframes: expected {count} layers in each, got {actual}")
 

@@ -133,6 +133,8 @@ def _animation(
     for names, order in zip(slots_of_orders, baked.orders, strict=True):
         for name in names:
             spans_of.setdefault(name, []).extend(order.spans)
+    starts = [max((start for start, _ in order.spans), default=-1.0) for order in baked.orders]
+    last = starts.index(max(starts))  # the order at the end
     for name, spans in spans_of.items():
         spans = _joined(spans)
         deform |= offsets.timelines([name], _keys_in_spans(baked, spans))
@@ -141,7 +143,7 @@ def _animation(
         keys: list[dict[str, Any]] = [{"name": None}]
         for start, end in spans:
             keys += [{"time": start, "name": name}, {"time": end, "name": None}]
-        if spans and spans[-1][1] == baked.times[-1]:
+        if name in slots_of_orders[last]:
             keys.pop()  # it stays at the end
         switches[name] = {"attachment": _without_doubles(keys)}
     slots = {"slots": switches} if switches else {}
@@ -192,7 +194,8 @@ def _shared_runs(runs_of_orders: Sequence[Sequence[_Run]]) -> list[tuple[_Run, l
         left, merged = list(stack), {}
         for key, run in own.items():
             while key in stack and left[0] != key:
-                merged[left[0]] = stack[left.pop(0)]
+                passed = left.pop(0)
+                merged[passed] = stack[passed]
             earlier = stack[left.pop(0)][1] if key in stack else []
             merged[key] = (run, [*earlier, number])
         merged |= {key: stack[key] for key in left}

@@ -60,6 +60,38 @@ def test_a_hidden_layer_is_gone_on_the_canvas(layered):
     assert layered.state.view.selected_layer == BODY
 
 
+def test_layers_that_are_made_switch_layers_are_chosen_by_their_pictures(layered):
+    def select_second(hand):
+        hand.key_down(imgui.Key.mod_ctrl)
+        hand.item_click(row(ARM, "layer"))
+        hand.key_up(imgui.Key.mod_ctrl)
+        hand.item_click(row(ARM, "layer"), imgui.MouseButton_.right)
+        hand.yield_(3)
+        hand.item_click("**/Make Switch Layers")
+
+    click(layered, BODY, "layer", select_second)
+    assert labels(layered)[-1] == "Make Switch Layers"
+    assert [layer(layered, each).visible for each in (BODY, ARM)] == [False, True]
+    layered.do(lambda hand: hand.item_click(f"//Panel/**/choose {BODY}"))
+    assert [layer(layered, each).visible for each in (BODY, ARM)] == [True, False]
+    assert labels(layered)[-1] == "Switch Layer"
+    layered.session.undo()
+    assert [layer(layered, each).visible for each in (BODY, ARM)] == [False, True]
+
+
+def test_the_eye_of_a_group_hides_its_layers(layered):
+    shown = layered.screenshot()
+    layered.do(lambda hand: hand.item_click("//Panel/**/###eye of group 0"))
+    assert labels(layered)[-1] == "Hide Group"
+    assert layer(layered, SKULL).visible
+    assert (layered.screenshot() != shown).any()
+    layered.session.undo()
+    layered.do(lambda hand: hand.item_click("//Panel/**/###group 0"))  # folds it
+    found = []
+    layered.do(lambda hand: found.append(hand.item_exists(row(SKULL, "layer"))))
+    assert found == [False]
+
+
 def test_a_double_click_or_f2_renames_a_layer(layered):
     def type_name(hand):
         hand.key_chars_replace_enter("trunk")

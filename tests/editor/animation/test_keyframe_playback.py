@@ -7,10 +7,8 @@ import pytest
 
 from akap_editor.deform.pose_interpolation import InterpolationCache
 from akap_editor.editor import gestures
-from akap_editor.editor.animation.keyframe_playback import (
-    KeyframePlayback,
-    animation_frame,
-)
+from akap_editor.editor.animation.keyframe_frames import animation_frame
+from akap_editor.editor.animation.keyframe_playback import KeyframePlayback
 from akap_editor.editor.animation.keyframe_poses import KeyframePoses
 from akap_editor.editor.animation.keyframe_times import mirror_easings, stretch_times
 from akap_editor.editor.document.document import new_document
@@ -20,6 +18,7 @@ from akap_editor.editor.document.rest_pose import with_pose_as_rest
 from akap_editor.editor.session.edits import Remesh
 from akap_editor.editor.session.session import Session
 from tests.support.editor_driver import Driver, bits, replayed_state
+from tests.support.puppets import BODY, HAT, SKULL, puppet
 
 END = (105.0, 40.0)
 
@@ -260,3 +259,67 @@ def test_a_document_with_poses_and_keyframes_is_recorded_from_its_start(playback
     playback.set_default_easing("out")
     opened = Session(new_document(drawing).with_state(pinned.session.present))
     assert bits(replayed_state(opened.recording, drawing)) == bits(opened.state)
+
+
+@pytest.fixture
+def switched(clock):
+    """Keyframes of the puppet: at 0 without its hat, at 1 with it and the skull behind the body."""
+    driver = Driver(new_document(puppet()), clock)
+    playback = KeyframePlayback(driver.editor, clock)
+    playback.update()
+    playback.set_keyframe(0.0)
+    gestures.set_layers(driver.editor, "Show Layer", [HAT], visible=True)
+    gestures.move_layer(driver.editor, SKULL, 0)
+    playback.update()
+    playback.set_keyframe(1.0)
+    return driver, playback
+
+
+def test_layers_are_switched_at_keyframes_and_never_blended(switched):
+    driver, playback = switched
+    animation = driver.session.present.animation
+    poses = KeyframePoses()
+    for time, has_hat in ((0.0, False), (0.5, False), (0.999, False), (1.0, True), (9.0, True)):
+        frame = animation_frame(driver.session.present_document, poses, time)
+        assert frame.drawing.layers[HAT].visible is has_hat
+        assert frame.drawing.layer_order[0] == (SKULL if has_hat else BODY)
+        assert playback.frame(time).drawing.layer_view == frame.drawing.layer_view
+        assert animation.layer_view_at(time) == frame.drawing.layer_view
+    assert playback.frame(0.2).drawing is playback.frame(0.7).drawing
+
+
+def test_the_canvas_shows_the_layers_at_the_playhead_and_a_gesture_goes_on_with_them(switched):
+    driver, playback = switched
+    session = driver.session
+    before = bits(session.present)
+    playback.scrub(0.5)
+    assert not session.drawing.layers[HAT].visible
+    playback.show_present()
+    assert session.drawing.layers[HAT].visible
+    assert bits(session.present) == before
+    playback.scrub(0.5)
+    gestures.set_layers(driver.editor, "Hide Layer", [SKULL], visible=False)
+    playback.update()
+    assert [layer.visible for layer in session.present_document.drawing.layers] == [
+        True,
+        True,
+        False,
+        True,
+        False,
+    ]
+    assert playback.shows_unkeyed_pose
+    assert bits(replayed_state(session.recording, puppet())) == bits(session.state)
+    session.undo()
+    assert bits(session.present) == before
+
+
+def test_auto_key_keys_a_switched_layer(switched):
+    driver, playback = switched
+    playback.auto_key.is_on = True
+    playback.scrub(2.0)
+    playback.update()
+    gestures.set_layers(driver.editor, "Hide Layer", [BODY], visible=False)
+    playback.update()
+    key = driver.session.present.animation.keyframes[-1]
+    assert key.time == 2.0
+    assert not key.layers.visible[BODY]

@@ -15,6 +15,7 @@ from akap_editor.editor.session.edits import (
     EDITS,
     AddPose,
     Edit,
+    KeyLayers,
     OrderLayers,
     Remesh,
     RenamePose,
@@ -381,3 +382,27 @@ def test_a_new_joint_closes_its_gap_at_once():
     session.apply(SetJoints((joint,)))
     session.settle()
     assert gap() < 0.05
+
+
+def shown(session):
+    """The numbers of the layers whose eye is open, and those in each keyframe."""
+    keys = [key.layers.visible for key in session.present.animation.keyframes]
+    views = [session.drawing.layer_view.visible, *keys]
+    return [[number for number, on in enumerate(view) if on] for view in views]
+
+
+@pytest.mark.parametrize("name", ["layers"])
+def test_a_slot_shows_one_of_its_layers_in_keyframes_too(session, name):
+    assert shown(session) == [[0, 1, 2, 3]] * 3
+    session.begin("Slot")
+    session.apply(SetLayers([0, 1, 4], slot="mouth"))
+    assert shown(session) == [[1, 2, 3]] * 3
+    session.apply(SetLayers([4], visible=True))
+    assert shown(session)[0] == [2, 3, 4]
+    session.apply(SetKeyframe(0.5))
+    session.apply(KeyLayers([0], True))
+    assert shown(session) == [[0, 2, 3]] * 4
+    session.commit()
+    state = replayed_state(session.recording, puppet(150))
+    assert bits(state) == bits(session.state)
+    assert [layer.slot for layer in state.drawing.layers] == ["mouth", "mouth", "", "", "mouth"]

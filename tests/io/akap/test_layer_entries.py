@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.keyframes import Animation, Keyframe
 from akap_editor.editor.document.rig.joint import make_joint
 from akap_editor.editor.document.rig.suggestion import suggest_joints
 from akap_editor.errors import InputError
@@ -17,6 +18,7 @@ from akap_editor.io.akap.archive import pack
 from akap_editor.io.akap.project import decode_document, encode_document
 from akap_editor.io.images import encode_png
 from akap_editor.layers.composite import composite
+from akap_editor.layers.layer_view import LayerView
 from tests.support.layered_files import filled
 from tests.support.puppets import BODY, HAT, SKULL, puppet, puppet_layers
 from tests.support.recorded_drag import plank_drawing
@@ -27,11 +29,14 @@ def document():
     drawing = puppet()
     layers = list(drawing.layers)
     layers[SKULL] = replace(layers[SKULL], opacity=0.5, blend="multiply", locked=True, name="head “1”")
-    layers[HAT] = replace(layers[HAT], visible=True, solo=True)
+    layers[HAT] = replace(layers[HAT], visible=True, solo=True, slot="hats", closed_groups=(0,))
     document = new_document(replace(drawing, layers=tuple(layers), layer_order=(1, 0, 2, 4, 3)))
     weld = make_joint(drawing.mesh, 4, SKULL, BODY, np.array([80.0, 85.0]), kind="weld")
     joints = (*suggest_joints(drawing), weld)
-    return replace(document, state=replace(document.state, joints=joints))
+    pose = document.state.positions
+    view = LayerView((True, False, True, True, False), (4, 3, 2, 1, 0))
+    animation = Animation((Keyframe(0.0, pose), Keyframe(0.5, pose, layers=view)))
+    return replace(document, state=replace(document.state, joints=joints, animation=animation))
 
 
 @pytest.fixture(scope="module")
@@ -60,8 +65,32 @@ def test_a_drawing_in_layers_comes_back_bit_for_bit(document):
         values = [(each.path, each.opacity, each.blend) for each in (a, b)]
         assert values[0] == values[1]
         assert (a.visible, a.solo, a.locked) == (b.visible, b.solo, b.locked)
+        assert (a.slot, a.closed_groups) == (b.slot, b.closed_groups)
         np.testing.assert_array_equal(a.artwork.picture, b.artwork.picture)
         assert a.artwork.offset == b.artwork.offset
+
+
+def test_what_keyframes_show_of_the_layers_comes_back(document):
+    keyframes = decode_document(encode_document(document)).state.animation.keyframes
+    assert [key.layers for key in keyframes] == [key.layers for key in document.state.animation.keyframes]
+
+
+@pytest.mark.parametrize(
+    ("layers", "message"),
+    [
+        ({"visible": [0], "order": [0, 1]}, "keyframes: expected 5 layers in each, got 2"),
+        ({"visible": [7], "order": [0, 1, 2, 3, 4]}, "expected each layer once in the order"),
+        ({"visible": [], "order": [0, 0, 2, 3, 4]}, "expected each layer once in the order"),
+        ({"visible": [0.5], "order": [0, 1, 2, 3, 4]}, "expected numbers of at most 1000 layers"),
+        ({"visible": []}, "order"),
+        ([1], "expected layers to be an object"),
+    ],
+)
+def test_damaged_layers_of_a_keyframe_are_refused(entries, layers, message):
+    index = json.loads(entries["animation.json"])
+    index["keyframes"][1]["layers"] = layers
+    with pytest.raises(InputError, match=message):
+        reopened({**entries, "animation.json": json.dumps(index).encode()})
 
 
 def test_version_2_is_written_for_layers_only(entries):
@@ -123,6 +152,9 @@ DAMAGE = {
     "unknown blending": (changed("blend", "burn", 3), "layer 3: blend: expected 'normal'"),
     "groups of numbers": (changed("groups", [1], 3), "layer 3: expected at most 50 names of groups"),
     "a name that is a number": (changed("name", 3, 3), "layer 3: expected name to be a text, got 3"),
+    "a slot that is a number": (changed("slot", 3, 3), "layer 3: expected slot to be a text, got 3"),
+    "a closed group that is none": (changed("closedGroups", [4], 3), "layer 3: closed_groups: expected"),
+    "closed groups of texts": (changed("closedGroups", ["a"], 3), "layer 3: closed_groups: expected"),
     "joints of numbers": (changed("joints", [1]), "expected joints to be objects, got 1"),
     "joints as a text": (changed("joints", "x"), "expected joints to be a list"),
     "a joint of one face": (changed("joints", joint(faces=[1])), "expected two faces of a joint"),

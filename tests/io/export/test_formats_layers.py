@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.keyframes import Animation, Keyframe
 from akap_editor.io.export.formats import export
 from akap_editor.layers.drawing_layer import flat_picture
+from akap_editor.layers.layer_view import LayerView
 from akap_editor.render.offscreen import OffscreenRenderer
 from tests.support.puppets import puppet
 
@@ -83,3 +85,42 @@ def test_pictures_and_outlines_leave_out_hidden_layers(document, tmp_path):
         )
     expected = flat_picture(drawing.layers, drawing.layer_order, drawing.size)
     assert np.abs(picture.astype(int) - expected).max(axis=2)[50:60, 60:100].max() <= 2
+
+
+@pytest.fixture(scope="module")
+def switched(document):
+    """Keyframes at 0, 1 and 2: with the skull, with the hat in its place, and with the skull again."""
+    pose = document.state.positions
+    skull = LayerView((True, True, True, True, False), ORDER)
+    hat = LayerView((True, True, False, True, True), ORDER)
+    keyframes = tuple(Keyframe(float(k), pose, layers=view) for k, view in enumerate((skull, hat, skull)))
+    animation = Animation(keyframes, "none")
+    return replace(document, state=replace(document.state, animation=animation))
+
+
+def test_spine_switches_the_slots_of_layers_and_shares_the_others(switched, tmp_path):
+    export(switched, tmp_path / "a.spine.json")
+    record = json.loads((tmp_path / "a.spine.json").read_text())
+    assert [slot["name"] for slot in record["slots"]] == ["body", "skull", "eyes", "eyes 2", "arm", "hat"]
+    switches = record["animations"]["keyframes"]["slots"]
+    assert {name: keys["attachment"] for name, keys in switches.items()} == {
+        "skull": [
+            {"time": 0.0, "name": "skull"},
+            {"time": 1.0, "name": None},
+            {"time": 2.0, "name": "skull"},
+        ],
+        "hat": [{"name": None}, {"time": 1.0, "name": "hat"}, {"time": 2.0, "name": None}],
+    }
+
+
+def test_gltf_switches_layers_by_steps(switched, tmp_path):
+    export(switched, tmp_path / "a.glb")
+    data = (tmp_path / "a.glb").read_bytes()
+    scene = json.loads(data[20 : 20 + struct.unpack_from("<I", data, 12)[0]])
+    names = [
+        [scene["materials"][each["material"]]["name"] for each in mesh["primitives"]]
+        for mesh in scene["meshes"]
+    ]
+    assert names == [["body", "skull", "eyes", "arm"], ["body", "eyes", "arm", "hat"]]
+    steps = [each for each in scene["animations"][0]["samplers"] if each.get("interpolation") == "STEP"]
+    assert len(steps) == 2

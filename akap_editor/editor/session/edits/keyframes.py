@@ -58,7 +58,7 @@ class SetKeyframe(KeyframeEdit):
     def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
         positions, crossings = pose_and_crossings(self.positions, self.crossings, state, drawing)
         layers = drawing.layer_view
-        if self.layers is not None:
+        if self.layers is not None and drawing.layers:
             layers = drawing.with_layer_view(self.layers).layer_view
         return animation.with_keyframe(Keyframe(self.time, positions, self.ease, crossings, layers))
 
