@@ -21,9 +21,9 @@ without a shortcut:
 ![The command palette after typing "sho"](images/palette.png)
 
 `F10`, or `Alt` and its first letter, opens a menu; the arrow keys move through it, `Enter` chooses, `Esc`
-closes. `Tab` moves the keyboard focus from the drawing to the side panel, `Shift+Tab` to the toolbar, and
-`F6` from one panel to the next: side panel, toolbar, timeline, second method, color scale, first steps, and
-back to the drawing. In panels and dialogs, `Tab` and the arrow keys move between controls, `Enter` presses
+closes. `F6` moves the keyboard focus from the drawing to the side panel, and on to toolbar, timeline,
+second method, color scale, first steps, options bar, tabs, and back to the drawing; `Shift+F6` goes the other
+way. In panels and dialogs, `Tab` and the arrow keys move between controls, `Enter` presses
 one, `Shift+F10` opens its menu, and `Esc` returns the focus to the drawing. Pins can be placed
 [without a mouse](posing.md#without-a-mouse), too.
 

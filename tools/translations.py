@@ -22,6 +22,9 @@ KEYWORDS = {
     "Command": None,
     "_tool": None,
     "Submenu": None,
+    "CommandGroup": None,
+    "_part": None,
+    "_tab": None,
     "Section": None,
     "begin_dialog": None,  # their first argument
 }

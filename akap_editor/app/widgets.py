@@ -20,6 +20,8 @@ _BAR = (
     | imgui.WindowFlags_.no_move
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_docking
+    | imgui.WindowFlags_.no_scrollbar
+    | imgui.WindowFlags_.no_scroll_with_mouse
 )
 _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
 _MIN_NUMBER_WIDTH = 3.2  # beside a slider, times the font size, so that sliders have the same width
@@ -255,7 +257,10 @@ def _place_tooltip() -> None:
     match window.name:
         case "Tools":
             imgui.set_next_window_pos(ImVec2(window.pos.x + window.size.x + gap, low.y))
-        case "Panel":
+        case "Options":
+            x = min(low.x, viewport.pos.x + viewport.size.x - _TOOLTIP_WIDTH * imgui.get_font_size())
+            imgui.set_next_window_pos(ImVec2(max(x, 0.0), window.pos.y + window.size.y + gap))
+        case "Panel" | "Tabs":
             imgui.set_next_window_pos(ImVec2(window.pos.x - gap, low.y), imgui.Cond_.always, ImVec2(1, 0))
         case "Timeline":
             x = min(low.x, viewport.pos.x + viewport.size.x - _TOOLTIP_WIDTH * imgui.get_font_size())
@@ -273,17 +278,16 @@ def tooltip_due() -> float:
 # -- side bars and dialogs ----------------------------------------------------------------------------------
 
 
-def side_bar(name: str, side: imgui.Dir, size: float, padding: ImVec2, scrolls: bool = False) -> bool:
+def side_bar(name: str, side: imgui.Dir, size: float, padding: ImVec2, flags: int = 0) -> bool:
     """Begin a panel at a side of the room that is left for the canvas; `imgui.end` must follow.
 
-    size: width or height in points. Returns whether its content is to be drawn.
+    size: width or height in points; flags: of ImGui, in addition. Returns whether its content is to be drawn.
     """
-    fixed = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
     imgui.push_style_var(imgui.StyleVar_.window_padding, padding)
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
     is_shown = imgui.internal.begin_viewport_side_bar(
-        name, imgui.get_main_viewport(), side, size, _BAR | (0 if scrolls else fixed)
+        name, imgui.get_main_viewport(), side, size, _BAR | flags
     )
     imgui.pop_style_var(3)
     return bool(is_shown)

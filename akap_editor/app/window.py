@@ -33,8 +33,8 @@ from .commands.registry import restore_keys, run_pressed
 from .dialogs import dialogs
 from .dialogs.file_dialog import FileDialog, has_native_dialogs
 from .dialogs.recovery import RecoveryDialog
+from .frame import frame
 from .glfw_window import FullScreen, create_window, on_key, remembered_position, remembered_size, screens
-from .panels import side_panel
 from .preferences import Preferences
 from .termination import TerminationSignals, rescue_on_lost_display
 from .thumbnails import Thumbnails
@@ -313,7 +313,7 @@ class Window:
             files.open_dropped(state, self._dropped.pop(0))
         handle_focus_keys(state)
         is_modal = widgets.popup_is_open()  # before, too: the key that closes a dialog must do nothing else
-        state.editor.canvas = split_view.draw(state, side_panel.draw(state, self.scale), self.scale)
+        state.editor.canvas = split_view.draw(state, frame.draw(state, self.scale), self.scale)
         if state.document is None:
             start_page.draw(state, self.scale, self._density)
         state.part(Palette).draw(state, self.scale)

@@ -78,6 +78,7 @@ def keeping(ui, path):
 
 
 def test_switches_and_folded_sections_come_back(keeping, path):
+    keeping.tab("Mesh")
     keeping.panel("Checkerboard")
     keeping.panel("###section View")
     keeping.do(lambda hand: [] if not hand.item_exists("//Panel/Mesh") else pytest.fail("View is folded"))
@@ -91,12 +92,12 @@ def test_switches_and_folded_sections_come_back(keeping, path):
 
 
 def test_unfolded_parameters_come_back(keeping, path):
-    keeping.panel("Parameters")
+    keeping.panel("Advanced")
     keeping.window.remember()
     keeping.state.preferences = Preferences(path)
     keeping.settle()
-    keeping.panel("Parameters/memory/##value")
-    keeping.panel("Parameters")
+    keeping.panel("memory/##value")
+    keeping.panel("Advanced")
     assert keeping.state.preferences.get("sections", {}) == {"Parameters": False}
 
 
@@ -123,7 +124,7 @@ def test_preferences_that_cannot_be_written_are_a_notice_and_no_more(ui, tmp_pat
     ui.window.remember()
     assert ui.state.notice.startswith(f"Couldn't save “{tmp_path}/file/preferences.json”. ")
     ui.state.notice = ""
-    ui.panel("Mesh")
+    ui.panel("Remember rest shape")
     ui.window.remember()
     assert not ui.state.notice
 

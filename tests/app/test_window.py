@@ -12,8 +12,8 @@ from akap_editor.app import files, widgets
 from akap_editor.app.canvas.scene import Scene
 from akap_editor.app.commands.registry import COMMANDS, SHORTCUTS
 from akap_editor.app.dialogs.about import AboutDialog
+from akap_editor.app.frame import frame
 from akap_editor.app.jobs.task import Progress, Task
-from akap_editor.app.panels import side_panel
 from akap_editor.app.window import IDLE_SECONDS, SETTLE_FRAMES
 from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor.session.edits import SetTargets
@@ -277,7 +277,7 @@ def dropped_file(ui, patch):
 
 
 def panel(ui, patch):
-    fail_once(patch, side_panel, "draw")
+    fail_once(patch, frame, "draw")
 
 
 def dialog(ui, patch):

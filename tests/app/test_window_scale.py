@@ -38,5 +38,6 @@ def test_a_drag_lands_where_it_ends(pinned):
 def test_buttons_and_menus_are_hit(pinned):
     pinned.menu("View", "Show Mesh")
     assert pinned.state.view.show_mesh
+    pinned.tab("Mesh")
     pinned.panel("Mesh")
     assert not pinned.state.view.show_mesh

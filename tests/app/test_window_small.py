@@ -144,7 +144,7 @@ def test_a_long_name_of_a_pose_moves_no_other(ui):
     names = ("Rest", LONG[:80], "Wave")
     for name in names:
         gestures.add_pose(ui.editor, name)
-    ui.state.preferences.put("sections", {"Drawing": False, "Pins": False, "Bending": False, "Mesh": False})
+    ui.state.preferences.put("sections", {"Pins": False})
     ui.settle()
     found = {}
 
@@ -171,8 +171,8 @@ def test_the_pin_that_is_selected_is_seen_in_the_list(ui):
 def test_the_present_step_of_a_long_history_is_seen_below_whole_rows(pinned):
     for depth in range(1, 21):
         gestures.set_depth(pinned.editor, 1, depth)
-    folded = dict.fromkeys(("Drawing", "Pins", "Bending", "Mesh", "Poses", "Measurements"), False)
-    pinned.state.preferences.put("sections", folded)
+    folded = dict.fromkeys(("Pins", "Poses", "Bending"), False)
+    pinned.state.preferences.put("sections", {**folded, "History": True})
     pinned.editor.undo_or_redo_to(11)
     pinned.settle()
     (rows,) = (window for window in imgui.get_current_context().windows if "##history" in window.name)

@@ -21,6 +21,7 @@ from akap_editor.app.app_state import AppState
 from akap_editor.app.canvas.scene import Scene, SceneContent
 from akap_editor.app.commands.command import Command
 from akap_editor.app.dialogs.file_dialog import FileDialog, FileRequest
+from akap_editor.app.frame import layout
 from akap_editor.app.glfw_window import draw_imgui
 from akap_editor.app.jobs.background_thread import BackgroundThread
 from akap_editor.app.jobs.task import Task
@@ -278,8 +279,18 @@ class WindowDriver:
         """Click a command's button in the tool bar."""
         self.do(lambda hand: hand.item_click(f"//Tools/{command.icon}##{command.label}"))
 
+    def tab(self, tab: layout.Tab) -> None:
+        """Click a tab of the side panel."""
+        self.do(lambda hand: hand.item_click(f"//Tabs/###tab {tab}"))
+
+    def unfold(self, tab: layout.Tab, *titles: str) -> None:
+        """Show a tab of the side panel with these parts unfolded."""
+        layout.show_tab(self.state, tab)
+        self.state.preferences.put("sections", dict.fromkeys(titles, True))
+        self.settle()
+
     def panel(self, label: str) -> None:
-        """Click an item of the side panel."""
+        """Click an item of the current tab of the side panel."""
         self.do(lambda hand: hand.item_click(f"//Panel/{label}"))
 
     def dialog(self, title: str, *labels: str) -> None:

@@ -1,6 +1,6 @@
 """Commands and submenus: what menus, toolbar, keyboard and palette run."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from ...words import tr
 from ..app_state import AppState
 from .keymap import ALT, CTRL, KEYMAP, SHIFT, Key, chord_name
 
-__all__ = ["ALT", "CTRL", "SHIFT", "Command", "Key", "Menu", "Submenu", "chord_name"]
+__all__ = ["ALT", "CTRL", "SHIFT", "Command", "CommandGroup", "Key", "Menu", "Submenu", "chord_name"]
 
 CONTEXT_MENU_KEYS = (SHIFT | Key.f10, Key.menu)
 _NAVIGATION_KEYS = frozenset(
@@ -101,7 +101,30 @@ class Submenu:
         return tr(self.label)
 
 
-Menu = tuple[str, tuple[Command | Submenu | None, ...]]  # its name and its lines; None: a separator
+@dataclass(frozen=True)
+class CommandGroup:
+    """A submenu of commands. label: in English; commands: None is a separator."""
+
+    label: str
+    commands: tuple[Command | None, ...]
+
+    @property
+    def text(self) -> str:
+        """The label in the user's language."""
+        return tr(self.label)
+
+
+MenuItem = Command | Submenu | CommandGroup | None  # None: a separator
+Menu = tuple[str, tuple[MenuItem, ...]]  # its name and its lines
+
+
+def commands_and_files(items: Iterable[MenuItem]) -> Iterator[Command | Submenu]:
+    """The lines of a menu without separators, groups replaced by their commands."""
+    for item in items:
+        if isinstance(item, CommandGroup):
+            yield from (command for command in item.commands if command is not None)
+        elif item is not None:
+            yield item
 
 
 def context_menu_pressed() -> bool:

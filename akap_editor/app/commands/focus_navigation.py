@@ -9,11 +9,12 @@ _PANELS = (
     "Start",
     "Panel",
     "Tools",
-    "Brush",
     "Timeline",
     "Comparison",
     "##legend",
     "First steps",
+    "Options",
+    "Tabs",
 )  # names of ImGui windows, in the order of F6
 
 

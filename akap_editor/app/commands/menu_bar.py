@@ -9,7 +9,7 @@ from ...display_text import display_text
 from ...words import tr
 from .. import files, widgets
 from ..app_state import AppState
-from .command import ALT, Command, Submenu
+from .command import ALT, CommandGroup, MenuItem, Submenu
 from .registry import MENUS
 
 _MAX_NAME_WIDTH = 24  # of a file, times the font size
@@ -67,15 +67,27 @@ def _neighbor_by_key(name: str) -> str:
     return ""
 
 
-def _draw_item(state: AppState, item: Command | Submenu | None) -> bool:
+def _draw_item(state: AppState, item: MenuItem) -> bool:
     """Draw a line of a menu; return whether it uses the arrow keys itself, to open or leave a submenu."""
     if item is None:
         imgui.separator()
     elif isinstance(item, Submenu):
         return _draw_submenu(state, item)
+    elif isinstance(item, CommandGroup):
+        return _draw_group(state, item)
     elif imgui.menu_item(item.text, item.key_name, item.is_checked(state), item.enabled(state))[0]:
         widgets.run(state, item)
     return False
+
+
+def _draw_group(state: AppState, group: CommandGroup) -> bool:
+    """Draw a submenu of commands; return whether it uses the arrow keys."""
+    is_open = imgui.begin_menu(group.text)
+    if is_open:
+        for command in group.commands:
+            _draw_item(state, command)
+        imgui.end_menu()
+    return is_open or imgui.is_item_focused()
 
 
 def _draw_submenu(state: AppState, item: Submenu) -> bool:

@@ -21,7 +21,20 @@ from ..dialogs.preferences_page import PreferencesPage
 from ..panels.method_parameters import with_default_values
 from ..preferences import Preferences
 from .clipboard import COPY_PICTURE, COPY_POSE, PASTE
-from .command import ALT, CTRL, SHIFT, Command, Key, Menu, Submenu, always, has_drawing
+from .command import (
+    ALT,
+    CTRL,
+    SHIFT,
+    Command,
+    CommandGroup,
+    Key,
+    Menu,
+    Submenu,
+    always,
+    commands_and_files,
+    has_drawing,
+)
+from .edit.arrange import ALIGN_PINS, DISTRIBUTE_PINS
 from .keyboard_pointer import CONTEXT_MENU, CROSSHAIR, FINISH, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
 from .keymap import KEYMAP
 from .palette import Palette
@@ -36,6 +49,7 @@ from .view import (
     HIDE_PANELS,
     NEXT_RANGE,
     OVERLAYS,
+    PANELS,
     SHOW_CHECKERBOARD,
     SHOW_MESH,
     SHOW_PINS,
@@ -305,6 +319,8 @@ ERASE = Command("Erase Stiffness", _toggle_erasing, (Key.e,), "", _has_brush, _i
 DECREASE_BRUSH = Command("Decrease Brush Size", _resize_brush(False), (Key.left_bracket,), "", _has_brush)
 INCREASE_BRUSH = Command("Increase Brush Size", _resize_brush(True), (Key.right_bracket,), "", _has_brush)
 
+ARRANGE = CommandGroup("Align Pins", (*ALIGN_PINS, None, *DISTRIBUTE_PINS))
+
 # -- the tables ---------------------------------------------------------------------------------------------
 
 MENUS: tuple[Menu, ...] = (
@@ -325,7 +341,8 @@ MENUS: tuple[Menu, ...] = (
             *(COPY_PICTURE, COPY_POSE, PASTE, None),
             *(SUGGEST_PINS, REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT),
             *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, FINISH, None),
-            *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE, None),
+            *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE),
+            *(ARRANGE, None),
             *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS, CLEAR_STIFFNESS, None),
             PREFERENCES,
         ),
@@ -336,7 +353,7 @@ MENUS: tuple[Menu, ...] = (
             *(FIT, ACTUAL_SIZE, ZOOM_IN, ZOOM_OUT, None),
             *(SHOW_MESH, SHOW_PINS, *OVERLAYS, NEXT_RANGE, None),
             *(SHOW_CHECKERBOARD, CHOOSE_REFERENCE, SHOW_REFERENCE, None),
-            *(SHOW_TIMELINE, COMPARE_METHODS, None),
+            *(SHOW_TIMELINE, COMPARE_METHODS, PANELS, None),
             *(HIDE_PANELS, FULL_SCREEN),
         ),
     ),
@@ -344,12 +361,12 @@ MENUS: tuple[Menu, ...] = (
     ("Help", (PALETTE, SHORTCUTS, ABOUT)),
 )
 COMMANDS = (
-    *(command for _, items in MENUS for command in items if isinstance(command, Command)),
+    *(item for _, items in MENUS for item in commands_and_files(items) if isinstance(item, Command)),
     *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL, JOINT_TOOL, CROSSHAIR),
     *(ERASE, DECREASE_BRUSH, INCREASE_BRUSH),
     *PANNING,
 )
-PALETTE_ITEMS = (*(item for _, items in MENUS for item in items if item is not None), *COMMANDS)
+PALETTE_ITEMS = (*(item for _, items in MENUS for item in commands_and_files(items)), *COMMANDS)
 
 
 def restore_keys(preferences: Preferences) -> None:

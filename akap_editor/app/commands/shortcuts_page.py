@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACTIVE, SECONDARY, TEXT, packed
-from .command import Command, Key, Menu
+from .command import Command, Key, Menu, commands_and_files
 
 Line = tuple[str, str]  # keys or mouse, and what they do
 Group = tuple[str, list[Line]]  # a title and its lines
@@ -47,7 +47,8 @@ def groups(menus: Sequence[Menu], commands: Sequence[Command]) -> list[Group]:
     listed = [("Mouse", list(_MOUSE))]
     in_menus: set[int] = set()
     for name, items in menus:
-        with_keys = [item for item in items if isinstance(item, Command) and item.active_chords]
+        listed_items = commands_and_files(items)
+        with_keys = [item for item in listed_items if isinstance(item, Command) and item.active_chords]
         in_menus.update(map(id, with_keys))
         listed.append((name, [(command.key_name, command.name) for command in with_keys]))
     listed[-1][1].extend(_FOCUS)

@@ -7,7 +7,8 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from .. import file_commands
 from ..app_state import AppState
 from ..canvas.view_options import Measure
-from .command import CTRL, SHIFT, Command, Key, always, has_drawing
+from ..frame import layout
+from .command import CTRL, SHIFT, Command, CommandGroup, Key, always, has_drawing
 
 
 def _switch(
@@ -122,4 +123,34 @@ HIDE_PANELS = Command(
 )
 FULL_SCREEN = Command(
     "Full Screen", _toggle_full_screen, (Key.f11,), "", always, lambda state: state.is_full_screen
+)
+
+
+def _part(label: str, part: layout.Part) -> Command:
+    """A command that shows or hides a part of the frame."""
+    return Command(
+        label,
+        lambda state: layout.toggle(state, part),
+        enabled=has_drawing,
+        checked=lambda state: layout.is_chosen(state, part),
+    )
+
+
+def _tab(label: str, tab: layout.Tab) -> Command:
+    """A command that shows a tab of the side panel."""
+    return Command(
+        label,
+        lambda state: layout.show_tab(state, tab),
+        enabled=has_drawing,
+        checked=lambda state: layout.current_tab(state) == tab,
+    )
+
+
+PANELS = CommandGroup(
+    "Panels",
+    (
+        *(_part("Show Toolbar", "toolbar"), _part("Show Options Bar", "options")),
+        *(_part("Show Side Panel", "side panel"), None),
+        *(_tab("Pose Tab", "Pose"), _tab("Animate Tab", "Animate"), _tab("Mesh Tab", "Mesh")),
+    ),
 )

@@ -1,4 +1,4 @@
-"""The Mesh section: how the picture is cut out and meshed, and figures of the mesh."""
+"""The sections Mesh and Figures: how the picture is cut out and meshed, and figures of the result."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -13,6 +13,7 @@ from ...meshing.quality import smallest_angles
 from .. import widgets
 from ..app_state import AppState
 from ..theme import SECONDARY
+from . import folding
 
 MIN_VERTICES, MAX_VERTICES = 200, 50_000
 MAX_MARGIN = 20.0  # pixels
@@ -21,7 +22,7 @@ _LABEL_WIDTH = 7.6  # times the font size
 
 
 def draw(state: AppState, scale: float) -> None:
-    """Draw the section. scale: points per design point."""
+    """Draw the Mesh section. scale: points per design point."""
     meshing = state.remesher.meshing
     assert state.document is not None
     assert meshing is not None
@@ -36,6 +37,23 @@ def draw(state: AppState, scale: float) -> None:
     )
     if vertices is not None:
         state.remesher.request(replace(meshing, vertices=_two_digits(vertices)), imgui.is_item_active())
+    if folding.draw_advanced(state, "Mesh parameters"):
+        _draw_outline(state, meshing)
+        _draw_mesher(state, meshing)
+
+
+def draw_figures(state: AppState, scale: float) -> None:
+    """Draw the Figures section. scale: points per design point."""
+    assert state.document is not None
+    drawing = state.document.drawing
+    widgets.row("Name", drawing.name)
+    widgets.row("Picture", f"{drawing.size[0]} × {drawing.size[1]} px")
+    for label, value, tooltip in _figures(drawing.mesh):
+        widgets.row(label, value, tooltip)
+
+
+def _draw_outline(state: AppState, meshing: Meshing) -> None:
+    """Draw what decides on the outline: how far it is from the picture, and what belongs to the picture."""
     margin = _slider(
         state,
         "Margin",
@@ -54,9 +72,6 @@ def draw(state: AppState, scale: float) -> None:
     )
     if threshold is not None:
         state.remesher.request(replace(meshing, threshold=round(threshold) / 100), imgui.is_item_active())
-    _draw_mesher(state, meshing)
-    for label, value, tooltip in _figures(state.document.drawing.mesh):
-        widgets.row(label, value, tooltip)
 
 
 def _draw_background(state: AppState, meshing: Meshing) -> None:

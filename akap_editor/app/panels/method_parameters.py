@@ -1,4 +1,4 @@
-"""The parameters of the current method, a foldable part of the Bending section."""
+"""The parameters of the current method, under *Advanced* in the Bending section."""
 
 from functools import partial
 from typing import Any
@@ -11,8 +11,8 @@ from .. import widgets
 from ..app_state import AppState
 from ..pending_values import PendingValues
 from ..theme import SECONDARY
+from . import folding
 
-_TITLE = "Parameters"
 _LABEL_WIDTH = 8.3  # times the font size
 
 
@@ -52,18 +52,9 @@ def draw(state: AppState) -> None:
     parameters = get_method(settings.method).parameters
     if not parameters:
         return
-    sections: dict[str, object] = state.preferences.get("sections", {})
-    was_open = sections.get(_TITLE) is True
-    imgui.set_next_item_open(was_open)
-    imgui.push_style_var(imgui.StyleVar_.indent_spacing, 0.0)
-    is_open = imgui.tree_node_ex(_TITLE, imgui.TreeNodeFlags_.span_avail_width)
-    if is_open != was_open:
-        state.preferences.put("sections", {**sections, _TITLE: is_open})
-    if is_open:
+    if folding.draw_advanced(state, "Parameters"):
         for parameter in parameters:
             _draw_parameter(state, settings, parameter)
-        imgui.tree_pop()
-    imgui.pop_style_var()
 
 
 def _draw_parameter(state: AppState, settings: Settings, parameter: Parameter) -> None:

@@ -7,7 +7,6 @@ from ...editor import gestures
 from ...editor.document.pin import MAX_DEPTH, Pin
 from .. import widgets
 from ..app_state import AppState
-from ..commands.registry import REMOVE_SELECTED
 from ..pending_values import NameField, PendingValues
 
 _ROWS = 6  # pins that are visible at once
@@ -32,19 +31,15 @@ class PinList:
         self._name_field = NameField()
 
     def draw(self, state: AppState) -> None:
-        """Draw the list, which has the same height for any number of pins, and its button."""
+        """Draw the list, which has the same height for any number of pins."""
         assert state.document is not None
-        pins, editor = state.document.state.pins, state.editor
+        pins = state.document.state.pins
         widgets.begin_list("##pins", _ROWS)
         if not pins:
             widgets.secondary_text("None yet. Click on the drawing where it should hold still.")
         for index, pin in enumerate(pins):
             self._draw_row(state, pin, index)
         imgui.end_child()
-        imgui.begin_disabled(not editor.selection)
-        if imgui.button("Remove Selected", ImVec2(widgets.FULL, 0)):
-            widgets.run(state, REMOVE_SELECTED)
-        imgui.end_disabled()
 
     def _draw_row(self, state: AppState, pin: Pin, index: int) -> None:
         editor, font_size = state.editor, imgui.get_font_size()

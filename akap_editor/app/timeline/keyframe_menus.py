@@ -56,7 +56,7 @@ def draw_buttons(state: AppState, scale: float) -> None:
     imgui.pop_style_color()
     widgets.show_tooltip("Onion skin (Shift+O): earlier poses in blue, later ones in orange")
     if _begin_menu("onion menu", scale):
-        _draw_onion_options(playback.onion_skin, scale)
+        draw_onion_options(playback.onion_skin, scale)
         imgui.end_popup()
 
 
@@ -124,7 +124,8 @@ def _draw_default_easings(state: AppState, playback: KeyframePlayback) -> None:
             state.run_reporting_errors(lambda name=name: playback.set_default_easing(name))  # type: ignore[misc]
 
 
-def _draw_onion_options(onion_skin: OnionSkin, scale: float) -> None:
+def draw_onion_options(onion_skin: OnionSkin, scale: float) -> None:
+    """Draw a switch for the onion skin and its options. scale: points per design point."""
     _, onion_skin.is_shown = widgets.switch("Onion skin", onion_skin.is_shown)
     imgui.begin_disabled(not onion_skin.is_shown)
     if widgets.radio("Keyframes before and after", onion_skin.kind == "keyframes"):

@@ -37,13 +37,13 @@ def test_f6_goes_to_every_pane_and_back_to_the_canvas(keyed):
     keyed.state.view.is_split, keyed.state.part(FirstSteps).is_open = True, True
     keyed.state.view.distortion_measure = "area"
     keyed.settle()
-    panes = ["Panel", "Tools", "Timeline", "Comparison", "##legend", "First steps", ""]
-    assert keyed.keys(*[Key.f6] * 7, look=pane) == panes
-    assert keyed.keys(*[SHIFT | Key.f6] * 7, look=pane) == [*panes[-2::-1], ""]
+    panes = ["Panel", "Tools", "Timeline", "Comparison", "##legend", "First steps", "Options", "Tabs", ""]
+    assert keyed.keys(*[Key.f6] * 9, look=pane) == panes
+    assert keyed.keys(*[SHIFT | Key.f6] * 9, look=pane) == [*panes[-2::-1], ""]
 
 
 def test_f6_stops_nowhere_else(ui):
-    assert ui.keys(*[Key.f6] * 3, look=pane) == ["Panel", "Tools", ""]
+    assert ui.keys(*[Key.f6] * 5, look=pane) == ["Panel", "Tools", "Options", "Tabs", ""]
 
 
 def test_the_second_method_is_chosen_by_keys(pinned):
@@ -61,6 +61,7 @@ def test_the_range_of_the_scale_is_chosen_by_keys(ui):
     assert DISTORTION_RANGES[ui.state.view.distortion_range] == 2.0
     ui.keys(*[Key.f6] * 3, Key.space)
     assert DISTORTION_RANGES[ui.state.view.distortion_range] == 4.0
+    ui.tab("Mesh")
     ui.walk_to("##range", Key.space, Key.up_arrow, Key.space)
     assert DISTORTION_RANGES[ui.state.view.distortion_range] == 2.0
 
@@ -98,7 +99,7 @@ def test_keys_return_to_the_canvas(pinned):
     assert pinned.pins[1].target[1] == pytest.approx(y - 1)
 
 
-@pytest.mark.parametrize(("chord", "name"), [(Key.f6, "Panel"), (SHIFT | Key.f6, "Tools")])
+@pytest.mark.parametrize(("chord", "name"), [(Key.f6, "Panel"), (SHIFT | Key.f6, "Tabs")])
 def test_f6_goes_from_the_drawing_to_a_panel_and_escape_back(pinned, chord, name):
     pinned.editor.select({3})
     before = pinned.pin_position(3)

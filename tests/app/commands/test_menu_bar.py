@@ -4,7 +4,7 @@ from imgui_bundle import imgui  # isort: skip
 import pytest
 
 from akap_editor.app import files
-from akap_editor.app.commands.command import ALT, Key, Submenu
+from akap_editor.app.commands.command import ALT, Command, Key, Submenu
 from akap_editor.app.commands.registry import MENUS
 
 
@@ -47,7 +47,9 @@ def test_arrows_walk_through_all_menus(pinned):
 
 def test_a_command_is_run_from_a_menu_by_keys(pinned):
     assert not pinned.state.view.show_mesh
-    place = [item.label for item in dict(MENUS)["View"] if item is not None and item.enabled(pinned.state)]
+    place = [
+        item.label for item in dict(MENUS)["View"] if isinstance(item, Command) and item.enabled(pinned.state)
+    ]
     down = [Key.down_arrow] * place.index("Show Mesh")
     seen = after_each(pinned, ALT | Key.v, *down, Key.enter)
     assert seen[-2:] == [["View"], []]

@@ -9,7 +9,7 @@ from akap_editor.app import files
 from akap_editor.app.canvas.view_options import DISTORTION_RANGES
 from akap_editor.app.commands import clipboard
 from akap_editor.app.commands import registry as commands
-from akap_editor.app.commands.command import CTRL, SHIFT, Command, Key, chord_name
+from akap_editor.app.commands.command import CTRL, SHIFT, Command, CommandGroup, Key, chord_name
 from akap_editor.app.commands.palette import Palette
 from akap_editor.app.commands.registry import COMMANDS, MENUS
 from akap_editor.app.commands.shortcuts_page import ShortcutsPage
@@ -17,6 +17,7 @@ from akap_editor.app.dialogs.about import AboutDialog
 from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.app.dialogs.preferences_page import PreferencesPage
+from akap_editor.app.frame import layout
 from akap_editor.app.glfw_window import on_key
 from akap_editor.editor import gestures
 from akap_editor.editor.camera import Camera
@@ -27,7 +28,15 @@ from akap_editor.editor.tools.stiffness_brush import Brush
 from tests.support.clipboards import FakeClipboard
 from tests.support.puppets import puppet
 
-ITEMS = [(menu, command) for menu, group in MENUS for command in group if isinstance(command, Command)]
+ITEMS = [((menu, item.label), item) for menu, group in MENUS for item in group if isinstance(item, Command)]
+ITEMS += [
+    ((menu, group.label, command.label), command)
+    for menu, items in MENUS
+    for group in items
+    if isinstance(group, CommandGroup)
+    for command in group.commands
+    if command is not None
+]
 
 
 @pytest.fixture(autouse=True)
@@ -53,6 +62,17 @@ def undone(ui):
 
 def one_selected(ui):
     ui.editor.select({2})
+
+
+def scattered(ui):
+    """All pins are selected; the middle one is neither on the line of the others nor between them."""
+    targets = {1: (40.0, 70.0), 2: (120.0, 90.0), 3: (220.0, 77.0)}
+    ui.editor.edit("Move Pins", lambda session: (session.apply(SetTargets(targets)), session.settle()))
+    ui.editor.select_all()
+
+
+def targets_are(axis, expected):
+    return lambda ui: [pin.target[axis] for pin in ui.pins] == pytest.approx(expected, abs=0.5)
 
 
 def folded(ui):
@@ -294,6 +314,23 @@ CASES = {
     "Zoom Tool": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.zoom_tool),
     "Hide Panels": (nothing, lambda ui: ui.editor.canvas[0] == 0 and ui.editor.canvas[2] == 1280),
     "Full Screen": (nothing, lambda ui: ui.state.is_full_screen),
+    "Show Toolbar": (nothing, lambda ui: ui.editor.canvas[0] == 0),
+    "Show Options Bar": (nothing, lambda ui: ui.editor.canvas[1] < 30),
+    "Show Side Panel": (nothing, lambda ui: ui.editor.canvas[2] == 1280),
+    "Pose Tab": (
+        lambda ui: layout.show_tab(ui.state, "Mesh"),
+        lambda ui: layout.current_tab(ui.state) == "Pose",
+    ),
+    "Animate Tab": (nothing, lambda ui: layout.current_tab(ui.state) == "Animate"),
+    "Mesh Tab": (nothing, lambda ui: layout.current_tab(ui.state) == "Mesh"),
+    "Align Left": (scattered, targets_are(0, [40.0, 40.0, 40.0])),
+    "Align Horizontal Centers": (scattered, targets_are(0, [130.0, 130.0, 130.0])),
+    "Align Right": (scattered, targets_are(0, [220.0, 220.0, 220.0])),
+    "Align Top": (scattered, targets_are(1, [70.0, 70.0, 70.0])),
+    "Align Vertical Centers": (scattered, targets_are(1, [80.0, 80.0, 80.0])),
+    "Align Bottom": (scattered, targets_are(1, [90.0, 90.0, 90.0])),
+    "Distribute Horizontally": (scattered, targets_are(0, [40.0, 130.0, 220.0])),
+    "Distribute Vertically": (scattered, targets_are(1, [70.0, 90.0, 80.0])),
     "Finish": (one_selected, lambda ui: not ui.editor.selection),
     "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.brush_tool),
     "Erase Stiffness": (with_tool("brush_tool"), lambda ui: ui.editor.brush_tool.brush.erasing),
@@ -330,9 +367,9 @@ def check(ui, command, run):
     assert not ui.state.error
 
 
-@pytest.mark.parametrize(("menu", "command"), ITEMS, ids=[command.label for _, command in ITEMS])
-def test_by_menu(pinned, menu, command):
-    check(pinned, command, lambda: pinned.menu(menu, command.label))
+@pytest.mark.parametrize(("path", "command"), ITEMS, ids=[command.label for _, command in ITEMS])
+def test_by_menu(pinned, path, command):
+    check(pinned, command, lambda: pinned.menu(*path))
 
 
 CHORDS = [(command, chord) for command in COMMANDS for chord in command.chords]

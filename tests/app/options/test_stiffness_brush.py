@@ -9,14 +9,14 @@ from akap_editor.editor.session.edits import PaintStiffness
 
 def test_the_options_of_the_brush(pinned):
     pinned.tool_button(commands.BRUSH_TOOL)
-    pinned.do(lambda hand: hand.item_click("//Brush/Erase"))
+    pinned.do(lambda hand: hand.item_click("//Options/Erase"))
     assert pinned.editor.brush_tool.brush.erasing
     pinned.editor.apply("Paint Stiffness", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
-    pinned.do(lambda hand: hand.item_click(f"//Brush/{commands.CLEAR_STIFFNESS.label}"))
+    pinned.do(lambda hand: hand.item_click(f"//Options/{commands.CLEAR_STIFFNESS.label}"))
     assert pinned.session.state.stiffness is None
 
     def slide(hand):
-        hand.item_input("//Brush/##Strength")
+        hand.item_input("//Options/##Strength")
         hand.key_chars_replace_enter("1000")
 
     pinned.do(slide)
@@ -32,12 +32,13 @@ def test_the_bar_leaves_the_canvas_where_it_is_and_is_never_out_of_sight(pinned)
 
     def look(hand):
         for item in ("##Strength", "##Size", "Erase", commands.CLEAR_STIFFNESS.label):
-            boxes.append(hand.item_info(f"//Brush/{item}").rect_full)
+            boxes.append(hand.item_info(f"//Options/{item}").rect_full)
 
     pinned.do(look)
-    left, top, right, bottom = canvas
+    _, top, right, _ = canvas
     for box in boxes:
-        assert left <= box.min.x < box.max.x <= right
-        assert top <= box.min.y < box.max.y <= bottom
+        assert 0 <= box.min.x < box.max.x <= 1280
+        assert 0 <= box.min.y < box.max.y <= top
+    assert right < 1280, "the bar is as wide as the window"
     pinned.tool_button(commands.PIN_TOOL)
     assert not pinned.editor.brush_tool.brush.erasing

@@ -7,10 +7,10 @@ def test_the_pins_are_added_by_the_button_and_cancelled_by_the_other(ui):
     ui.menu("Edit", commands.SUGGEST_PINS.label)
     count = len(ui.editor.tool.positions)
     assert count > 1
-    ui.do(lambda hand: hand.item_click("//Suggested Pins/Cancel"))
+    ui.do(lambda hand: hand.item_click("//Options/Cancel"))
     assert (ui.tool, ui.pins) == ("PinsIdle", ())
     ui.menu("Edit", commands.SUGGEST_PINS.label)
-    ui.do(lambda hand: hand.item_click("//Suggested Pins/Add Pins"))
+    ui.do(lambda hand: hand.item_click("//Options/Add Pins"))
     assert len(ui.pins) == count
 
 

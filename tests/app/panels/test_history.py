@@ -11,6 +11,7 @@ def click(hand, label):
 
 
 def test_a_click_on_a_step_goes_there_and_back(pinned):
+    pinned.unfold("Pose", "History")
     poses = [pinned.session.state]
     for pin, dy in ((3, -60), (3, 40), (1, 30)):
         start = pinned.to_screen(pinned.pin_position(pin))

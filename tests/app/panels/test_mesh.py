@@ -42,8 +42,7 @@ def slide(ui: WindowDriver, label: str, *shares: float) -> list[Meshing | None]:
 @pytest.fixture
 def opened(pinned):
     """The window with a pinned figure and the section open."""
-    pinned.state.preferences.put("sections", {"Mesh": True})
-    pinned.settle()
+    pinned.unfold("Mesh", "Mesh parameters")
     return pinned
 
 

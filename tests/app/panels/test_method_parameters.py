@@ -8,7 +8,7 @@ from akap_editor.deform.methods import get_method, make_deformer, method_names
 from akap_editor.editor.document.settings import Settings
 from tests.support.toy_method import TOY, add_toy_method
 
-TREE = "Parameters"
+TREE = "Advanced"
 
 
 @pytest.mark.parametrize("method", method_names())

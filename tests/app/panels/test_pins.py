@@ -35,7 +35,7 @@ def test_the_pin_list_selects(pinned):
     pin_in_list(pinned, 1)
     assert pinned.editor.selection == {1}
     assert not pinned.editor.is_modified
-    pinned.panel("Remove Selected")
+    pinned.key(imgui.Key.delete)
     assert [pin.id for pin in pinned.pins] == [2, 3]
 
 
@@ -123,7 +123,7 @@ def places(ui):
     found = {}
 
     def find(hand):
-        for title in ("Bending", "Mesh"):
+        for title in ("Poses", "Bending"):
             found[title] = hand.item_info(f"//Panel/###section {title}").rect_full.min.y
 
     ui.do(find)

@@ -51,7 +51,7 @@ def test_a_pose_is_renamed_with_a_double_click(pinned):
 
 def test_nothing_moves_when_a_pose_is_added(bent):
     def places(hand):
-        labels = (f"{icons.ICON_FA_PLUS}  Add to Poses", "##mix", "###section Measurements")
+        labels = (f"{icons.ICON_FA_PLUS}  Add to Poses", "##mix", "###section Bending")
         found.append([hand.item_info(f"//Panel/**/{label}").rect_full.min.y for label in labels])
 
     found = []

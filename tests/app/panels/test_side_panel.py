@@ -21,7 +21,7 @@ def test_an_error_in_a_panel_leaves_the_window_usable(pinned, monkeypatch, capfd
         raise error
 
     with monkeypatch.context() as patch:
-        patch.setattr(panels, "SECTIONS", (*panels.SECTIONS, panels.Section("Broken", fail)))
+        patch.setattr(panels, "SECTIONS", (*panels.SECTIONS, panels.Section("Broken", fail, "Pose")))
         pinned.frame()
         assert pinned.state.error == message
     assert ("Traceback" in capfd.readouterr().err) == isinstance(error, KeyError)

@@ -7,6 +7,7 @@ import pytest
     ("label", "name"), [("Mesh", "show_mesh"), ("Pins", "show_pins"), ("Checkerboard", "show_checkerboard")]
 )
 def test_view_switches(pinned, label, name):
+    pinned.tab("Mesh")
     before = getattr(pinned.state.view, name)
     picture = pinned.screenshot()
     pinned.panel(label)

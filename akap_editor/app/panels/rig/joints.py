@@ -8,6 +8,7 @@ from ....editor.document.rig.joint import KINDS, Joint
 from ....editor.document.rig.suggestion import suggest_joints
 from ... import widgets
 from ...app_state import AppState
+from ...commands.command import Command
 from ...theme import SECONDARY
 
 _ROWS = 5  # joints that are visible at once
@@ -34,7 +35,7 @@ def draw(state: AppState, scale: float) -> None:
     imgui.begin_disabled(selected is None)
     _draw_values(state, selected)
     imgui.end_disabled()
-    _draw_buttons(state, joints, selected)
+    _draw_buttons(state, selected)
 
 
 def _names(state: AppState, joint: Joint) -> tuple[str, str]:
@@ -83,15 +84,14 @@ def _draw_values(state: AppState, joint: Joint | None) -> None:
         state.run_reporting_errors(lambda: gestures.hang_joint(state.editor, joint.id, others[current]))
 
 
-def _draw_buttons(state: AppState, joints: tuple[Joint, ...], selected: Joint | None) -> None:
+def _draw_buttons(state: AppState, selected: Joint | None) -> None:
     """Draw the buttons: remove the selected joint, accept or clear proposals, or propose joints anew."""
     editor = state.editor
     gap = imgui.get_style().item_spacing.x
     half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
-    has_proposals = any(joint.is_proposed for joint in joints)
-    imgui.begin_disabled(not has_proposals)
+    imgui.begin_disabled(not _has_proposals(state))
     if imgui.button("Accept Proposed", half):
-        state.run_reporting_errors(lambda: gestures.accept_joints(editor))
+        widgets.run(state, ACCEPT_JOINTS)
     imgui.same_line()
     if imgui.button("Clear Proposed", half):
         state.run_reporting_errors(lambda: gestures.clear_proposed_joints(editor))
@@ -102,10 +102,24 @@ def _draw_buttons(state: AppState, joints: tuple[Joint, ...], selected: Joint | 
     imgui.end_disabled()
     imgui.same_line()
     if imgui.button("Propose Joints", half):
-        state.run_reporting_errors(lambda: _propose(state))
+        widgets.run(state, PROPOSE_JOINTS)
     widgets.show_tooltip("Replaces all joints by proposals, from how the layers overlap and their names.")
 
 
 def _propose(state: AppState) -> None:
     assert state.document is not None
     gestures.set_joints(state.editor, "Propose Joints", suggest_joints(state.document.drawing))
+
+
+def _has_proposals(state: AppState) -> bool:
+    return state.document is not None and any(joint.is_proposed for joint in state.document.state.joints)
+
+
+def _has_layers(state: AppState) -> bool:
+    return state.document is not None and bool(state.document.drawing.layers)
+
+
+PROPOSE_JOINTS = Command("Propose Joints", _propose, enabled=_has_layers)
+ACCEPT_JOINTS = Command(
+    "Accept Proposed Joints", lambda state: gestures.accept_joints(state.editor), enabled=_has_proposals
+)

@@ -1,0 +1,1 @@
+"""Commands of the Edit menu that arrange the selected pins."""

@@ -1,0 +1,1 @@
+"""The frame around the canvas: menus, options bar, toolbar, side panel, timeline and status bar."""
