@@ -139,15 +139,26 @@ def remembered_size(preferences: Preferences) -> tuple[int, int]:
     return DEFAULT_SIZE
 
 
-def remembered_position(preferences: Preferences, screens: Sequence[Area]) -> tuple[int, int] | None:
-    """The upper left corner of the window; None if it is not on one of the screens any more."""
+def remembered_position(
+    preferences: Preferences, screens: Sequence[Area], size: tuple[int, int]
+) -> tuple[int, int] | None:
+    """The upper left corner of the window; None if it is not on one of the screens any more.
+
+    size: of the window in screen coordinates. It may have grown because the screen has another scale now; the
+    corner is then moved so that the window is wholly on its screen.
+    """
     remembered: list[object] = preferences.get("place", [])
     match remembered:
         case [int(x), int(y)]:
             for left, top, width, height in screens:
                 if left <= x <= left + width - GRIP and top <= y <= top + height - GRIP:
-                    return x, y
+                    return _shifted(x, left, width, size[0]), _shifted(y, top, height, size[1])
     return None
+
+
+def _shifted(start: int, screen_start: int, screen_length: int, length: int) -> int:
+    """The start of an interval, moved so that it ends on the screen; at the earliest that of the screen."""
+    return max(min(start, screen_start + screen_length - length), screen_start)
 
 
 def screens() -> list[Area]:

@@ -96,7 +96,7 @@ class Window:
         self.wait_for_events = wait_for_wake if null else glfw.wait_events_timeout
         self.handle = create_window(null, hidden, size or remembered_size(self.state.preferences))
         self._is_open, self._full_screen = True, FullScreen(self.handle)
-        position = remembered_position(self.state.preferences, screens())
+        position = remembered_position(self.state.preferences, screens(), glfw.get_window_size(self.handle))
         if position is not None:
             glfw.set_window_pos(self.handle, *position)
         if self.state.preferences.get("maximized", False):

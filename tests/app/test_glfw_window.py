@@ -47,8 +47,24 @@ def test_the_remembered_size_of_the_window(remembered, size):
 def test_the_remembered_position_is_used_if_it_is_still_on_a_screen(remembered, position):
     preferences = Preferences()
     preferences.put("place", remembered)
-    assert remembered_position(preferences, [(0, 24, 1920, 1056), (-1280, 0, 1280, 800)]) == position
-    assert remembered_position(preferences, []) is None
+    screens = [(0, 24, 1920, 1056), (-1280, 0, 1280, 800)]
+    assert remembered_position(preferences, screens, (64, 64)) == position
+    assert remembered_position(preferences, [], (64, 64)) is None
+
+
+@pytest.mark.parametrize(
+    ("place", "size", "expected"),
+    [
+        ((960, 607), (1280, 800), (960, 607)),
+        ((960, 607), (2560, 1600), (640, 400)),  # as large on a screen of 200 %
+        ((960, 607), (4000, 2400), (0, 0)),
+        ((3100, 1900), (1280, 800), (1920, 1200)),
+    ],
+)
+def test_a_remembered_window_is_wholly_on_its_screen(place, size, expected):
+    preferences = Preferences()
+    preferences.put("place", list(place))
+    assert remembered_position(preferences, [(0, 0, 3200, 2000)], size) == expected
 
 
 @pytest.mark.parametrize(

@@ -127,6 +127,10 @@ def test_all_tools_are_seen_above_the_timeline(ui):
     last = commands.SHOW_MESH
     ui.do(lambda hand: found.append(hand.item_info(f"//Tools/{last.icon}##{last.label}").rect_full))
     assert tools.pos.y < found[0].min.y < found[0].max.y <= timeline.pos.y
+    low, high = found[0].min, found[0].max
+    button = ui.screenshot()[round(low.y) : round(high.y), round(low.x) : round(high.x)].astype(int)
+    icon = (np.abs(button - button[0, 0]).max(axis=2) > 60).any(axis=0).sum()
+    assert icon >= 12, "its icon is whole, too"
 
 
 def test_the_captions_of_two_methods_stay_in_their_halves(pinned):

@@ -41,12 +41,13 @@ def draw(state: AppState, scale: float) -> None:
     padding = ImVec2((_WIDTH * scale - size) / 2, 8 * scale)
     if widgets.side_bar("Tools", imgui.Dir.left, _WIDTH * scale, padding):
         imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(4 * scale, 4 * scale))
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))  # or else it covers small icons
         for command in TOOLBAR:
             if command is None:
                 _draw_separator(size, scale)
             else:
                 _draw_button(state, command, size)
-        imgui.pop_style_var()
+        imgui.pop_style_var(2)
     imgui.end()
 
 

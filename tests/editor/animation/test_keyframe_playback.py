@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from akap_editor.editor.animation.keyframe_poses import animation_frame
 
 from akap_editor.deform.pose_interpolation import InterpolationCache
 from akap_editor.editor import gestures
 from akap_editor.editor.animation.keyframe_playback import KeyframePlayback
-from akap_editor.editor.animation.keyframe_poses import KeyframePoses
+from akap_editor.editor.animation.keyframe_poses import KeyframePoses, animation_frame
 from akap_editor.editor.animation.keyframe_times import mirror_easings, stretch_times
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing
