@@ -19,7 +19,7 @@ from ..geometry.distortion import Distortion, distortion
 from ..geometry.validation import Floats
 from ..io.akap.autosave import Autosave
 from ..render.offscreen import OffscreenRenderer
-from ..words import use_language
+from ..words import tr, use_language
 from .canvas.view_options import ViewOptions
 from .jobs.background_thread import BackgroundThread, Wake, no_window
 from .jobs.pose_export import PoseExportQueue
@@ -38,8 +38,10 @@ def error_message(error: Exception) -> str:
     if isinstance(error, AkapError):
         return str(error)
     traceback.print_exception(error)
-    return (
-        f"Something went wrong in the program ({type(error).__name__}: {error}). Your drawing is still open."
+    return tr(
+        "Something went wrong in the program ({kind}: {error}). Your drawing is still open.",
+        kind=type(error).__name__,
+        error=error,
     )
 
 
@@ -181,7 +183,7 @@ class AppState:
         has_changed = bool(jobs) | self._advance_remesh()
         if self.remesher.is_busy and not self.remesher.is_dragging:
             self.begin_task(
-                Task("Making the mesh", self._remesh_steps(), is_shown_late=True, blocks_at_once=False)
+                Task(tr("Making the mesh"), self._remesh_steps(), is_shown_late=True, blocks_at_once=False)
             )
         return has_changed or (self.notice, self.error) != messages
 

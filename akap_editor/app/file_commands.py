@@ -26,6 +26,7 @@ from ..io.open_document import PICTURE_SUFFIXES
 from ..layers.drawing_layer import as_layered_picture, flat_picture
 from ..layers.layered_picture import Layer, LayeredPicture
 from ..meshing.faint import fitting_threshold
+from ..words import mark, tr
 from . import files
 from .app_state import AppState
 from .dialogs.file_dialog import FileDialog, FileRequest
@@ -50,14 +51,17 @@ def choose_mask(state: AppState) -> None:
 
         def show(masked: Document) -> None:
             files.show_document(state, masked)
-            state.notice = f"Cut out with {display_name(path)}"
+            state.notice = tr("Cut out with {file}", file=display_name(path))
 
         task = background_task(
-            f"Cutting out with {display_name(path)}", partial(cut_out, document, path), show, state.wake
+            tr("Cutting out with {file}", file=display_name(path)),
+            partial(cut_out, document, path),
+            show,
+            state.wake,
         )
         files.confirm_unsaved(state, lambda: state.begin_task(task))
 
-    state.part(FileDialog).ask(FileRequest("Choose mask", PICTURE_SUFFIXES, state.folder, use))
+    state.part(FileDialog).ask(FileRequest(tr("Choose mask"), PICTURE_SUFFIXES, state.folder, use))
 
 
 def cut_out(document: Document, mask: Path) -> Document:
@@ -98,9 +102,9 @@ def merge_layers(state: AppState) -> None:
 
     def show(merged: Document) -> None:
         files.show_document(state, merged)
-        state.notice = "The visible layers were merged into one drawing"
+        state.notice = tr("The visible layers were merged into one drawing")
 
-    task = background_task("Merging the layers", partial(merged_document, document), show, state.wake)
+    task = background_task(tr("Merging the layers"), partial(merged_document, document), show, state.wake)
     files.confirm_unsaved(state, lambda: state.begin_task(task))
 
 
@@ -136,7 +140,9 @@ def reload_artwork(state: AppState) -> None:
         return
     suffixes = (*PICTURE_SUFFIXES, *LAYER_SUFFIXES)
     use = partial(_reload, state)
-    state.part(FileDialog).ask(FileRequest("Choose the picture painted anew", suffixes, state.folder, use))
+    state.part(FileDialog).ask(
+        FileRequest(tr("Choose the picture painted anew"), suffixes, state.folder, use)
+    )
 
 
 def _reload(state: AppState, path: Path) -> None:
@@ -154,11 +160,11 @@ def _reload(state: AppState, path: Path) -> None:
     def show(result: tuple[LayeredPicture, EditState]) -> None:
         artwork, prepared = result
         is_current = state.editor.session is session and session.present is before
-        state.editor.apply("Reload Artwork", ReloadArtwork(artwork, prepared if is_current else None))
+        state.editor.apply(mark("Reload Artwork"), ReloadArtwork(artwork, prepared if is_current else None))
         state.part(ArtworkWatch).remember(path)
-        state.notice = f"Reloaded {display_name(path)}"
+        state.notice = tr("Reloaded {file}", file=display_name(path))
 
-    state.begin_task(background_task(f"Reloading {display_name(path)}", read, show, state.wake))
+    state.begin_task(background_task(tr("Reloading {file}", file=display_name(path)), read, show, state.wake))
 
 
 def read_artwork(path: Path) -> LayeredPicture:
@@ -178,21 +184,21 @@ def choose_pose_to_save(state: AppState) -> None:
         name = f"{file_stem(state.document.drawing.name)}{POSE_SUFFIX}"
         use = partial(save_pose_file, state)
         state.part(FileDialog).ask(
-            FileRequest("Save pose", (POSE_SUFFIX,), state.folder, use, name, saving=True)
+            FileRequest(tr("Save pose"), (POSE_SUFFIX,), state.folder, use, name, saving=True)
         )
 
 
 def save_pose_file(state: AppState, path: Path) -> None:
     """Write pins and pose to a file."""
     if state.document is not None and state.run_reporting_errors(partial(save_pose, state.document, path)):
-        state.notice = f"Saved {display_name(path)}"
+        state.notice = tr("Saved {file}", file=display_name(path))
 
 
 def choose_pose_to_apply(state: AppState) -> None:
     """Ask for a pose file of this drawing, then apply it."""
     if state.document is not None:
         use = partial(apply_pose_file, state)
-        state.part(FileDialog).ask(FileRequest("Apply pose", (POSE_SUFFIX,), state.folder, use))
+        state.part(FileDialog).ask(FileRequest(tr("Apply pose"), (POSE_SUFFIX,), state.folder, use))
 
 
 def apply_pose_file(state: AppState, path: Path) -> None:
@@ -202,7 +208,7 @@ def apply_pose_file(state: AppState, path: Path) -> None:
         assert state.document is not None
         pose = load_pose(path, state.document.drawing)
         gestures.apply_pose(state.editor, pose.pins, pose.positions, pose.crossings)
-        state.notice = f"Applied {display_name(path)}"
+        state.notice = tr("Applied {file}", file=display_name(path))
 
     state.run_reporting_errors(apply)
 
@@ -218,7 +224,7 @@ def choose_recording_to_save(state: AppState) -> None:
             partial(save_recording_file, state),
         )
         state.part(FileDialog).ask(
-            FileRequest("Save recording", (RECORDING_SUFFIX,), state.folder, use, name, saving=True)
+            FileRequest(tr("Save recording"), (RECORDING_SUFFIX,), state.folder, use, name, saving=True)
         )
 
 
@@ -229,9 +235,11 @@ def save_recording_file(state: AppState, path: Path) -> None:
         session = state.editor.session
         assert session is not None
         write_recording(session.recording, path, session.drawing)
-        state.notice = f"Saved {display_name(path)}, {session.recording.duration:.0f} seconds"
+        state.notice = tr(
+            "Saved {file}, {seconds:.0f} seconds", file=display_name(path), seconds=session.recording.duration
+        )
 
-    state.run_after_frame(write, f"Saving {display_name(path)} ...")
+    state.run_after_frame(write, tr("Saving {file} ...", file=display_name(path)))
 
 
 # -- the reference picture ----------------------------------------------------------------------------------
@@ -243,4 +251,6 @@ def choose_reference(state: AppState) -> None:
     def use(path: Path) -> None:
         state.run_reporting_errors(lambda: state.view.set_reference(read_image(path), path))
 
-    state.part(FileDialog).ask(FileRequest("Choose reference picture", PICTURE_SUFFIXES, state.folder, use))
+    state.part(FileDialog).ask(
+        FileRequest(tr("Choose reference picture"), PICTURE_SUFFIXES, state.folder, use)
+    )

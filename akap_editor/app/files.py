@@ -20,6 +20,7 @@ from ..io.images import has_transparency, is_animation
 from ..io.layers.open_layers import LAYER_SUFFIXES
 from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document, opening_notes
 from ..resources import bundled_drawings
+from ..words import tr
 from .app_state import AppState, error_message
 from .dialogs.file_dialog import FileDialog, FileRequest
 from .dialogs.replace_files import ReplaceFilesDialog, ReplaceQuestion
@@ -51,11 +52,13 @@ def show_document(state: AppState, document: Document) -> None:
     if document.state.animation.keyframes:
         state.timeline.mode, state.timeline.is_shown = "keyframes", True
     opaque = document.path is None and not has_transparency(document.drawing.image)
-    notes = opening_notes(document, "in the Mesh section")
+    notes = opening_notes(document, tr("in the Mesh section"))
     if opaque:
         notes.append(
-            "This picture has no transparency, so the whole rectangle bends. "
-            "Remove Background in the Mesh section cuts out the drawing."
+            tr(
+                "This picture has no transparency, so the whole rectangle bends. "
+                "Remove Background in the Mesh section cuts out the drawing."
+            )
         )
     state.notice = ". ".join(notes)
 
@@ -64,20 +67,26 @@ def notice_changed_artwork(state: AppState) -> None:
     """Offer to reload the artwork if another program has written its file."""
     path = artwork_path(state)
     if path is not None and state.part(ArtworkWatch).has_changed(path):
-        state.notice = f"{display_name(path)} has changed on disk; Reload Artwork (F5) takes it over"
+        state.notice = tr(
+            "{file} has changed on disk; Reload Artwork (F5) takes it over", file=display_name(path)
+        )
 
 
 def choose_and_open(state: AppState) -> None:
     """Ask for a picture, drawing or recording, then open it."""
     suffixes = (PROJECT_SUFFIX, RECORDING_SUFFIX, *PICTURE_SUFFIXES, *LAYER_SUFFIXES, *MESH_SUFFIXES)
     state.part(FileDialog).ask(
-        FileRequest("Open picture or drawing", suffixes, state.folder, partial(open_path, state))
+        FileRequest(tr("Open picture or drawing"), suffixes, state.folder, partial(open_path, state))
     )
 
 
 def open_dropped(state: AppState, paths: list[Path]) -> None:
     """Open the first of the files that were dropped on the window."""
-    notice = f"Opened {display_name(paths[0])}, the first of {len(paths)} files" if len(paths) > 1 else ""
+    notice = (
+        tr("Opened {file}, the first of {count} files", file=display_name(paths[0]), count=len(paths))
+        if len(paths) > 1
+        else ""
+    )
     open_path(state, paths[0], notice)
 
 
@@ -100,7 +109,7 @@ def _begin_document(state: AppState, path: Path, notice: str) -> None:
     def show(document: Document) -> None:
         show_document(state, document)
         if is_animation(path):
-            state.notice = f"Opened the first frame of the animation {display_name(path)}"
+            state.notice = tr("Opened the first frame of the animation {file}", file=display_name(path))
         remember_file(state, path)
         state.notice = notice or state.notice
 
@@ -124,7 +133,7 @@ def _opening_task(state: AppState, path: Path, read: Callable[[], T], show: Call
     def forget() -> None:
         state.preferences.remove_recent(path)
 
-    return background_task(f"Opening {display_name(path)}", read, show, state.wake, forget)
+    return background_task(tr("Opening {file}", file=display_name(path)), read, show, state.wake, forget)
 
 
 def _show_recording(state: AppState, path: Path, session: Session, playback: SessionPlayback) -> None:
@@ -133,7 +142,11 @@ def _show_recording(state: AppState, path: Path, session: Session, playback: Ses
     state.editor.take_over(session)
     state.timeline.session_playback, state.timeline.mode, state.timeline.is_shown = playback, "session", True
     remember_file(state, path)
-    state.notice = f"Opened {display_name(path)}; the timeline shows its {playback.duration:.0f} seconds"
+    state.notice = tr(
+        "Opened {file}; the timeline shows its {seconds:.0f} seconds",
+        file=display_name(path),
+        seconds=playback.duration,
+    )
 
 
 def remember_file(state: AppState, path: Path) -> None:
@@ -158,13 +171,14 @@ def save(state: AppState, then: Callable[[], None] | None = None) -> None:
     if path is None:
         save_as(state, then)
     elif has_changed_on_disk(state.document):
-        text = (
-            f"“{display_name(path)}” has been changed by another program, or in another window, since it was "
-            "opened or saved here. Replacing it loses these changes."
+        text = tr(
+            "“{file}” has been changed by another program, or in another window, since it was "
+            "opened or saved here. Replacing it loses these changes.",
+            file=display_name(path),
         )
         replace_it = partial(write_document, state, path, then)
         rename = partial(save_as, state, then)
-        state.part(ReplaceFilesDialog).ask(ReplaceQuestion(text, replace_it, "Save As...", rename))
+        state.part(ReplaceFilesDialog).ask(ReplaceQuestion(text, replace_it, tr("Save As..."), rename))
     else:
         write_document(state, path, then)
 
@@ -178,7 +192,7 @@ def save_as(state: AppState, then: Callable[[], None] | None = None) -> None:
     )
     state.part(FileDialog).ask(
         FileRequest(
-            "Save drawing",
+            tr("Save drawing"),
             (PROJECT_SUFFIX,),
             resolved(suggested).parent,
             lambda path: write_document(state, path, then),
@@ -196,7 +210,7 @@ def write_document(state: AppState, path: Path, then: Callable[[], None] | None 
         saved = save_project(state.editor.session.present_document, path)
         state.editor.mark_saved(path, saved.digest)
         remember_file(state, path)
-        state.notice = f"Saved {display_name(path)}"
+        state.notice = tr("Saved {file}", file=display_name(path))
 
     if state.run_reporting_errors(write) and then is not None:
         then()

@@ -14,6 +14,7 @@ from PIL import Image
 
 from ..errors import DisplayError, GraphicsError
 from ..resources import resource
+from ..words import tr
 from .preferences import Preferences
 
 _MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
@@ -39,7 +40,7 @@ def create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
         # Under Wayland through XWayland: otherwise a window has no icon and cannot be put where it was.
         glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_X11)
     if not glfw.init():
-        raise DisplayError("there is no display: expected an X11 or Wayland session to open a window in")
+        raise DisplayError(tr("there is no display: expected an X11 or Wayland session to open a window in"))
     if null:
         glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
     for hint, value in (
@@ -56,7 +57,7 @@ def create_window(null: bool, hidden: bool, size: tuple[int, int]) -> Any:
     handle = glfw.create_window(*size, "akap-editor", None, None)
     if not handle:
         glfw.terminate()
-        raise GraphicsError("this computer offers no OpenGL 3.3 core profile, which the window needs")
+        raise GraphicsError(tr("this computer offers no OpenGL 3.3 core profile, which the window needs"))
     if not null and sys.platform != "darwin":  # macOS takes the icon from the bundle
         icons: list[Any] = [
             Image.open(resource("assets", "icons", f"akap-editor-{side}.png")) for side in ICON_SIDES

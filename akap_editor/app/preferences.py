@@ -10,6 +10,7 @@ import platformdirs
 from ..errors import FileError, InputError
 from ..io.atomic import os_error_reason, read_file, resolved, write_atomic
 from ..meshing.meshers import nearest_mesher
+from ..words import tr
 
 CONFIG_FOLDER_VARIABLE = "AKAP_EDITOR_CONFIG"  # environment variable: another folder, e.g. for tests
 FILE_NAME = "preferences.json"
@@ -42,7 +43,7 @@ class Preferences:
             self._values = self._read()
         except InputError as error:
             self._values = {}
-            self.problem = f"{error} The default preferences are used."
+            self.problem = tr("{error} The default preferences are used.", error=error)
 
     @property
     def is_stored(self) -> bool:
@@ -96,9 +97,11 @@ class Preferences:
         except FileError:
             raise
         except (ValueError, RecursionError) as error:
-            raise FileError("open", self._path, f"expected JSON ({error})") from error
+            raise FileError("open", self._path, tr("expected JSON ({error})", error=error)) from error
         if not isinstance(values, dict):
-            raise FileError("open", self._path, f"expected a JSON object, got {type(values).__name__}")
+            raise FileError(
+                "open", self._path, tr("expected a JSON object, got {kind}", kind=type(values).__name__)
+            )
         return values
 
     # -- the language ----------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from PIL import Image
 from ..display_text import display_name, display_text
 from ..io.images import Picture, read_image
 from ..resources import bundled_drawings
+from ..words import tr
 from . import files, widgets
 from .app_state import AppState
 from .commands.registry import OPEN
@@ -47,9 +48,9 @@ def draw(state: AppState, scale: float, pixels_per_point: float) -> None:
     imgui.pop_style_var(3)
     _draw_title()
     _draw_drop_zone(state, scale, column)
-    _draw_heading("Bundled drawings")
+    _draw_heading(tr("Bundled drawings"))
     _draw_bundled(state, scale, column, pixels_per_point)
-    _draw_heading("Recent files")
+    _draw_heading(tr("Recent files"))
     _draw_recent(state, column)
     imgui.end()
 
@@ -101,7 +102,7 @@ def _draw_title() -> None:
     imgui.push_font(None, imgui.get_style().font_size_base * 2.0)
     imgui.text("akap-editor")
     imgui.pop_font()
-    imgui.text_colored(ImVec4(*SECONDARY), "Pin a drawing, drag a pin, and the drawing bends.")
+    imgui.text_colored(ImVec4(*SECONDARY), tr("Pin a drawing, drag a pin, and the drawing bends."))
     imgui.spacing()
     imgui.spacing()
 
@@ -126,8 +127,8 @@ def _draw_drop_zone(state: AppState, scale: float, width: float) -> None:
     _draw_dashed_frame(corner, end, scale, packed(ACCENT if is_highlighted else STRONG_LINE))
     lines = (
         (icons.ICON_FA_IMAGE, 1.7, ACCENT),
-        ("Drop a picture here", 1.2, TEXT),
-        (f"or click to choose a file ({OPEN.key_name})", 1.0, SECONDARY),
+        (tr("Drop a picture here"), 1.2, TEXT),
+        (tr("or click to choose a file ({key})", key=OPEN.key_name), 1.0, SECONDARY),
     )
     gap, line_height = 8 * scale, imgui.get_font_size()
     y = corner.y + (height - line_height * sum(size for _, size, _ in lines) - 2 * gap) / 2
@@ -164,7 +165,7 @@ def _draw_recent(state: AppState, width: float) -> None:
     """Draw as many recent files as there is room for, at least three."""
     recent = state.preferences.recent
     if not recent:
-        widgets.secondary_text("None yet. Files that you open or save are listed here.")
+        widgets.secondary_text(tr("None yet. Files that you open or save are listed here."))
         return
     room = int(imgui.get_content_region_avail().y / imgui.get_text_line_height_with_spacing())
     for index, path in enumerate(recent[: max(room, _MIN_RECENT)]):

@@ -15,6 +15,7 @@ from ...geometry.validation import freeze
 from ...io.akap.pose import POSE_FORMAT, decode_pose, encode_pose
 from ...io.images import MAX_PIXELS
 from ...meshing.faint import fitting_threshold
+from ...words import tr
 from .. import files
 from ..app_state import AppState
 from ..jobs.background_task import background_task
@@ -31,8 +32,13 @@ def copied_picture() -> NDArray[np.uint8] | None:
         return None
     if not 0 < width * height <= MAX_PIXELS:
         raise InputError(
-            f"Couldn't open the picture in the clipboard. It has {width} × {height} pixels; "
-            f"up to {MAX_PIXELS:,} are possible."
+            tr(
+                "Couldn't open the picture in the clipboard. It has {width} × {height} pixels; "
+                "up to {most:,} are possible.",
+                width=width,
+                height=height,
+                most=MAX_PIXELS,
+            )
         )
     return freeze(np.frombuffer(data, np.uint8).reshape(height, width, 4).copy())
 
@@ -53,10 +59,12 @@ def _paste(state: AppState) -> None:
         return
     picture = copied_picture()
     if picture is None:
-        state.notice = "The clipboard holds neither a picture nor a pose"
+        state.notice = tr("The clipboard holds neither a picture nor a pose")
         return
     show = partial(_show, state)
-    task = background_task("Opening the picture in the clipboard", partial(_make, picture), show, state.wake)
+    task = background_task(
+        tr("Opening the picture in the clipboard"), partial(_make, picture), show, state.wake
+    )
     files.confirm_unsaved(state, lambda: state.begin_task(task))
 
 
@@ -67,16 +75,16 @@ def _make(picture: NDArray[np.uint8]) -> Document:
 
 def _show(state: AppState, document: Document) -> None:
     files.show_document(state, document)
-    state.notice = state.notice or "Opened the picture in the clipboard"
+    state.notice = state.notice or tr("Opened the picture in the clipboard")
 
 
 def _apply_pose(state: AppState, text: str) -> None:
     if state.document is None:
-        state.notice = "The clipboard holds a pose: open its drawing first"
+        state.notice = tr("The clipboard holds a pose: open its drawing first")
         return
     pose = decode_pose(text.encode(), state.document.drawing)
     gestures.apply_pose(state.editor, pose.pins, pose.positions, pose.crossings)
-    state.notice = "Applied the pose in the clipboard"
+    state.notice = tr("Applied the pose in the clipboard")
 
 
 def _copy_picture(state: AppState) -> None:
@@ -87,7 +95,7 @@ def _copy_picture(state: AppState) -> None:
     picture = state.offscreen_renderer.render(document.drawing, document.state.positions, order=order)
     height, width = picture.shape[:2]
     _put(lambda: copykitten.copy_image(picture.tobytes(), width, height))
-    state.notice = f"Copied the pose as a picture, {width} × {height} px"
+    state.notice = tr("Copied the pose as a picture, {width} × {height} px", width=width, height=height)
 
 
 def _copy_pose(state: AppState) -> None:
@@ -96,7 +104,7 @@ def _copy_pose(state: AppState) -> None:
     assert document is not None
     text = encode_pose(document).decode()
     _put(lambda: copykitten.copy(text))
-    state.notice = "Copied the pose; paste it into another drawing of the same mesh"
+    state.notice = tr("Copied the pose; paste it into another drawing of the same mesh")
 
 
 def _put(copy: Callable[[], None]) -> None:
@@ -104,7 +112,7 @@ def _put(copy: Callable[[], None]) -> None:
     try:
         copy()
     except copykitten.CopykittenError as error:
-        raise InputError(f"Couldn't copy to the clipboard. {error}") from error
+        raise InputError(tr("Couldn't copy to the clipboard. {error}", error=error)) from error
 
 
 PASTE = Command("Paste Picture or Pose", _paste, (CTRL | Key.v,))

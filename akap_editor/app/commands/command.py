@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from ...words import tr
 from ..app_state import AppState
-from .keymap import ALT, CTRL, KEYMAP, SHIFT, Key, chord_name
+from .keymap import ALT, CTRL, KEYMAP, SHIFT, Key, chord_name, shown_chord
 
 __all__ = ["ALT", "CTRL", "SHIFT", "Command", "CommandGroup", "Key", "Menu", "Submenu", "chord_name"]
 
@@ -66,10 +66,10 @@ class Command:
 
     @property
     def key_name(self) -> str:
-        """The first key in words, e.g. "Ctrl+Shift+S"; empty if there is none."""
+        """The first key in words, e.g. "Ctrl+Shift+S", in the user's language; empty if there is none."""
         if self.typed and not KEYMAP.is_changed(self.label):
             return self.typed
-        return chord_name(self.active_chords[0]) if self.active_chords else ""
+        return shown_chord(self.active_chords[0]) if self.active_chords else ""
 
     @property
     def active_chords(self) -> tuple[int, ...]:

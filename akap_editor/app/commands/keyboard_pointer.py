@@ -6,6 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...editor.events import ARROWS
+from ...words import mark
 from ..app_state import AppState
 from .command import CONTEXT_MENU_KEYS, CTRL, SHIFT, Command, Key, has_drawing
 from .timeline import has_keyframes
@@ -85,9 +86,13 @@ PIN_VALUES = Command(
 )
 FINISH = Command("Finish", _finish, (Key.enter, Key.keypad_enter), "", _can_finish)
 CONTEXT_MENU = Command("Context Menu", _open_context_menu, CONTEXT_MENU_KEYS, "", _has_context_menu)
+_PAN_LABELS = {
+    "left": mark("Pan Left"),
+    "right": mark("Pan Right"),
+    "up": mark("Pan Up"),
+    "down": mark("Pan Down"),
+}
 PANNING = tuple(
-    Command(
-        f"Pan {name.capitalize()}", _pan(x, y), (CTRL | _ARROW_KEYS[name],), "", has_drawing, repeats=True
-    )
+    Command(_PAN_LABELS[name], _pan(x, y), (CTRL | _ARROW_KEYS[name],), "", has_drawing, repeats=True)
     for name, (x, y) in ARROWS.items()
 )

@@ -1,8 +1,11 @@
 """Keys: their names, and the keys of commands that the user has changed."""
 
+import re
 from collections.abc import Mapping
 
 from imgui_bundle import imgui
+
+from ...words import mark, tr
 
 Key = imgui.Key
 
@@ -18,25 +21,26 @@ class Modifier(int):
 
 
 CTRL, SHIFT, ALT = map(Modifier, (Key.mod_ctrl, Key.mod_shift, Key.mod_alt))
-_MODIFIERS = {"Ctrl": CTRL, "Alt": ALT, "Shift": SHIFT}
+_MODIFIERS = {mark("Ctrl"): CTRL, mark("Alt"): ALT, mark("Shift"): SHIFT}
 _KEY_NAMES = {
-    "named_key_begin": "Tab",  # another name of the same key
-    "delete": "Del",
+    "named_key_begin": mark("Tab"),  # another name of the same key
+    "delete": mark("Del"),
     "equal": "=",
     "minus": "-",
     "left_bracket": "[",
     "right_bracket": "]",
     "comma": ",",
     "period": ".",
-    "left_arrow": "Left",
-    "right_arrow": "Right",
-    "up_arrow": "Up",
-    "down_arrow": "Down",
-    "page_up": "PgUp",
-    "page_down": "PgDn",
-    "keypad_add": "Keypad +",
-    "keypad_subtract": "Keypad -",
+    "left_arrow": mark("Left"),
+    "right_arrow": mark("Right"),
+    "up_arrow": mark("Up"),
+    "down_arrow": mark("Down"),
+    "page_up": mark("PgUp"),
+    "page_down": mark("PgDn"),
+    "keypad_add": mark("Keypad +"),
+    "keypad_subtract": mark("Keypad -"),
 }
+_NAMED_KEYS = (mark("Space"), mark("Enter"), mark("Backspace"), mark("Home"), mark("End"), mark("Insert"))
 # The keys that a command may have: no modifiers, buttons of the mouse or keys that end a dialog.
 _LAST_NAMED = int(Key.oem102)
 _NO_COMMAND = ("left_ctrl", "left_shift", "left_alt", "left_super", "right_ctrl", "right_shift", "right_alt")
@@ -59,13 +63,19 @@ _KEYS_BY_NAME = {_key_name(key): key for key in KEYS}
 
 
 def chord_name(chord: int) -> str:
-    """The name of a chord, e.g. "Ctrl+Shift+S", with key names as on a keyboard."""
+    """The name of a chord in English, e.g. "Ctrl+Shift+S", by which the preferences store it."""
     parts, chord = [], int(chord)
     for name, modifier in _MODIFIERS.items():
         if chord & int(modifier):
             parts.append(name)
             chord &= ~int(modifier)
     return "+".join([*parts, _key_name(chord)])
+
+
+def shown_chord(chord: int) -> str:
+    """The name of a chord as keyboards of the user's language show it."""
+    parts = re.split(r"\+(?=.)", chord_name(chord))
+    return "+".join(tr(part) for part in parts)
 
 
 def chord_named(name: str) -> int | None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
+from ...words import mark, tr
 from .. import files, widgets
 from ..app_state import AppState
 from ..theme import ACCENT, SECONDARY, TEXT, packed
@@ -16,7 +17,7 @@ from .synonyms import has_synonym
 _NAME = "##palette"
 _FLAGS = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
 _WIDTH, _ROWS = 500, 10  # design points; lines that are visible at once
-_HINT = "Type a few letters of a command"
+_HINT = mark("Type a few letters of a command")
 _SELECTION_STEPS = {
     imgui.Key.up_arrow: -1,
     imgui.Key.down_arrow: 1,
@@ -32,7 +33,8 @@ _MATCH, _WORD_START, _CONSECUTIVE, _LENGTH_COST = 1.0, 1.5, 1.7, 0.02
 class Entry:
     """A line of the palette.
 
-    key: of its command; enabled: whether it can be run now; is_file: whether it opens a file.
+    key: of its command; enabled: whether it can be run now; is_file: whether it opens a file;
+    english: its label in English, by which it is found, too.
     """
 
     label: str
@@ -40,6 +42,7 @@ class Entry:
     key: str = ""
     enabled: bool = True
     is_file: bool = False
+    english: str = ""
 
 
 Match = tuple[Entry, tuple[int, ...]]  # an entry, and the indices of the query's letters in its label
@@ -51,9 +54,11 @@ def entries(state: AppState, items: Iterable[Command | Submenu]) -> list[Entry]:
     for item in items:
         if isinstance(item, Submenu):
             for name, path in item.files(state):
-                listed.append(Entry(f"{item.label}: {name}", _opens(path), is_file=True))
+                listed.append(Entry(f"{item.text}: {name}", _opens(path), is_file=True))
         else:
-            listed.append(Entry(item.name, item.run, item.key_name, item.enabled(state)))
+            listed.append(
+                Entry(item.name, item.run, item.key_name, item.enabled(state), english=item.label.rstrip("."))
+            )
     return list({entry.label: entry for entry in listed}.values())
 
 
@@ -98,7 +103,7 @@ def ranked(query: str, candidates: list[Entry]) -> list[Match]:
     found = []
     for entry in candidates:
         result = match(query, entry.label)
-        is_synonym = has_synonym(query, entry.label)
+        is_synonym = has_synonym(query, entry.label, entry.english)
         if result is None and not is_synonym:
             continue
         score, letters = result or (0.0, ())
@@ -149,7 +154,7 @@ class Palette:
         if is_new:
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(-1)
-        is_changed, self.query = imgui.input_text_with_hint("##query", _HINT, self.query)
+        is_changed, self.query = imgui.input_text_with_hint("##query", tr(_HINT), self.query)
         matches = ranked(self.query, entries(state, self._items))
         steps = [step for key, step in _SELECTION_STEPS.items() if imgui.is_key_pressed(key)]
         selected = 0 if is_changed else self._selected + sum(steps)
@@ -178,7 +183,7 @@ def _draw_list(matches: list[Match], selected: int, scrolls: bool, scale: float)
     imgui.begin_child("##found", ImVec2(0, height), 0, imgui.WindowFlags_.no_nav)
     imgui.set_cursor_pos_y(imgui.get_style().item_spacing.y / 2)  # room for the highlight of the first line
     if not matches:
-        widgets.secondary_text("No command is called like that.")
+        widgets.secondary_text(tr("No command is called like that."))
     for index, (entry, letters) in enumerate(matches):
         corner, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
         flags = 0 if entry.enabled else imgui.SelectableFlags_.disabled

@@ -13,6 +13,7 @@ from ...editor.session.edits import SetStiffness
 from ...editor.tools.base import IdleTool
 from ...editor.tools.suggested_pins import suggest_pins
 from ...resources import bundled_drawings
+from ...words import mark, tr
 from .. import file_commands, files
 from ..app_state import AppState
 from ..dialogs.about import AboutDialog
@@ -249,7 +250,7 @@ REMEMBER_REST_SHAPE = Command(
 RESET_PARAMETERS = Command("Reset Parameters", _reset_parameters, (), "", _has_changed_parameters)
 CLEAR_STIFFNESS = Command(
     "Clear Stiffness",
-    _on_editor(lambda editor: editor.apply("Clear Stiffness", SetStiffness(None))),
+    _on_editor(lambda editor: editor.apply(mark("Clear Stiffness"), SetStiffness(None))),
     (),
     "",
     _has_stiffness,
@@ -325,7 +326,7 @@ ARRANGE = CommandGroup("Align Pins", (*ALIGN_PINS, None, *DISTRIBUTE_PINS))
 
 MENUS: tuple[Menu, ...] = (
     (
-        "File",
+        mark("File"),
         (
             *(OPEN, OPEN_RECENT, OPEN_BUNDLED, RELOAD, CUT_OUT, MERGE_LAYERS, CLOSE, None),
             *(SAVE, SAVE_AS, None),
@@ -335,7 +336,7 @@ MENUS: tuple[Menu, ...] = (
         ),
     ),
     (
-        "Edit",
+        mark("Edit"),
         (
             *(UNDO, REDO, None),
             *(COPY_PICTURE, COPY_POSE, PASTE, None),
@@ -348,7 +349,7 @@ MENUS: tuple[Menu, ...] = (
         ),
     ),
     (
-        "View",
+        mark("View"),
         (
             *(FIT, ACTUAL_SIZE, ZOOM_IN, ZOOM_OUT, None),
             *(SHOW_MESH, SHOW_PINS, *OVERLAYS, NEXT_RANGE, None),
@@ -357,8 +358,8 @@ MENUS: tuple[Menu, ...] = (
             *(HIDE_PANELS, FULL_SCREEN),
         ),
     ),
-    ("Animation", ANIMATION),
-    ("Help", (PALETTE, SHORTCUTS, ABOUT)),
+    (mark("Animation"), ANIMATION),
+    (mark("Help"), (PALETTE, SHORTCUTS, ABOUT)),
 )
 COMMANDS = (
     *(item for _, items in MENUS for item in commands_and_files(items) if isinstance(item, Command)),
@@ -380,6 +381,6 @@ def run_pressed(state: AppState) -> None:
         if not command.is_pressed():
             continue
         if not command.enabled(state):
-            state.notice = command.missing or state.notice
+            state.notice = tr(command.missing) or state.notice
         else:
             state.run_reporting_errors(lambda command=command: command.run(state))  # type: ignore[misc]

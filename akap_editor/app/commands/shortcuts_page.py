@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACTIVE, SECONDARY, TEXT, packed
@@ -13,28 +14,28 @@ Line = tuple[str, str]  # keys or mouse, and what they do
 Group = tuple[str, list[Line]]  # a title and its lines
 
 _MOUSE: tuple[Line, ...] = (
-    ("Click on the drawing", "Add a pin"),
-    ("Drag a pin", "Bend the drawing"),
-    ("Press and drag", "Add a pin and bend"),
-    ("Shift-click, drag a box", "Select several pins"),
-    ("Double-click a pin", "Edit its values"),
-    ("Right-click", "Open the menu"),
-    ("Alt-click a pin", "Remove it"),
-    ("Drag its ring", "Rotate around it"),
-    ("Shift-click, brush", "Paint a straight line"),
-    ("Arrows", "Nudge; with Shift by 10"),
-    ("C, arrows, Enter", "Point without a mouse"),
-    ("Middle-drag, Space-drag", "Pan"),
-    ("Wheel, Shift+wheel", "Zoom, pan sideways"),
-    ("Ctrl+Space, click, drag", "Zoom; with Alt out"),
-    ("Space, tapped", "Play"),
-    ("H", "Hide pins while held"),
-    ("Esc", "Cancel, then deselect"),
+    (mark("Click on the drawing"), mark("Add a pin")),
+    (mark("Drag a pin"), mark("Bend the drawing")),
+    (mark("Press and drag"), mark("Add a pin and bend")),
+    (mark("Shift-click, drag a box"), mark("Select several pins")),
+    (mark("Double-click a pin"), mark("Edit its values")),
+    (mark("Right-click"), mark("Open the menu")),
+    (mark("Alt-click a pin"), mark("Remove it")),
+    (mark("Drag its ring"), mark("Rotate around it")),
+    (mark("Shift-click, brush"), mark("Paint a straight line")),
+    (mark("Arrows"), mark("Nudge; with Shift by 10")),
+    (mark("C, arrows, Enter"), mark("Point without a mouse")),
+    (mark("Middle-drag, Space-drag"), mark("Pan")),
+    (mark("Wheel, Shift+wheel"), mark("Zoom, pan sideways")),
+    (mark("Ctrl+Space, click, drag"), mark("Zoom; with Alt out")),
+    (mark("Space, tapped"), mark("Play")),
+    ("H", mark("Hide pins while held")),
+    (mark("Esc"), mark("Cancel, then deselect")),
 )
 _FOCUS: tuple[Line, ...] = (
-    ("F10, Alt+letter", "Open a menu"),
-    ("F6, Shift+F6", "Next, previous panel"),
-    ("Tab, arrows, Enter", "Use the focused panel"),
+    (mark("F10, Alt+letter"), mark("Open a menu")),
+    (mark("F6, Shift+F6"), mark("Next, previous panel")),
+    (mark("Tab, arrows, Enter"), mark("Use the focused panel")),
 )
 _COLUMN_WIDTH, _KEYS_WIDTH = 302, 158  # design points
 _MAX_COLUMNS = 4
@@ -44,16 +45,16 @@ _SCROLL_LINES = {Key.up_arrow: -1, Key.down_arrow: 1, Key.page_up: -10, Key.page
 
 def groups(menus: Sequence[Menu], commands: Sequence[Command]) -> list[Group]:
     """The groups of the page: mouse, one for each menu, and the commands that are in no menu."""
-    listed = [("Mouse", list(_MOUSE))]
+    listed = [(tr("Mouse"), [(tr(keys), tr(action)) for keys, action in _MOUSE])]
     in_menus: set[int] = set()
     for name, items in menus:
         listed_items = commands_and_files(items)
         with_keys = [item for item in listed_items if isinstance(item, Command) and item.active_chords]
         in_menus.update(map(id, with_keys))
-        listed.append((name, [(command.key_name, command.name) for command in with_keys]))
-    listed[-1][1].extend(_FOCUS)
+        listed.append((tr(name), [(command.key_name, command.name) for command in with_keys]))
+    listed[-1][1].extend((tr(keys), tr(action)) for keys, action in _FOCUS)
     others = [command for command in commands if command.active_chords and id(command) not in in_menus]
-    listed.insert(_TOOLS_INDEX, ("Tools", [(command.key_name, command.name) for command in others]))
+    listed.insert(_TOOLS_INDEX, (tr("Tools"), [(command.key_name, command.name) for command in others]))
     return [(title, lines) for title, lines in listed if lines]
 
 
@@ -74,7 +75,7 @@ class ShortcutsPage:
         if not widgets.begin_dialog("Keyboard shortcuts"):
             return
         _draw_groups(self._groups, scale)
-        is_closed = widgets.button("Close", primary=True) or widgets.cancel_pressed()
+        is_closed = widgets.button(tr("Close"), primary=True) or widgets.cancel_pressed()
         is_key_pressed = self._command is not None and self._command.is_pressed()
         if is_closed or widgets.confirm_pressed() or is_key_pressed:
             self.is_open = False

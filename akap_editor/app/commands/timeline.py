@@ -7,6 +7,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...editor.animation.keyframe_playback import KeyframePlayback
 from ...editor.animation.keyframe_times import TIME_STEP
 from ...editor.animation.playback import Playback
+from ...words import mark
 from ..app_state import AppState
 from ..dialogs.export.animation import ExportAnimationDialog
 from ..timeline.timeline import snap_time
@@ -98,7 +99,9 @@ def _select_all(playback: KeyframePlayback) -> None:
     playback.selected = frozenset(playback.stored_animation.times)
 
 
-_NOTHING_TO_PLAY = "There is no motion yet: bend the drawing, or set two keyframes (K) at different times"
+_NOTHING_TO_PLAY = mark(
+    "There is no motion yet: bend the drawing, or set two keyframes (K) at different times"
+)
 
 PLAY = Command("Play", _play, (Key.l,), icons.ICON_FA_PLAY, _can_play, missing=_NOTHING_TO_PLAY)
 EXPORT_ANIMATION = Command(

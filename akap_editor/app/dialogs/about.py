@@ -3,6 +3,7 @@
 from imgui_bundle import imgui
 
 from ... import __version__
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import SECONDARY
@@ -26,18 +27,22 @@ class AboutDialog:
             return
         imgui.text(f"akap-editor {__version__}")
         widgets.paragraph(
-            "A puppet-warp editor for cartoons. Method: Solomon, Ben-Chen, Butscher and Guibas, "
-            "“As-Killing-As-Possible Vector Fields for Planar Deformation”, SGP 2011.",
+            tr(
+                "A puppet-warp editor for cartoons. Method: Solomon, Ben-Chen, Butscher and Guibas, "
+                "“As-Killing-As-Possible Vector Fields for Planar Deformation”, SGP 2011."
+            ),
             _WIDTH * scale,
         )
         widgets.paragraph(
-            "Free software; the file LICENSE holds its license. Of its meshers, Triangle may be used "
-            "non-commercially only, PythonCDT for everything.",
+            tr(
+                "Free software; the file LICENSE holds its license. Of its meshers, Triangle may be used "
+                "non-commercially only, PythonCDT for everything."
+            ),
             _WIDTH * scale,
             SECONDARY,
         )
         imgui.spacing()
-        if widgets.button("Close", primary=True) or widgets.cancel_pressed() or widgets.confirm_pressed():
+        if widgets.button(tr("Close"), primary=True) or widgets.cancel_pressed() or widgets.confirm_pressed():
             self.is_open = False
             widgets.close_popup()
         imgui.end_popup()

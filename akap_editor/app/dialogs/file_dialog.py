@@ -14,6 +14,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import portable_file_dialogs as native
 
 from ...display_text import display_name, display_text
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT, SECONDARY
@@ -21,7 +22,7 @@ from .replace_files import ReplaceFilesDialog
 
 _WIDTH, _HEIGHT = 520, 260  # of the list of files, in design points
 _OTHER_HEIGHT = 220  # of everything around the list in a low window, in design points
-_NOT_PASSED_ON = (
+_NOT_PASSED_ON = mark(
     "The file dialog of the system cannot pass on a name of this file or folder, which is not UTF-8. "
     "Choose the file here."
 )
@@ -152,9 +153,9 @@ class FileDialog:
         """Say that the window waits; the system's dialog may take a second to appear, or be hidden."""
         if not widgets.begin_dialog(request.title):
             return
-        imgui.text_colored(ImVec4(*SECONDARY), "Waiting for the file dialog of the system.")
+        imgui.text_colored(ImVec4(*SECONDARY), tr("Waiting for the file dialog of the system."))
         imgui.spacing()
-        if widgets.button("Cancel") or widgets.cancel_pressed():
+        if widgets.button(tr("Cancel")) or widgets.cancel_pressed():
             self._native.kill()
             self._native = None
             self._close()
@@ -162,7 +163,7 @@ class FileDialog:
 
     def _draw_fields(self, request: FileRequest, scale: float) -> None:
         if self._replaces_native:
-            widgets.paragraph(_NOT_PASSED_ON, _WIDTH * scale)
+            widgets.paragraph(tr(_NOT_PASSED_ON), _WIDTH * scale)
             imgui.spacing()
         _draw_folder(request, scale)
         is_chosen = _draw_entries(request, scale)
@@ -175,17 +176,18 @@ class FileDialog:
             request.name = name
         replaces = request.saving and bool(request.name.strip()) and os.path.isfile(request.path)
         if replaces:
-            warning = " already exists and will be replaced"
-            room = _WIDTH * scale - imgui.calc_text_size(warning).x
-            imgui.text_colored(ImVec4(*ACCENT), widgets.shortened(display_name(request.path), room) + warning)
+            warning = mark("{file} already exists and will be replaced")
+            room = _WIDTH * scale - imgui.calc_text_size(tr(warning, file="")).x
+            name = widgets.shortened(display_name(request.path), room)
+            imgui.text_colored(ImVec4(*ACCENT), tr(warning, file=name))
         imgui.spacing()
         imgui.begin_disabled(not request.name.strip())
         is_accepted = widgets.button(
-            ("Replace" if replaces else "Save") if request.saving else "Open", primary=True
+            (tr("Replace") if replaces else tr("Save")) if request.saving else tr("Open"), primary=True
         )
         imgui.end_disabled()
         imgui.same_line()
-        if widgets.button("Cancel") or widgets.cancel_pressed():
+        if widgets.button(tr("Cancel")) or widgets.cancel_pressed():
             self._close()
         elif (is_accepted or is_chosen or widgets.confirm_pressed()) and request.name.strip():
             self._accept(request)
@@ -217,7 +219,7 @@ def _draw_folder(request: FileRequest, scale: float) -> None:
     """Draw the folder's path and a button that leads to its parent."""
     if imgui.button(icons.ICON_FA_ARROW_UP + "##up"):
         request.folder = request.folder.parent
-    widgets.show_tooltip("Parent folder")
+    widgets.show_tooltip(tr("Parent folder"))
     imgui.same_line()
     imgui.align_text_to_frame_padding()
     folder = widgets.shortened(display_text(request.folder), (_WIDTH - 50) * scale, keeps_end=True)

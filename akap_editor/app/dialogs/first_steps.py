@@ -3,6 +3,7 @@
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..commands.registry import PALETTE, UNDO
@@ -10,15 +11,19 @@ from ..preferences import Preferences
 from ..theme import ACCENT, SECONDARY, STRONG_LINE, packed
 
 STEPS = (
-    ("Hold it", "Click where the drawing should hold still, for instance on its feet."),
-    ("Bend it", "Press on the part that should move, and drag."),
+    (mark("Hold it"), mark("Click where the drawing should hold still, for instance on its feet.")),
+    (mark("Bend it"), mark("Press on the part that should move, and drag.")),
     (
-        "Look around",
-        "The wheel zooms, Space and drag moves the canvas. "
-        f"{UNDO.key_name} takes back what you did, {PALETTE.key_name} finds every command.",
+        mark("Look around"),
+        mark(
+            "The wheel zooms, Space and drag moves the canvas. "
+            "{undo} takes back what you did, {palette} finds every command."
+        ),
     ),
 )
-ONE_PIN = "With one pin, all of the drawing goes along. Click where it should hold still, as on its feet."
+ONE_PIN = mark(
+    "With one pin, all of the drawing goes along. Click where it should hold still, as on its feet."
+)
 BENT = 1.0  # pixels: if all vertices move by the same vector, up to this, the drawing was only moved
 _PREFERENCE = "first steps done"
 
@@ -59,14 +64,15 @@ class FirstSteps:
         step = self.step(state)
         title, text = STEPS[step]
         text = ONE_PIN if _only_pin_was_dragged(state) else text
+        text = tr(text, undo=UNDO.key_name, palette=PALETTE.key_name)
         padding = ImVec2(16 * scale, 10 * scale)
         room = imgui.get_main_viewport().work_size.x - 2 * padding.x
         height = imgui.get_text_line_height_with_spacing() + imgui.calc_text_size(text, wrap_width=room).y
         if widgets.side_bar("First steps", imgui.Dir.down, height + 2 * padding.y, padding):
             _draw_dots(step, scale)
             imgui.same_line(0, 10 * scale)
-            imgui.text_colored(ImVec4(*ACCENT), title)
-            if _dismiss_button("Done" if step == len(STEPS) - 1 else "Skip"):
+            imgui.text_colored(ImVec4(*ACCENT), tr(title))
+            if _dismiss_button(tr("Done") if step == len(STEPS) - 1 else tr("Skip")):
                 self.is_open = False
                 state.preferences.put(_PREFERENCE, True)
             imgui.push_text_wrap_pos(0.0)

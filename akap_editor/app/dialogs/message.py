@@ -2,6 +2,7 @@
 
 from imgui_bundle import imgui
 
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 
@@ -14,7 +15,7 @@ def draw(state: AppState, scale: float) -> None:
         widgets.paragraph(state.error, _WIDTH * scale)
         imgui.spacing()
         if (
-            widgets.button("OK", primary=True)
+            widgets.button(tr("OK"), primary=True)
             or widgets.cancel_pressed()
             or (widgets.confirm_pressed() and not imgui.is_window_appearing())
         ):

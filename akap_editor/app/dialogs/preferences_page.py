@@ -10,7 +10,7 @@ from ...words import mark, tr
 from .. import theme, widgets
 from ..app_state import AppState
 from ..commands.command import Command
-from ..commands.keymap import KEYMAP, chord_name, pressed_chord
+from ..commands.keymap import KEYMAP, pressed_chord, shown_chord
 from ..theme import ACCENT, SECONDARY
 
 _WIDTH, _HEIGHT = 520, 380  # of the list, in design points
@@ -90,7 +90,7 @@ class PreferencesPage:
         imgui.same_line(_NAME_WIDTH * scale)
         chords = command.active_chords
         for index, chord in enumerate(chords):
-            label = "..." if self._awaited == (command, index) else chord_name(chord)
+            label = "..." if self._awaited == (command, index) else shown_chord(chord)
             if imgui.button(f"{label}###key {index} of {command.label}"):
                 self._awaited = command, index
             widgets.show_tooltip(tr("Click for another key, right-click to remove this one"))

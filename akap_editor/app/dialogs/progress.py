@@ -2,6 +2,7 @@
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..jobs.task import Task
@@ -21,19 +22,19 @@ def draw(state: AppState, task: Task, scale: float) -> None:
     percent = f"{100 * task.progress.share:.0f} %"
     imgui.progress_bar(task.progress.share, ImVec2(_WIDTH * scale, 8 * scale), "")
     imgui.pop_style_color()
-    imgui.text_colored(ImVec4(*SECONDARY), task.progress.text)
+    imgui.text_colored(ImVec4(*SECONDARY), tr(task.progress.text))
     imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - imgui.calc_text_size(percent).x)
     imgui.text(percent)
     imgui.spacing()
-    if task.finish_early is not None and widgets.button("Stop Here", primary=True):
+    if task.finish_early is not None and widgets.button(tr("Stop Here"), primary=True):
         task.finish_early()
     if task.finish_early is not None:
         imgui.same_line()
-    if widgets.button("Cancel") or widgets.cancel_pressed():
+    if widgets.button(tr("Cancel")) or widgets.cancel_pressed():
         task.cancel()
         state.task = None
         widgets.close_popup()
-        state.notice = f"{task.title}: cancelled"
+        state.notice = tr("{title}: cancelled", title=task.title)
     imgui.end_popup()
 
 

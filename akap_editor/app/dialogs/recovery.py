@@ -10,6 +10,7 @@ from ...editor.framing import frame_box
 from ...errors import AkapError
 from ...io.akap.autosave import RecoveryCopy
 from ...io.images import Picture
+from ...words import tr, tr_plural
 from .. import files, widgets
 from ..app_state import AppState
 from ..theme import DARK, SECONDARY, packed
@@ -46,15 +47,15 @@ class RecoveryDialog:
         _draw_facts(copy, document, len(self.copies), _WIDTH * scale)
         imgui.end_group()
         imgui.spacing()
-        if widgets.button("Recover", primary=True) or widgets.confirm_pressed():
+        if widgets.button(tr("Recover"), primary=True) or widgets.confirm_pressed():
             imgui.close_current_popup()
             state.run_reporting_errors(lambda: self._recover(state, copy, document))
         imgui.same_line()
-        if widgets.button("Discard"):
+        if widgets.button(tr("Discard")):
             self._drop(copy)
             copy.discard()
         imgui.same_line()
-        if widgets.button("Later") or widgets.cancel_pressed():
+        if widgets.button(tr("Later")) or widgets.cancel_pressed():
             self._drop(copy)
             copy.release()
         imgui.end_popup()
@@ -76,7 +77,7 @@ class RecoveryDialog:
         except AkapError as error:
             self.copies.remove(copy)
             copy.release()
-            state.error = f"Couldn't recover an unsaved drawing. {error}"
+            state.error = tr("Couldn't recover an unsaved drawing. {error}", error=error)
             return None
         return copy, document, picture
 
@@ -91,7 +92,7 @@ class RecoveryDialog:
             if other is not copy:
                 other.release()
         self.copies, self._content = [], None
-        state.notice = f"Recovered {document.drawing.name}, which is not saved yet"
+        state.notice = tr("Recovered {name}, which is not saved yet", name=document.drawing.name)
 
     def _drop(self, copy: RecoveryCopy) -> None:
         imgui.close_current_popup()
@@ -114,15 +115,21 @@ def _draw_facts(copy: RecoveryCopy, document: Document, count: int, width: float
     widgets.paragraph(document.drawing.name, width)
     imgui.pop_font()
     imgui.spacing()
-    widgets.paragraph("The program ended before this drawing was saved.", width)
+    widgets.paragraph(tr("The program ended before this drawing was saved."), width)
     imgui.spacing()
     widgets.paragraph(
-        f"Last change: {time.strftime('%d %B, %H:%M', time.localtime(copy.time))}", width, SECONDARY
+        tr("Last change: {date}", date=time.strftime(tr("%Y-%m-%d, %H:%M"), time.localtime(copy.time))),
+        width,
+        SECONDARY,
     )
     origin = (
-        f"File: {display_text(document.path)}" if document.path is not None else "Not saved to a file yet"
+        tr("File: {file}", file=display_text(document.path))
+        if document.path is not None
+        else tr("Not saved to a file yet")
     )
     widgets.paragraph(origin, width, SECONDARY)
     if count > 1:
-        widgets.paragraph(f"{count - 1} more to recover", width, SECONDARY)
+        widgets.paragraph(
+            tr_plural("{count} more to recover", "{count} more to recover", count - 1), width, SECONDARY
+        )
     imgui.dummy(ImVec2(width, 0))

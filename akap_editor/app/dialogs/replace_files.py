@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 
 from ...display_text import display_name
 from ...io.outputs import quoted_names
+from ...words import tr, tr_plural
 from .. import widgets
 from ..app_state import AppState
 
@@ -57,12 +58,20 @@ class ReplaceFilesDialog:
         """
         sentences = []
         if source is not None:
-            sentences.append(f"The drawing was opened from “{display_name(source)}”, which will be replaced.")
+            sentences.append(
+                tr("The drawing was opened from “{file}”, which will be replaced.", file=display_name(source))
+            )
         if paths:
-            verb = "exists" if len(paths) == 1 else "exist"
-            sentences.append(f"{quoted_names(paths)} {verb} already and will be replaced.")
+            sentences.append(
+                tr_plural(
+                    "{files} exists already and will be replaced.",
+                    "{files} exist already and will be replaced.",
+                    len(paths),
+                    files=quoted_names(paths),
+                )
+            )
         if sentences:
-            self.ask(ReplaceQuestion(" ".join(sentences), replace, "Other Name...", rename))
+            self.ask(ReplaceQuestion(" ".join(sentences), replace, tr("Other Name..."), rename))
         else:
             replace()
 
@@ -77,11 +86,11 @@ class ReplaceFilesDialog:
             self._close()
             question.rename()
         imgui.same_line()
-        if widgets.button("Replace"):
+        if widgets.button(tr("Replace")):
             self._close()
             question.replace()
         imgui.same_line()
-        if widgets.button("Cancel") or widgets.cancel_pressed():
+        if widgets.button(tr("Cancel")) or widgets.cancel_pressed():
             self._close()
         imgui.end_popup()
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 
@@ -46,18 +47,18 @@ class UnsavedChangesDialog:
             return
         if not widgets.begin_dialog("Unsaved changes"):
             return
-        text = f"Save changes to “{question.name}” before closing?"
+        text = tr("Save changes to “{name}” before closing?", name=question.name)
         widgets.paragraph(text, min(imgui.calc_text_size(text).x + 1, _WIDTH * scale))
         imgui.spacing()
-        if widgets.button("Save", primary=True) or widgets.confirm_pressed():
+        if widgets.button(tr("Save"), primary=True) or widgets.confirm_pressed():
             self._close()
             question.save()
         imgui.same_line()
-        if widgets.button("Don't Save"):
+        if widgets.button(tr("Don't Save")):
             self._close()
             question.discard()
         imgui.same_line()
-        if widgets.button("Cancel") or widgets.cancel_pressed():
+        if widgets.button(tr("Cancel")) or widgets.cancel_pressed():
             self._close()
         imgui.end_popup()
 

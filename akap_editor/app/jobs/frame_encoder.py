@@ -9,6 +9,7 @@ from ...errors import InputError
 from ...io.animation.formats import Shot
 from ...io.atomic import Write, write_atomic
 from ...progress import listening
+from ...words import tr
 from .background_thread import BackgroundThread, Wake, no_window
 
 _MOST_QUEUED = 8  # pictures that may wait to be encoded: bounds the memory
@@ -92,4 +93,4 @@ class FrameEncoder:
 
     def _check(self) -> None:
         if self._is_cancelled:
-            raise InputError("the export was cancelled")
+            raise InputError(tr("the export was cancelled"))

@@ -11,6 +11,7 @@ from ...editor.session.replay import Replay
 from ...editor.session.session import Session
 from ...errors import FileError, file_errors
 from ...io.akap.recording import read_recording, recorded_drawing
+from ...words import tr
 from .task import Progress, Steps, Task
 
 Show = Callable[[Session, SessionPlayback], None]
@@ -29,7 +30,7 @@ def read_for_replay(path: Path) -> ReadRecording:
     """Read a recording and make its drawing. Raises InputError if it is no recording or an empty one."""
     recording = read_recording(path)
     if not recording.events:
-        raise FileError("open", path, "the recording is empty")
+        raise FileError("open", path, tr("the recording is empty"))
     with file_errors("open", path):
         return ReadRecording(path, recording, Replay(recording, recorded_drawing(recording)))
 
@@ -55,7 +56,7 @@ def replay_task(read: ReadRecording, show: Show) -> Task:
                 is_last_of_its_time = count == len(times) or times[count] > event.time
                 if is_last_of_its_time:
                     playback.follow(replay.session)
-                text = f"At {event.time:.0f} of {recording.duration:.0f} s"
+                text = tr("At {time:.0f} of {duration:.0f} s", time=event.time, duration=recording.duration)
                 yield Progress(count / len(times), text)
                 if is_finished_early:
                     break
@@ -63,4 +64,4 @@ def replay_task(read: ReadRecording, show: Show) -> Task:
         playback.follow(session)
         show(session, playback)
 
-    return Task(f"Opening {display_name(read.path)}", steps(), finish_early)
+    return Task(tr("Opening {file}", file=display_name(read.path)), steps(), finish_early)

@@ -9,6 +9,7 @@ from typing import Any
 from ...errors import InputError
 from ...io.images import Picture
 from ...io.painter import Painter
+from ...words import tr
 from .background_thread import BackgroundThread, Wake, no_window
 
 Job = Callable[[Painter], str]
@@ -58,7 +59,7 @@ class _MainThreadPainter:
 
 
 def _window_closed() -> InputError:
-    return InputError("the window was closed before the picture was drawn")
+    return InputError(tr("the window was closed before the picture was drawn"))
 
 
 class PoseExportQueue:

@@ -5,6 +5,8 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from ...words import mark
+
 SLICE = 0.03  # seconds of work between two frames
 LATE_SECONDS = 0.4  # until the dialog of work that is usually short appears
 
@@ -17,7 +19,7 @@ class Progress(NamedTuple):
     """
 
     share: float = 0.0
-    text: str = "Beginning ..."
+    text: str = mark("Beginning ...")
     is_blocked: bool = False
 
 

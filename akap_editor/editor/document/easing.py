@@ -8,6 +8,7 @@ from math import hypot
 
 from ...errors import InputError
 from ...geometry.validation import as_number
+from ...words import mark
 
 EASINGS: dict[str, Callable[[float], float]] = {
     "none": lambda t: t,
@@ -32,12 +33,12 @@ END_VELOCITIES: dict[str, tuple[float, float] | None] = {
     "hold": (0.0, 0.0),
 }
 EASING_LABELS = {
-    "smooth": "Smooth",
-    "none": "Linear",
-    "in": "Ease In",
-    "out": "Ease Out",
-    "in-out": "Ease In and Out",
-    "hold": "Hold",
+    "smooth": mark("Smooth"),
+    "none": mark("Linear"),
+    "in": mark("Ease In"),
+    "out": mark("Ease Out"),
+    "in-out": mark("Ease In and Out"),
+    "hold": mark("Hold"),
 }  # on the screen
 
 

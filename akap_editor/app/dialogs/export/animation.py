@@ -22,6 +22,7 @@ from ....io.animation.formats import (
     write_animation,
 )
 from ....io.outputs import is_source
+from ....words import mark, tr, tr_plural
 from ... import widgets
 from ...app_state import AppState
 from ...jobs.frame_encoder import FrameEncoder
@@ -152,9 +153,9 @@ class ExportAnimationDialog:
         imgui.end_child()
         imgui.spacing()
         options.remember(state.preferences)
-        accepted = widgets.button("Export...", primary=True)
+        accepted = widgets.button(tr("Export..."), primary=True)
         imgui.same_line()
-        if widgets.button("Cancel") or widgets.cancel_pressed():
+        if widgets.button(tr("Cancel")) or widgets.cancel_pressed():
             self._close()
         elif accepted or (widgets.confirm_pressed() and not imgui.get_io().want_text_input):
             self._close()
@@ -190,7 +191,7 @@ def request_file(state: AppState, options: AnimationExportOptions) -> None:
     use = partial(export_animation, state, options)
     suffixes = (options.chosen_format.suffix,)
     state.part(FileDialog).ask(
-        FileRequest("Export animation", suffixes, state.folder, use, name, saving=True)
+        FileRequest(tr("Export animation"), suffixes, state.folder, use, name, saving=True)
     )
 
 
@@ -208,7 +209,9 @@ def export_animation(state: AppState, options: AnimationExportOptions, path: Pat
         state.part(ReplaceFilesDialog).ask_unless_new(replaced_files(path, sheet), begin, rename, source)
 
     def begin() -> None:
-        state.task = Task(f"Exporting {display_name(path)}", _export_steps(state, options, path, sheet))
+        state.task = Task(
+            tr("Exporting {file}", file=display_name(path)), _export_steps(state, options, path, sheet)
+        )
 
     state.run_after_frame(check)
 
@@ -222,7 +225,10 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
     frames = []
     for number, time in enumerate(times):
         frames.append(frame_at(state, time))
-        yield Progress(posed * number / len(times), f"Posing frame {number + 1} of {len(times)}")
+        yield Progress(
+            posed * number / len(times),
+            tr("Posing frame {number} of {count}", number=number + 1, count=len(times)),
+        )
     frames = options.playing_order(frames, frames[0], frames[-1])
     shots = animation_shots(
         chosen, frames, state.offscreen_renderer, options.size, options.visible_background
@@ -240,56 +246,70 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
     try:
         for number, shot in enumerate(shots):
             share = posed + (drawn - posed) * number / len(frames)
-            progress = Progress(share, f"Drawing frame {number + 1} of {len(frames)}")
+            progress = Progress(
+                share, tr("Drawing frame {number} of {count}", number=number + 1, count=len(frames))
+            )
             yield progress
             for _ in encoder.take(shot):
                 yield progress._replace(is_blocked=True)
         for _ in encoder.finish():
             share = drawn + chosen.encoding_share * encoder.encoded
-            yield Progress(share, f"Encoding {display_name(path)}", is_blocked=True)
+            yield Progress(share, tr("Encoding {file}", file=display_name(path)), is_blocked=True)
     finally:
         encoder.close()
-    state.notice = f"Exported {display_name(path)}, {len(frames)} frames, {encoder.said}"
+    state.notice = tr_plural(
+        "Exported {file}, {count} frame, {details}",
+        "Exported {file}, {count} frames, {details}",
+        len(frames),
+        file=display_name(path),
+        details=encoder.said,
+    )
 
 
 def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     """Draw the options of the chosen format."""
     below = imgui.get_cursor_pos_y() + 2 * imgui.get_text_line_height()
-    widgets.secondary_text(options.chosen_format.about)
+    widgets.secondary_text(tr(options.chosen_format.about))
     imgui.set_cursor_pos_y(below + imgui.get_style().item_spacing.y)
-    options.fps = number_field("Frame rate", options.fps, LIMITS["fps"], "%.4g fps", 0.2, 96, scale)
+    options.fps = number_field(tr("Frame rate"), options.fps, LIMITS["fps"], "%.4g fps", 0.2, 96, scale)
     preset = preset_buttons([f"{rate}" for rate in FRAME_RATES], scale)
     if preset is not None:
         options.fps = float(FRAME_RATES[preset])
-    tooltip = "The longest side, at most: drawings are not enlarged."
-    size = number_field("Size", options.size, LIMITS["size"], "%.0f px", 2.0, 96, scale, tooltip)
+    tooltip = tr("The longest side, at most: drawings are not enlarged.")
+    size = number_field(tr("Size"), options.size, LIMITS["size"], "%.0f px", 2.0, 96, scale, tooltip)
     options.size = round(size)
     low, high = LIMITS["speed"]
-    percent = number_field("Speed", 100 * options.speed, (100 * low, 100 * high), "%.4g %%", 0.5, 96, scale)
+    percent = number_field(
+        tr("Speed"), 100 * options.speed, (100 * low, 100 * high), "%.4g %%", 0.5, 96, scale
+    )
     options.speed = percent / 100
-    widgets.label("Easing", LABEL_WIDTH * scale)
+    widgets.label(tr("Easing"), LABEL_WIDTH * scale)
     imgui.set_next_item_width(widgets.FULL)
     names = list(EASINGS)
-    _, chosen = imgui.combo("##easing", names.index(options.ease), [EASING_LABELS[name] for name in names])
+    _, chosen = imgui.combo(
+        "##easing", names.index(options.ease), [tr(EASING_LABELS[name]) for name in names]
+    )
     options.ease = names[chosen]
-    widgets.show_tooltip("Easing of the whole animation, in addition to that of keyframes.")
-    widgets.switch_label("Playback", LABEL_WIDTH * scale)
-    _, options.ping_pong = widgets.switch("Ping-pong", options.ping_pong, "Play forwards, then backwards.")
+    widgets.show_tooltip(tr("Easing of the whole animation, in addition to that of keyframes."))
+    widgets.switch_label(tr("Playback"), LABEL_WIDTH * scale)
+    _, options.ping_pong = widgets.switch(
+        tr("Ping-pong"), options.ping_pong, tr("Play forwards, then backwards.")
+    )
     imgui.same_line(0, 16 * scale)
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
-    tooltip = "If the motion ends as it begins, its last frame is left out."
+    tooltip = tr("If the motion ends as it begins, its last frame is left out.")
     if options.chosen_format.repeats:
-        tooltip += " Off: the animation plays once."
-    _, options.loop = widgets.switch("Loop forever", options.loop, tooltip)
+        tooltip = f"{tooltip} {tr('Off: the animation plays once.')}"
+    _, options.loop = widgets.switch(tr("Loop forever"), options.loop, tooltip)
     if options.chosen_format.is_page:
         widgets.switch_label("", LABEL_WIDTH * scale)
-        tooltip = "Off: it plays at once, and a click stops it."
-        _, options.hover = widgets.switch("Play on hover", options.hover, tooltip)
+        tooltip = tr("Off: it plays at once, and a click stops it.")
+        _, options.hover = widgets.switch(tr("Play on hover"), options.hover, tooltip)
     options.opaque, options.background = background_field(
         options.opaque,
         options.background,
         not options.chosen_format.has_transparency,
-        "Off: the background is transparent.",
+        tr("Off: the background is transparent."),
         scale,
     )
 
@@ -300,10 +320,10 @@ def _draw_result(
     """Draw the number of frames, the seconds and the size in pixels of what is written."""
     count = frame_count(state, options)
     seconds = f"{count / options.written_fps:.1f}".removesuffix(".0")
-    text = f"{count} frame{'s' * (count != 1)}, {seconds} s"
+    text = tr_plural("{count} frame, {seconds} s", "{count} frames, {seconds} s", count, seconds=seconds)
     if options.written_fps < options.fps:
-        text += f" at {options.written_fps:g} fps"
-    widgets.label("Result", LABEL_WIDTH * scale)
+        text = tr("{frames} at {fps:g} fps", frames=text, fps=options.written_fps)
+    widgets.label(tr("Result"), LABEL_WIDTH * scale)
     imgui.text(text)
     widgets.label("", LABEL_WIDTH * scale)
     imgui.text(size_text(state, options, measured_size))
@@ -319,5 +339,9 @@ def size_text(state: AppState, options: AnimationExportOptions, measured_size: A
     if size is None:
         return "..."
     # of a sheet, margins that are empty in all frames are cropped
-    most = "at most " if options.chosen_format.is_sheet else ""
-    return f"{most}{size[0]} × {size[1]} px"
+    text = (
+        mark("at most {width} × {height} px")
+        if options.chosen_format.is_sheet
+        else mark("{width} × {height} px")
+    )
+    return tr(text, width=size[0], height=size[1])

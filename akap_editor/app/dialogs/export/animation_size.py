@@ -5,6 +5,7 @@ from time import perf_counter
 
 from ....editor.framing import Box, fitted_box, frame_box, output_size, union_of_boxes
 from ....errors import InputError
+from ....words import tr
 from ...app_state import AppState
 
 _SLICE = 0.01  # seconds of measuring in a frame of the window
@@ -43,5 +44,5 @@ class AnimationSize:
                 state.wake()
                 return None
         if self._box is None:
-            raise InputError("times: expected at least one, got none")
+            raise InputError(tr("times: expected at least one, got none"))
         return output_size(*fitted_box(self._box, longest_side, is_even))

@@ -6,6 +6,7 @@ from typing import Protocol, TypeVar
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ....editor.framing import Color
+from ....words import tr
 from ... import widgets
 from ...theme import SECONDARY
 
@@ -33,9 +34,9 @@ def format_list(formats: Sequence[F], chosen: F, width: float, height: float) ->
     flags = imgui.SelectableFlags_.no_auto_close_popups
     for each in formats:
         right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
-        if imgui.selectable(each.label, each is chosen, flags)[0]:
+        if imgui.selectable(tr(each.label), each is chosen, flags)[0]:
             chosen = each
-        ending = each.suffix or "folder"
+        ending = each.suffix or tr("folder")
         imgui.same_line(right - imgui.calc_text_size(ending).x)
         imgui.text_colored(ImVec4(*SECONDARY), ending)
     imgui.end_child()
@@ -61,7 +62,7 @@ def number_field(
     imgui.set_next_item_width(width * scale)
     clamp = imgui.SliderFlags_.always_clamp
     _, value = imgui.drag_float(f"##{label}", value, speed, *limits, text_format, clamp)
-    widgets.show_tooltip(f"Drag, or double-click to type. {tooltip}".strip())
+    widgets.show_tooltip(f"{tr('Drag, or double-click to type.')} {tooltip}".strip())
     return float(value)
 
 
@@ -85,9 +86,9 @@ def background_field(
     must_be_opaque: the format has no transparency, so the switch is on and disabled; the returned setting
     is then the one that was given, and takes effect again with another format.
     """
-    widgets.switch_label("Background", LABEL_WIDTH * scale)
+    widgets.switch_label(tr("Background"), LABEL_WIDTH * scale)
     imgui.begin_disabled(must_be_opaque)
-    clicked, shown = widgets.switch("Color", is_opaque or must_be_opaque, tooltip)
+    clicked, shown = widgets.switch(tr("Color"), is_opaque or must_be_opaque, tooltip)
     imgui.end_disabled()
     if shown:
         imgui.same_line(0, 10 * scale)

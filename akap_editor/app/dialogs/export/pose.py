@@ -13,6 +13,7 @@ from ....errors import InputError
 from ....io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of, replaced_companions
 from ....io.outputs import is_source
 from ....io.painter import Painter
+from ....words import mark, tr
 from ... import widgets
 from ...app_state import AppState
 from ...theme import ACCENT
@@ -22,8 +23,8 @@ from .fields import LABEL_WIDTH, background_field, format_list, number_field, pr
 
 SCALES = (0.5, 1.0, 2.0, 4.0)
 SMALLEST_SCALE, LARGEST_SCALE = 0.01, 100.0
-_CROPS = {"none": "Frame and pose", "frame": "Picture frame", "pose": "Pose only"}
-_ABOUT_CROPS = (
+_CROPS = {"none": mark("Frame and pose"), "frame": mark("Picture frame"), "pose": mark("Pose only")}
+_ABOUT_CROPS = mark(
     "Frame and pose: nothing is cut off. Picture frame: the size of the picture, so that the export can "
     "replace it. Pose only: no empty space around the pose."
 )
@@ -87,10 +88,10 @@ class ExportPoseDialog:
         imgui.end_child()
         imgui.spacing()
         imgui.begin_disabled(bool(problem))
-        accepted = widgets.button("Export...", primary=True)
+        accepted = widgets.button(tr("Export..."), primary=True)
         imgui.end_disabled()
         imgui.same_line()
-        if widgets.button("Cancel") or widgets.cancel_pressed():
+        if widgets.button(tr("Cancel")) or widgets.cancel_pressed():
             self._close()
         elif accepted or (widgets.confirm_pressed() and not problem and not imgui.get_io().want_text_input):
             self._close()
@@ -107,7 +108,9 @@ def request_file(state: AppState, options: PoseExportOptions) -> None:
     if state.document is not None:
         suffixes, name = (options.format.suffix,), options.file_name(state.document)
         use = partial(export_pose, state, replace(options))
-        state.part(FileDialog).ask(FileRequest("Export to", suffixes, state.folder, use, name, saving=True))
+        state.part(FileDialog).ask(
+            FileRequest(tr("Export to"), suffixes, state.folder, use, name, saving=True)
+        )
 
 
 def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None:
@@ -129,83 +132,88 @@ def _begin_export(state: AppState, options: PoseExportOptions, path: Path) -> No
 
     def work(painter: Painter) -> str:
         *companions, _ = export(document, path, options.export_options, painter, overwrite=True)
-        said = f"Exported {', '.join(map(display_name, [path, *companions]))}"
+        said = tr("Exported {files}", files=", ".join(map(display_name, [path, *companions])))
         if format_of(path).uses_framing:
             width, height = options.output_size(document)
-            said += f", {width} × {height} pixels"
+            said = tr("{exported}, {width} × {height} pixels", exported=said, width=width, height=height)
         return said
 
-    state.notice = f"Exporting {display_name(path)} ..."
+    state.notice = tr("Exporting {file} ...", file=display_name(path))
     state.pose_exports.begin(work)
 
 
 def _draw_options(options: PoseExportOptions, document: Document, scale: float) -> str:
     """Draw the right half; return what prevents this export, or ""."""
     below = imgui.get_cursor_pos_y() + 3 * imgui.get_text_line_height()
-    widgets.secondary_text(options.format.about)
+    widgets.secondary_text(tr(options.format.about))
     imgui.set_cursor_pos_y(below)  # the same for all formats, so that nothing jumps
     draw_format_options = _draw_framing if options.format.uses_framing else _draw_mesh_size
     problem = draw_format_options(options, document, scale)
-    widgets.switch_label("Pose", LABEL_WIDTH * scale)
-    tooltip = "Export the rest pose instead of the current pose."
-    _, options.rest = widgets.switch("Rest pose", options.rest, tooltip)
+    widgets.switch_label(tr("Pose"), LABEL_WIDTH * scale)
+    tooltip = tr("Export the rest pose instead of the current pose.")
+    _, options.rest = widgets.switch(tr("Rest pose"), options.rest, tooltip)
     if options.format.z_order is not None:
         imgui.same_line(0, 16 * scale)
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
-        tooltip = "Lay what is in front nearer to the viewer in z, for ray tracers and depth-tested viewers."
+        tooltip = tr(
+            "Lay what is in front nearer to the viewer in z, for ray tracers and depth-tested viewers."
+        )
         value = options.format.z_order if options.z_order is None else options.z_order
-        changed, value = widgets.switch("Depth in z", value, tooltip)
+        changed, value = widgets.switch(tr("Depth in z"), value, tooltip)
         options.z_order = value if changed else options.z_order
     if options.format.can_be_textured:
         imgui.same_line(0, 16 * scale)
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
-        tooltip = "A picture of each part, from back to front. Off: the outline alone."
-        _, options.textured = widgets.switch("Texture", options.textured, tooltip)
+        tooltip = tr("A picture of each part, from back to front. Off: the outline alone.")
+        _, options.textured = widgets.switch(tr("Texture"), options.textured, tooltip)
     return problem
 
 
 def _draw_framing(options: PoseExportOptions, document: Document, scale: float) -> str:
     """Draw scale, crop and background of a picture; return what prevents this export, or ""."""
     limits, speed = (100 * SMALLEST_SCALE, 100 * LARGEST_SCALE), max(0.5, options.scale)
-    options.scale = number_field("Scale", 100 * options.scale, limits, "%.4g %%", speed, 86, scale) / 100
+    options.scale = number_field(tr("Scale"), 100 * options.scale, limits, "%.4g %%", speed, 86, scale) / 100
     preset = preset_buttons([f"{each:g}×" for each in SCALES], scale)
     if preset is not None:
         options.scale = SCALES[preset]
     problem = _draw_picture_size(options, document, scale)
-    widgets.label("Crop", LABEL_WIDTH * scale)
+    widgets.label(tr("Crop"), LABEL_WIDTH * scale)
     imgui.set_next_item_width(widgets.FULL)
-    opened = imgui.begin_combo("##crop", _CROPS[options.crop])
-    widgets.show_tooltip(_ABOUT_CROPS)
+    opened = imgui.begin_combo("##crop", tr(_CROPS[options.crop]))
+    widgets.show_tooltip(tr(_ABOUT_CROPS))
     if opened:
         for name, label in _CROPS.items():
-            if imgui.selectable(label, name == options.crop)[0]:
+            if imgui.selectable(tr(label), name == options.crop)[0]:
                 options.crop = name
         imgui.end_combo()
     options.is_opaque, options.background = background_field(
-        options.is_opaque, options.background, False, "Off: the background is transparent.", scale
+        options.is_opaque, options.background, False, tr("Off: the background is transparent."), scale
     )
     return problem
 
 
 def _draw_picture_size(options: PoseExportOptions, document: Document, scale: float) -> str:
     """Draw the size of the picture; return what prevents this export, or ""."""
-    widgets.label("Size", LABEL_WIDTH * scale)
+    widgets.label(tr("Size"), LABEL_WIDTH * scale)
     try:
         width, height = options.output_size(document)
     except InputError:
-        problem = f"More than {MAX_SIZE} px per side"
+        problem = tr("More than {pixels} px per side", pixels=MAX_SIZE)
         imgui.text_colored(ImVec4(*ACCENT), problem)
         return problem
-    imgui.text(f"{width} × {height} px")
+    imgui.text(tr("{width} × {height} px", width=width, height=height))
     return ""
 
 
 def _draw_mesh_size(_: PoseExportOptions, document: Document, scale: float) -> str:
     """Draw the size of the mesh and its texture; return "", as nothing prevents this export."""
-    mesh = document.drawing.mesh
+    mesh, size = document.drawing.mesh, document.drawing.size
     for label, value in (
-        ("Mesh", f"{len(mesh.vertices):,} vertices, {len(mesh.faces):,} faces"),
-        ("Texture", f"{document.drawing.size[0]} × {document.drawing.size[1]} px"),
+        (
+            tr("Mesh"),
+            tr("{vertices:,} vertices, {faces:,} faces", vertices=len(mesh.vertices), faces=len(mesh.faces)),
+        ),
+        (tr("Texture"), tr("{width} × {height} px", width=size[0], height=size[1])),
     ):
         widgets.label(label, LABEL_WIDTH * scale)
         imgui.text(value)
