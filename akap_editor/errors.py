@@ -5,8 +5,20 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from .display_text import display_text, shortened
+from .words import mark, tr
 
 _MAX_PATH = 300  # characters of a path in a message
+COULD_NOT = {
+    "open": mark("Couldn't open “{file}”."),
+    "save": mark("Couldn't save “{file}”."),
+    "export": mark("Couldn't export “{file}”."),
+    "use": mark("Couldn't use “{file}”."),
+    "reload": mark("Couldn't reload “{file}”."),
+    "remove": mark("Couldn't remove “{file}”."),
+    "replay": mark("Couldn't replay “{file}”."),
+    "recover": mark("Couldn't recover “{file}”."),
+    "mesh": mark("Couldn't mesh “{file}”."),
+}
 
 
 class AkapError(Exception):
@@ -20,12 +32,13 @@ class InputError(AkapError, ValueError):
 class FileError(InputError):
     """A file cannot be opened or written; the message names it and says why.
 
-    verb: what failed, as in “Couldn't open ...”; reason: a phrase, e.g. “permission denied”.
+    verb: what failed, of `COULD_NOT` if the window may show it; reason: a phrase, e.g. “permission denied”.
     """
 
     def __init__(self, verb: str, path: str | Path, reason: str) -> None:
         shown = shortened(display_text(path), _MAX_PATH)
-        super().__init__(f"Couldn't {verb} “{shown}”. {_as_sentence(reason)}")
+        text = COULD_NOT.get(verb, f"Couldn't {verb} “{{file}}”.")
+        super().__init__(f"{tr(text, file=shown)} {_as_sentence(reason)}")
 
 
 class SolverError(AkapError, ArithmeticError):
@@ -62,9 +75,14 @@ def _as_sentence(reason: str) -> str:
     """The reason with a period, and with a capital letter unless it begins with a name, as in "crop: ..."."""
     if reason.split(" ", 1)[0].isalpha():
         reason = reason[:1].upper() + reason[1:]
-    return reason if reason.endswith((".", "?", "!")) else f"{reason}."
+    return reason if reason.endswith((".", "?", "!", "。")) else tr("{sentence}.", sentence=reason)
 
 
 def join_with_or(names: Sequence[str]) -> str:
     """Join names for a sentence: "a, b or c"."""
-    return " or ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+    return joined(names, tr("{names} or {last}"))
+
+
+def joined(names: Sequence[str], end: str) -> str:
+    """Join names by commas, and the last one as ``end`` says, with the fields ``names`` and ``last``."""
+    return end.format(names=", ".join(names[:-1]), last=names[-1]) if len(names) > 1 else "".join(names)

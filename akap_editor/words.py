@@ -35,19 +35,19 @@ _translations: gettext.NullTranslations = gettext.NullTranslations()
 _language = "en"
 
 
-def tr(text: str, **fields: object) -> str:
+def tr(text: str, /, **fields: object) -> str:
     """The text in the current language. fields: values of its fields, as in "{count} pins"."""
     found = _translations.gettext(text) if text else ""
     return found.format(**fields) if fields else found
 
 
-def tr_in(context: str, text: str, **fields: object) -> str:
+def tr_in(context: str, text: str, /, **fields: object) -> str:
     """`tr` for a text that means several things in English, and here what ``context`` says."""
     found = _translations.pgettext(context, text)
     return found.format(**fields) if fields else found
 
 
-def tr_plural(one: str, many: str, count: int, **fields: object) -> str:
+def tr_plural(one: str, many: str, count: int, /, **fields: object) -> str:
     """The text for a number of things, in the current language's plural form; ``count`` is a field of it."""
     return _translations.ngettext(one, many, count).format(count=count, **fields)
 

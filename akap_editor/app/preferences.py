@@ -10,7 +10,7 @@ import platformdirs
 from ..errors import FileError, InputError
 from ..io.atomic import os_error_reason, read_file, resolved, write_atomic
 from ..meshing.meshers import nearest_mesher
-from ..words import tr
+from ..words import mark, tr
 
 CONFIG_FOLDER_VARIABLE = "AKAP_EDITOR_CONFIG"  # environment variable: another folder, e.g. for tests
 FILE_NAME = "preferences.json"
@@ -93,7 +93,7 @@ class Preferences:
         if self._path is None or not self._path.exists():
             return {}
         try:
-            values = json.loads(read_file(self._path, "preferences"))
+            values = json.loads(read_file(self._path, mark("preferences")))
         except FileError:
             raise
         except (ValueError, RecursionError) as error:

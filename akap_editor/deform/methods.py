@@ -16,6 +16,7 @@ from ..errors import InputError
 from ..geometry.joints import MeshJoints
 from ..geometry.mesh import TriMesh
 from ..geometry.validation import as_instance
+from ..words import mark, tr
 from .akap.deformer import AkapDeformer
 from .deformer import Deformer
 from .islands import IslandDeformer
@@ -95,7 +96,7 @@ class MethodPreset:
     @property
     def description(self) -> str:
         """Note and source in one line, empty if there are none."""
-        return f"{self.note} {self.source and self.source + '.'}".strip()
+        return f"{tr(self.note)} {self.source and self.source + '.'}".strip()
 
 
 @dataclass(frozen=True)
@@ -126,81 +127,99 @@ METHODS: dict[str, Method] = {
         presets=(
             MethodPreset(
                 "akap",
-                "As-Killing-as-possible (AKAP)",
+                mark("As-Killing-as-possible (AKAP)"),
                 "AKAP",
-                "Moves the drawing along the vector field that is closest to a rigid motion.",
+                mark("Moves the drawing along the vector field that is closest to a rigid motion."),
                 _SOLOMON,
             ),
             MethodPreset(
                 "akap:no-dirichlet",
-                "AKAP, first solve only",
+                mark("AKAP, first solve only"),
                 "AKAP, one solve",
-                "Follows the field of the first solve, Fig. 8 (c): dents remain around pins.",
+                mark("Follows the field of the first solve, Fig. 8 (c): dents remain around pins."),
                 _SOLOMON,
             ),
             MethodPreset(
                 "akap:trajectory=linear",
-                "AKAP, straight steps",
+                mark("AKAP, straight steps"),
                 "AKAP, straight",
-                "Both solves, but straight steps, Fig. 8 (b): parts that rotate also grow.",
+                mark("Both solves, but straight steps, Fig. 8 (b): parts that rotate also grow."),
                 _SOLOMON,
             ),
             MethodPreset(
                 "akap:no-dirichlet,trajectory=linear",
-                "AKAP, straight steps, first solve only",
+                mark("AKAP, straight steps, first solve only"),
                 "AKAP, straight, one solve",
-                "Straight steps along the field of the first solve, Fig. 8 (a): dents remain around pins, "
-                "and parts that rotate also grow.",
+                mark(
+                    "Straight steps along the field of the first solve, Fig. 8 (a): dents remain around "
+                    "pins, "
+                    "and parts that rotate also grow."
+                ),
                 _SOLOMON,
             ),
         ),
         parameters=(
             Parameter(
                 "memory",
-                "Memory",
-                "How strongly each step pulls the drawing back to its rest shape. 0 is the paper's method: "
-                "the pose depends on how it was dragged there, as with clay.",
+                mark("Memory"),
+                mark(
+                    "How strongly each step pulls the drawing back to its rest shape. 0 is the paper's "
+                    "method: "
+                    "the pose depends on how it was dragged there, as with clay."
+                ),
                 NumberRange(0, 1),
             ),
             Parameter(
                 "dirichlet",
-                "Second solve",
-                "Smooths the field inside the drawing while the outline moves as before, so that nothing "
-                "bulges around pins.",
+                mark("Second solve"),
+                mark(
+                    "Smooths the field inside the drawing while the outline moves as before, so that nothing "
+                    "bulges around pins."
+                ),
                 Switch(),
             ),
             Parameter(
                 "trajectory",
-                "Trajectories",
-                "Spirals keep the size of parts that rotate. Straight lines, which make them grow, are "
-                "here for comparison.",
-                Choice({"spiral": "Spirals", "linear": "Straight lines"}),
+                mark("Trajectories"),
+                mark(
+                    "Spirals keep the size of parts that rotate. Straight lines, which make them grow, are "
+                    "here for comparison."
+                ),
+                Choice({"spiral": mark("Spirals"), "linear": mark("Straight lines")}),
             ),
             Parameter(
                 "pin_weight",
-                "Pin strength",
-                "How strongly pins pull on the field. Higher values bring them closer to the pointer in each "
-                "step.",
+                mark("Pin strength"),
+                mark(
+                    "How strongly pins pull on the field. Higher values bring them closer to the pointer "
+                    "in each "
+                    "step."
+                ),
                 NumberRange(1, 10_000, "%.0f", is_logarithmic=True),
             ),
             Parameter(
                 "max_step",
-                "Maximum step",
-                "How far a pin moves along one field, as a share of the drawing's size. Shorter steps "
-                "distort less and cost more.",
+                mark("Maximum step"),
+                mark(
+                    "How far a pin moves along one field, as a share of the drawing's size. Shorter steps "
+                    "distort less and cost more."
+                ),
                 NumberRange(0.001, 0.5, "%.3f", is_logarithmic=True),
             ),
             Parameter(
                 "constraints",
-                "Pin constraint",
-                "Soft pins may lag a little behind the pointer; hard pins have exactly its velocity.",
-                Choice({"soft": "Soft", "hard": "Hard"}),
+                mark("Pin constraint"),
+                mark("Soft pins may lag a little behind the pointer; hard pins have exactly its velocity."),
+                Choice({"soft": mark("Soft"), "hard": mark("Hard")}),
             ),
             Parameter(
                 "exact",
-                "Exact solves",
-                "Factorizes the matrices anew in every step, as in the paper: several times slower, without "
-                "a visible difference.",
+                mark("Exact solves"),
+                mark(
+                    "Factorizes the matrices anew in every step, as in the paper: several times slower, "
+                    "without "
+                    "a visible difference."
+                ),
                 Switch(),
             ),
         ),
@@ -212,44 +231,52 @@ METHODS: dict[str, Method] = {
         presets=(
             MethodPreset(
                 "arap",
-                "As-rigid-as-possible (ARAP)",
+                mark("As-rigid-as-possible (ARAP)"),
                 "ARAP",
-                "Keeps the shape of each triangle as well as it can, by alternating local and global steps.",
+                mark(
+                    "Keeps the shape of each triangle as well as it can, by alternating local and global "
+                    "steps."
+                ),
                 "Liu, Zhang, Xu, Gotsman and Gortler 2008",
             ),
             MethodPreset(
                 "arap:rotations=spokes-and-rims",
+                mark("ARAP, spokes and rims"),
                 "ARAP, spokes and rims",
-                "ARAP, spokes and rims",
-                "Fits one rotation per vertex to all triangles around it, which makes bends smoother.",
+                mark("Fits one rotation per vertex to all triangles around it, which makes bends smoother."),
                 "Chao, Pinkall, Sanan and Schröder 2010",
             ),
         ),
         parameters=(
             Parameter(
                 "iterations",
-                "Iterations",
-                "Maximum number of local and global steps per frame. With more, the drawing settles sooner.",
+                mark("Iterations"),
+                mark(
+                    "Maximum number of local and global steps per frame. With more, the drawing settles "
+                    "sooner."
+                ),
                 NumberRange(1, 200, "%.0f", is_logarithmic=True, is_whole=True),
             ),
             Parameter(
                 "tolerance",
-                "Tolerance",
-                "A step ends once no vertex moves farther than this share of the drawing's size.",
+                mark("Tolerance"),
+                mark("A step ends once no vertex moves farther than this share of the drawing's size."),
                 NumberRange(1e-10, 1e-3, "%.1e", is_logarithmic=True),
             ),
             Parameter(
                 "converge",
-                "Until converged",
-                "Iterates until no vertex moves, however long that takes.",
+                mark("Until converged"),
+                mark("Iterates until no vertex moves, however long that takes."),
                 Switch(),
             ),
             Parameter(
                 "rotations",
-                "Rotations",
-                "Whether each triangle has a rotation of its own, or each vertex one for all triangles "
-                "around it.",
-                Choice({"faces": "Per triangle", "spokes-and-rims": "Per vertex"}),
+                mark("Rotations"),
+                mark(
+                    "Whether each triangle has a rotation of its own, or each vertex one for all triangles "
+                    "around it."
+                ),
+                Choice({"faces": mark("Per triangle"), "spokes-and-rims": mark("Per vertex")}),
             ),
         ),
     ),
@@ -258,18 +285,20 @@ METHODS: dict[str, Method] = {
         presets=(
             MethodPreset(
                 "igarashi",
-                "As-rigid-as-possible, two solves",
+                mark("As-rigid-as-possible, two solves"),
                 "Igarashi",
-                "First every triangle may scale, then it gets its size back: two linear solves, no "
-                "iteration.",
+                mark(
+                    "First every triangle may scale, then it gets its size back: two linear solves, no "
+                    "iteration."
+                ),
                 "Igarashi, Moscovich and Hughes 2005",
             ),
         ),
         parameters=(
             Parameter(
                 "pin_weight",
-                "Pin strength",
-                "How strongly pins hold. Higher values bring them closer to the pointer.",
+                mark("Pin strength"),
+                mark("How strongly pins hold. Higher values bring them closer to the pointer."),
                 NumberRange(1, 100_000, "%.0f", is_logarithmic=True),
             ),
         ),
@@ -279,25 +308,30 @@ METHODS: dict[str, Method] = {
         presets=(
             MethodPreset(
                 "cauchy-green",
-                "Cauchy–Green coordinates",
+                mark("Cauchy–Green coordinates"),
                 "Cauchy–Green",
-                "A conformal map: it keeps angles, but areas may grow or shrink a lot. Holes bend as if "
-                "filled.",
+                mark(
+                    "A conformal map: it keeps angles, but areas may grow or shrink a lot. Holes bend as if "
+                    "filled."
+                ),
                 "Weber, Ben-Chen and Gotsman 2009",
             ),
         ),
         parameters=(
             Parameter(
                 "cage",
-                "Cage vertices",
-                "Maximum number of vertices of the cage around the drawing. More vertices follow its outline "
-                "more closely and cost more.",
+                mark("Cage vertices"),
+                mark(
+                    "Maximum number of vertices of the cage around the drawing. More vertices follow its "
+                    "outline "
+                    "more closely and cost more."
+                ),
                 NumberRange(16, 1000, "%.0f", is_logarithmic=True, is_whole=True),
             ),
             Parameter(
                 "smoothness",
-                "Smoothness",
-                "Lower values bring pins closer to the pointer; higher values make the map smoother.",
+                mark("Smoothness"),
+                mark("Lower values bring pins closer to the pointer; higher values make the map smoother."),
                 NumberRange(1e-6, 1.0, "%.1e", is_logarithmic=True),
             ),
         ),
@@ -307,24 +341,35 @@ METHODS: dict[str, Method] = {
         presets=(
             MethodPreset(
                 "mls",
-                "Moving least squares (MLS)",
+                mark("Moving least squares (MLS)"),
                 "MLS",
-                "Warps the plane around the pins. Limbs that are close pull on one another, because the "
-                "outline plays no role.",
+                mark(
+                    "Warps the plane around the pins. Limbs that are close pull on one another, because the "
+                    "outline plays no role."
+                ),
                 "Schaefer, McPhail and Warren 2006",
             ),
         ),
         parameters=(
             Parameter(
                 "transform",
-                "Transform",
-                "What the map may do near a pin: rotate only, also scale, or also shear.",
-                Choice({"rigid": "Rotate", "similarity": "Rotate and scale", "affine": "Affine"}),
+                mark("Transform"),
+                mark("What the map may do near a pin: rotate only, also scale, or also shear."),
+                Choice(
+                    {
+                        "rigid": mark("Rotate"),
+                        "similarity": mark("Rotate and scale"),
+                        "affine": mark("Affine"),
+                    }
+                ),
             ),
             Parameter(
                 "alpha",
-                "Falloff",
-                "How fast the influence of a pin falls off with distance. Higher values make it more local.",
+                mark("Falloff"),
+                mark(
+                    "How fast the influence of a pin falls off with distance. Higher values make it more "
+                    "local."
+                ),
                 NumberRange(0.1, 10, "%.1f", is_logarithmic=True),
             ),
         ),

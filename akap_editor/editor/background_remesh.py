@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from threading import Event
 
 from ..progress import Cancelled, listening, part
+from ..words import mark
 from .document.document import EditState
 from .document.drawing import Drawing, Meshing
 from .document.remesh import remesh_drawing, transfer_state
@@ -15,7 +16,7 @@ from .session.history import HistoryEntry
 from .session.session import Session
 from .session.stepper import INLINE
 
-HISTORY_LABEL = "Change Mesh"
+HISTORY_LABEL = mark("Change Mesh")
 
 
 @dataclass(eq=False)

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..geometry.validation import Floats, as_points
+from ..words import tr
 from .document.drawing import Drawing
 
 Box = tuple[int, int, int, int]  # x0, y0, x1, y1 in whole drawing units
@@ -42,7 +43,7 @@ def crop_box(drawing: Drawing, pose: ArrayLike, crop: str) -> Box:
     which may cut the pose off, "pose" for the mesh in the pose. Raises InputError on any other or a bad pose.
     """
     if crop not in CROPS:
-        raise InputError(f"crop: expected one of {', '.join(CROPS)}, got {crop!r}")
+        raise InputError(tr("crop: expected one of {names}, got {crop!r}", names=", ".join(CROPS), crop=crop))
     if crop == "frame":
         return (0, 0, *drawing.size)
     if crop == "pose":
@@ -57,14 +58,19 @@ def output_size(box: Box, scale: float) -> tuple[int, int]:
     """
     x0, y0, x1, y1 = box
     if not (isfinite(scale) and scale > 0):
-        raise InputError(f"scale: expected a positive number, got {scale:g}")
+        raise InputError(tr("scale: expected a positive number, got {scale:g}", scale=scale))
     if not (x0 < x1 and y0 < y1):
-        raise InputError(f"box: expected x0 < x1 and y0 < y1, got {box}")
+        raise InputError(tr("box: expected x0 < x1 and y0 < y1, got {box}", box=box))
     width, height = (x1 - x0) * scale, (y1 - y0) * scale
     if max(width, height) > MAX_SIZE + _ROUNDING:
         raise InputError(
-            f"picture size: expected at most {MAX_SIZE}×{MAX_SIZE} pixels, got {width:.0f}×{height:.0f}; "
-            "choose a smaller scale"
+            tr(
+                "picture size: expected at most {most}×{most} pixels, got {width:.0f}×{height:.0f}; "
+                "choose a smaller scale",
+                most=MAX_SIZE,
+                width=width,
+                height=height,
+            )
         )
     return max(1, ceil(width - _ROUNDING)), max(1, ceil(height - _ROUNDING))
 

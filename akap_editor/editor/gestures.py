@@ -7,6 +7,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 
 from ..geometry.validation import Floats, Ints
+from ..words import mark
 from .camera import Point
 from .document.named_poses import unused_pose_name
 from .document.pin import Pin
@@ -70,7 +71,7 @@ def add_pin(editor: EditContext, position: Point) -> int | None:
 
     Returns its id; None outside the drawing. Raises InputError if the position is not finite.
     """
-    pin = editor.edit("Add Pin", lambda session: pin_edits.add_pin(session, position))
+    pin = editor.edit(mark("Add Pin"), lambda session: pin_edits.add_pin(session, position))
     if pin is not None:
         editor.select({pin})
     return pin
@@ -87,25 +88,25 @@ def add_pins(editor: EditContext, positions: Iterable[Point]) -> list[int]:
         added = [pin_edits.add_pin(session, position) for position in positions]
         return [pin for pin in added if pin is not None]
 
-    pins = editor.edit("Add Pins", add_all) or []
+    pins = editor.edit(mark("Add Pins"), add_all) or []
     editor.select(())
     return pins
 
 
 def rename_pin(editor: EditContext, pin: int, name: str) -> None:
     """Name a pin; an empty name is “Pin” and its id. Raises InputError if it is too long."""
-    editor.edit("Rename Pin", lambda session: pin_edits.change_pin(session, pin, name=name.strip()))
+    editor.edit(mark("Rename Pin"), lambda session: pin_edits.change_pin(session, pin, name=name.strip()))
 
 
 def set_pin_hidden(editor: EditContext, pin: int, is_hidden: bool) -> None:
     """Leave a pin out on the canvas, or show it again; it holds the drawing in both cases."""
-    label = "Hide Pin" if is_hidden else "Show Pin"
+    label = mark("Hide Pin") if is_hidden else mark("Show Pin")
     editor.edit(label, lambda session: pin_edits.change_pin(session, pin, is_hidden=is_hidden))
 
 
 def set_pin_locked(editor: EditContext, pin: int, is_locked: bool) -> None:
     """Protect a pin from being moved and removed by hand, or end that."""
-    label = "Lock Pin" if is_locked else "Unlock Pin"
+    label = mark("Lock Pin") if is_locked else mark("Unlock Pin")
     editor.edit(label, lambda session: pin_edits.change_pin(session, pin, is_locked=is_locked))
 
 
@@ -115,7 +116,7 @@ def remove_pins(editor: EditContext, pins: Iterable[int]) -> None:
         return
     removed = frozenset(pins) & {pin.id for pin in editor.session.state.pins if not pin.is_locked}
     if removed:
-        label = "Remove Pin" if len(removed) == 1 else f"Remove {len(removed)} Pins"
+        label = mark("Remove Pin") if len(removed) == 1 else f"Remove {len(removed)} Pins"
         editor.edit(label, lambda session: pin_edits.remove_pins(session, removed))
 
 
@@ -133,26 +134,26 @@ def remove_last_pin(editor: EditContext) -> None:
 
 def move_pin(editor: EditContext, pin: int, position: Point) -> None:
     """Set the target of a pin, pixels. Raises InputError on an unknown id or if it is not finite."""
-    editor.apply("Move Pin", SetTargets({pin: position}))
+    editor.apply(mark("Move Pin"), SetTargets({pin: position}))
 
 
 def set_depth(editor: EditContext, pin: int, depth: int) -> None:
     """Set the depth of a pin; greater depths are in front. Raises InputError on a depth out of range."""
-    editor.edit("Set Depth", lambda session: pin_edits.set_depths(session, {pin: depth}))
+    editor.edit(mark("Set Depth"), lambda session: pin_edits.set_depths(session, {pin: depth}))
 
 
 def shift_depths(editor: EditContext, by: int) -> None:
     """Add to the depths of the selected pins. Raises InputError on a depth out of range."""
     if editor.session is not None and editor.selection:
         depths = {pin.id: pin.depth + by for pin in editor.session.state.pins if pin.id in editor.selection}
-        label = "Raise Depth" if by > 0 else "Lower Depth"
+        label = mark("Raise Depth") if by > 0 else mark("Lower Depth")
         editor.edit(label, lambda session: pin_edits.set_depths(session, depths))
 
 
 def order_limb(editor: EditContext, to_front: bool) -> None:
     """Bring the limb of the selected pins in front of all that it overlaps, or send it behind."""
     if editor.selection:
-        label = "Bring Limb to Front" if to_front else "Send Limb to Back"
+        label = mark("Bring Limb to Front") if to_front else mark("Send Limb to Back")
         editor.apply(label, OrderLimb(sorted(editor.selection), to_front))
 
 
@@ -162,17 +163,19 @@ def toggle_held_angles(editor: EditContext) -> None:
         return
     free = [pin.id for pin in editor.session.state.pins if pin.id in editor.selection and pin.angle is None]
     if free:
-        editor.edit("Hold Angle", lambda session: pin_edits.hold_angles(session, free))
+        editor.edit(mark("Hold Angle"), lambda session: pin_edits.hold_angles(session, free))
     else:
-        editor.edit("Release Angle", lambda session: pin_edits.hold_angles(session, editor.selection, False))
+        editor.edit(
+            mark("Release Angle"), lambda session: pin_edits.hold_angles(session, editor.selection, False)
+        )
 
 
 def set_pin_angle(editor: EditContext, pin: int, angle: float | None) -> None:
     """Let a pin hold an angle (radians from rest); None releases it. Raises InputError out of range."""
     if angle is None:
-        editor.edit("Release Angle", lambda session: pin_edits.hold_angles(session, {pin}, False))
+        editor.edit(mark("Release Angle"), lambda session: pin_edits.hold_angles(session, {pin}, False))
     else:
-        editor.apply("Rotate Pin", SetAngles({pin: angle}))
+        editor.apply(mark("Rotate Pin"), SetAngles({pin: angle}))
 
 
 class NudgeSeries:
@@ -197,7 +200,7 @@ class NudgeSeries:
         now = self._clock()
         entry, last_pins, last_time = self._last or (None, pins, now)
         joins = entry is not None and entry is session.history.last and last_pins == pins
-        session.begin("Nudge Pin" if len(pins) == 1 else f"Nudge {len(pins)} Pins")
+        session.begin(mark("Nudge Pin") if len(pins) == 1 else f"Nudge {len(pins)} Pins")
         try:
             pin_edits.hold_stopped_pins(session)
             moved = (session.state.pin(pin) for pin in sorted(pins))
@@ -237,7 +240,7 @@ def move_layer(editor: EditContext, layer: int, place: int) -> None:
     if editor.session is not None:
         order = [number for number in editor.session.drawing.layer_order if number != layer]
         order.insert(place, layer)
-        editor.apply("Reorder Layers", OrderLayers(order))
+        editor.apply(mark("Reorder Layers"), OrderLayers(order))
 
 
 def show_group(editor: EditContext, path: Sequence[str], visible: bool) -> None:
@@ -264,7 +267,7 @@ def add_joint(editor: EditContext, limb: int, carrier: int, place: Point) -> int
     state, mesh = session.state, session.drawing.mesh
     joint_id = 1 + max((joint.id for joint in state.joints), default=0)
     joint = make_joint(mesh, joint_id, limb, carrier, np.array(place), state.positions)
-    set_joints(editor, "Add Joint", (*state.joints, joint))
+    set_joints(editor, mark("Add Joint"), (*state.joints, joint))
     return joint_id
 
 
@@ -276,7 +279,7 @@ def move_joint(editor: EditContext, joint_id: int, place: Point) -> None:
         old = next(joint for joint in state.joints if joint.id == joint_id)
         moved = make_joint(mesh, joint_id, *old.layers(mesh), np.array(place), state.positions)
         values = {"faces": moved.faces, "weights": moved.weights}
-        set_joints(editor, "Move Joint", changed_joint(state.joints, joint_id, **values))
+        set_joints(editor, mark("Move Joint"), changed_joint(state.joints, joint_id, **values))
 
 
 def hang_joint(editor: EditContext, joint_id: int, carrier: int) -> None:
@@ -288,17 +291,17 @@ def hang_joint(editor: EditContext, joint_id: int, carrier: int) -> None:
         place = old.places(mesh, state.positions)[0]
         moved = make_joint(mesh, joint_id, old.layers(mesh)[0], carrier, place, state.positions)
         values = {"faces": moved.faces, "weights": moved.weights}
-        set_joints(editor, "Change Parent", changed_joint(state.joints, joint_id, **values))
+        set_joints(editor, mark("Change Parent"), changed_joint(state.joints, joint_id, **values))
 
 
 def set_joint_kind(editor: EditContext, joint_id: int, kind: str) -> None:
     """Make a joint a hinge or a weld. Raises InputError on another kind."""
     if editor.session is not None:
         joints = changed_joint(editor.session.state.joints, joint_id, kind=kind)
-        set_joints(editor, "Make Weld" if kind == "weld" else "Make Hinge", joints)
+        set_joints(editor, mark("Make Weld") if kind == "weld" else mark("Make Hinge"), joints)
 
 
-def remove_joints(editor: EditContext, ids: Iterable[int], label: str = "Remove Joint") -> None:
+def remove_joints(editor: EditContext, ids: Iterable[int], label: str = mark("Remove Joint")) -> None:
     """Remove joints by their ids; the drawing keeps its pose."""
     if editor.session is not None:
         removed = set(ids)
@@ -309,14 +312,14 @@ def accept_joints(editor: EditContext) -> None:
     """Accept all proposed joints."""
     if editor.session is not None:
         joints = (replace(joint, is_proposed=False) for joint in editor.session.state.joints)
-        set_joints(editor, "Accept Joints", joints)
+        set_joints(editor, mark("Accept Joints"), joints)
 
 
 def clear_proposed_joints(editor: EditContext) -> None:
     """Remove all joints that nobody has accepted."""
     if editor.session is not None:
         proposed = [joint.id for joint in editor.session.state.joints if joint.is_proposed]
-        remove_joints(editor, proposed, "Clear Proposed Joints")
+        remove_joints(editor, proposed, mark("Clear Proposed Joints"))
 
 
 # -- poses and settings --------------------------------------------------------------------------------------
@@ -324,12 +327,12 @@ def clear_proposed_joints(editor: EditContext) -> None:
 
 def reset_pose(editor: EditContext) -> None:
     """Return to the rest pose; the pins stay on the drawing and move with it."""
-    editor.apply("Reset Pose", ResetPose())
+    editor.apply(mark("Reset Pose"), ResetPose())
 
 
 def set_rest_pose(editor: EditContext) -> None:
     """Make the current pose the rest pose; nothing moves. Raises InputError if it has flipped faces."""
-    editor.apply("Set Rest Pose from Current", SetRestPose())
+    editor.apply(mark("Set Rest Pose from Current"), SetRestPose())
 
 
 def add_pose(editor: EditContext, name: str | None = None) -> None:
@@ -339,16 +342,16 @@ def add_pose(editor: EditContext, name: str | None = None) -> None:
     """
     if editor.session is not None:
         pose_name = unused_pose_name(editor.session.state.poses) if name is None else name
-        editor.apply("Add Pose", AddPose(pose_name))
+        editor.apply(mark("Add Pose"), AddPose(pose_name))
 
 
 def delete_pose(editor: EditContext, name: str) -> None:
     """Delete the pose of this name, if there is one."""
-    editor.apply("Delete Pose", DeletePose(name))
+    editor.apply(mark("Delete Pose"), DeletePose(name))
 
 
 def set_pose(
-    editor: EditContext, positions: Floats, label: str = "Apply Pose", crossings: Ints | None = None
+    editor: EditContext, positions: Floats, label: str = mark("Apply Pose"), crossings: Ints | None = None
 ) -> None:
     """Set the pose (n, 2); the pins stay on the drawing and move with it. Raises InputError.
 
@@ -364,10 +367,10 @@ def apply_pose(
 
     Raises InputError.
     """
-    editor.apply("Apply Pose", SetPins(pins), SetPose(positions, crossings))
+    editor.apply(mark("Apply Pose"), SetPins(pins), SetPose(positions, crossings))
 
 
 def set_settings(editor: EditContext, settings: Settings) -> None:
     """Change the deformation method or its parameters. Raises InputError on unknown ones."""
     if editor.session is not None and settings != editor.session.state.settings:
-        editor.apply("Change Settings", SetSettings(settings))
+        editor.apply(mark("Change Settings"), SetSettings(settings))

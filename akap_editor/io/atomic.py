@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ..errors import FileError, InputError
+from ..words import mark, tr
 
 MAX_FILE_BYTES = 2**30
 TEMPORARY_PREFIX, TEMPORARY_SUFFIX = ".akap-", ".tmp"  # of a file that is being written
@@ -26,7 +27,7 @@ Write = Callable[[str | Path, bytes], None]  # writes a file, as `write_atomic` 
 def as_path(value: Any) -> Path:
     """Return ``value`` as a path. Raises InputError if it is neither text nor a path."""
     if not isinstance(value, (str, os.PathLike)):
-        raise InputError(f"path: expected a path or text, got {reprlib.repr(value)}")
+        raise InputError(tr("path: expected a path or text, got {value}", value=reprlib.repr(value)))
     return Path(value)
 
 
@@ -61,14 +62,17 @@ def read_file(path: str | Path, expected: str) -> bytes:
                 noted.append(path)
             return path.read_bytes()
     except FileNotFoundError:
-        raise FileError("open", path, "there is no such file") from None
+        raise FileError("open", path, tr("there is no such file")) from None
     except (OSError, ValueError) as error:
         raise FileError("open", path, os_error_reason(error)) from error
     if stat.S_ISREG(status.st_mode):
-        came = f"a file of {status.st_size} bytes, more than {MAX_FILE_BYTES}"
+        size, most = status.st_size, MAX_FILE_BYTES
+        came = tr("a file of {size} bytes, more than {most}", size=size, most=most)
+    elif stat.S_ISDIR(status.st_mode):
+        came = tr("a folder")
     else:
-        came = "a folder" if stat.S_ISDIR(status.st_mode) else "something that is not a regular file"
-    raise FileError("open", path, f"expected {expected}, got {came}")
+        came = tr("something that is not a regular file")
+    raise FileError("open", path, tr("expected {expected}, got {came}", expected=tr(expected), came=came))
 
 
 def write_atomic(path: str | Path, data: bytes) -> None:
@@ -85,7 +89,7 @@ def write_atomic(path: str | Path, data: bytes) -> None:
         target = _link_target(path)
         exists = target.exists()
         if exists and not target.is_file():  # moving over a device would destroy it
-            raise OSError(errno.EINVAL, "it is not a regular file")
+            raise OSError(errno.EINVAL, tr("it is not a regular file"))
         if exists and not os.access(target, os.W_OK):  # moving over a protected file would succeed
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         temporary = target.with_name(f"{TEMPORARY_PREFIX}{secrets.token_hex(8)}{TEMPORARY_SUFFIX}")
@@ -121,13 +125,30 @@ def resolved(path: Path) -> Path:
         return path.absolute()
 
 
+# What systems say most often
+_REASONS = (
+    mark("permission denied"),
+    mark("no such file or directory"),
+    mark("not a directory"),
+    mark("is a directory"),
+    mark("no space left on device"),
+    mark("read-only file system"),
+    mark("file name too long"),
+    mark("input/output error"),
+    mark("disk quota exceeded"),
+    mark("too many levels of symbolic links"),
+    mark("operation not permitted"),
+)
+
+
 def os_error_reason(error: OSError | ValueError) -> str:
     """The cause alone, e.g. "permission denied", without number and file name."""
     if isinstance(error, UnicodeError):
         encoding = sys.getfilesystemencoding()
-        return f"the names of files have no such characters in the present locale ({encoding})"
+        text = mark("the names of files have no such characters in the present locale ({encoding})")
+        return tr(text, encoding=encoding)
     text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    return text[:1].lower() + text[1:]
+    return tr(text[:1].lower() + text[1:])
 
 
 def _link_target(path: Path) -> Path:

@@ -14,12 +14,18 @@ from PIL import Image, ImageCms, ImageOps, UnidentifiedImageError
 
 from ..errors import InputError, file_errors, join_with_or
 from ..geometry.validation import as_picture
+from ..words import mark, tr
 from .atomic import read_file, write_atomic
 
 Picture = NDArray[np.uint8]
 
 PICTURE_FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "GIF", "TIFF")
-ANIMATED_PICTURE_FORMATS = ("PNG", "WEBP", "GIF", "TIFF")  # of these a file may have several frames or pages
+ANIMATED_PICTURE_FORMATS = (
+    "PNG",
+    "WEBP",
+    "GIF",
+    "TIFF",
+)  # of these a file may have several frames or pages
 MAX_PIXELS = 100_000_000
 STRIP_PIXELS = 2**21  # converted at once
 
@@ -32,7 +38,7 @@ def read_image(path: str | Path) -> Picture:
     profile that is not damaged.
     Raises FileError if the file is missing, unreadable, damaged, no picture, or has over `MAX_PIXELS`.
     """
-    data = read_file(path, "a picture")
+    data = read_file(path, mark("a picture"))
     with file_errors("open", path):
         return decode_image(data)
 
@@ -72,27 +78,43 @@ def decode_image(
             picture = Image.open(BytesIO(data), formats=formats)
         except UnidentifiedImageError:
             kinds = join_with_or(formats)
-            reason = f"the file is damaged or not a {kinds} picture; it begins with {data[:8]!r}"
+            reason = tr(
+                "the file is damaged or not a {kinds} picture; it begins with {begin!r}",
+                kinds=kinds,
+                begin=data[:8],
+            )
             raise InputError(reason) from None
         except Image.DecompressionBombError as error:
-            raise InputError(_too_large("much more")) from error
+            raise InputError(_too_large(tr("much more"))) from error
         except Exception as error:  # Pillow reports damage with exceptions of many kinds
-            raise InputError(f"the file is damaged or not a {join_with_or(formats)} picture") from error
+            raise InputError(
+                tr("the file is damaged or not a {names} picture", names=join_with_or(formats))
+            ) from error
         if picture.width * picture.height > MAX_PIXELS:
-            raise InputError(_too_large(f"{picture.width} x {picture.height} pixels"))
+            raise InputError(
+                _too_large(tr("{width} x {height} pixels", width=picture.width, height=picture.height))
+            )
         if size not in (None, picture.size):
             came = f"{picture.width} x {picture.height}"
-            raise InputError(f"expected {' x '.join(map(str, size or ()))} pixels, got {came}")
+            raise InputError(
+                tr("expected {size} pixels, got {came}", size=" x ".join(map(str, size or ())), came=came)
+            )
         if picture.mode == "F" or (picture.mode == "I" and picture.format != "PNG"):
-            raise InputError("expected samples of 8 or 16 bits, got 32 bits per sample")
+            raise InputError(tr("expected samples of 8 or 16 bits, got 32 bits per sample"))
         try:
             return _rgba(picture, data)
         except Exception as error:
-            raise InputError(f"the {picture.format} picture is damaged or incomplete") from error
+            raise InputError(
+                tr("the {format} picture is damaged or incomplete", format=picture.format)
+            ) from error
 
 
 def _too_large(came: str) -> str:
-    return f"expected a picture of at most {MAX_PIXELS / 1e6:g} megapixels, got {came}"
+    return tr(
+        "expected a picture of at most {megapixels:g} megapixels, got {came}",
+        megapixels=MAX_PIXELS / 1e6,
+        came=came,
+    )
 
 
 def _rgba(picture: Image.Image, data: bytes) -> Picture:

@@ -14,6 +14,7 @@ from ..layers.drawing_layer import shown_layers
 from ..layers.layered_picture import LayeredPicture
 from ..meshing.faint import fitting_threshold
 from ..meshing.picture_mesh import mesh_picture
+from ..words import mark
 from .akap.json_records import pairs, parse_record, require
 from .akap.pose import POSE_FORMAT
 from .akap.project import decode_document
@@ -66,7 +67,7 @@ def inspect(path: str | Path) -> Inspection:
     """Inspect a file, or a folder of layers. Raises FileError if it cannot be read at all."""
     if Path(path).is_dir():
         return Inspection("layers", *_layer_facts("folder", open_layers(path)))
-    data = read_file(path, "a file")
+    data = read_file(path, mark("a file"))
     kind = _kind_by_content(data) or _KIND_OF_SUFFIX.get(Path(path).suffix.lower(), "unknown")
     if kind == "unknown":
         came = (

@@ -16,6 +16,7 @@ from ..layers.drawing_layer import DrawingLayer
 from ..layers.merging import movable_layers
 from ..meshing.faint import DEFAULT_THRESHOLD, faint_share
 from ..progress import announce, part
+from ..words import tr, tr_plural
 from .akap.project import PROJECT_SUFFIX, load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
 from .atomic import as_path, noted_reads
@@ -55,12 +56,14 @@ def open_document(
 def _open(
     path: Path, mask: str | Path | None, threshold: float | None, mesher: str | None, merge_layers: bool
 ) -> Document:
-    announce(0.0, "Reading the file")
+    announce(0.0, tr("Reading the file"))
     suffix = path.suffix.lower()
     if mask is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
-        raise FileError("use", mask, f"a mask needs a picture, but {display_name(path)} is none")
+        raise FileError(
+            "use", mask, tr("a mask needs a picture, but {file} is none", file=display_name(path))
+        )
     if threshold is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
-        raise InputError(f"threshold: expected a picture to cut out, got {display_name(path)}")
+        raise InputError(tr("threshold: expected a picture to cut out, got {file}", file=display_name(path)))
     if suffix == PROJECT_SUFFIX:
         return load(path)
     if suffix == RECORDING_SUFFIX:
@@ -102,8 +105,10 @@ def _open_layered(
 def _layer_note(layers: Sequence[DrawingLayer]) -> str:
     """A sentence about the layers of a drawing."""
     hidden = sum(not layer.visible for layer in layers)
-    some = "" if not hidden else f", {hidden} of them hidden"
-    return f"Opened {len(layers)} layers{some}; Merge Layers in the File menu makes one drawing of them"
+    opened = tr_plural("Opened {count} layer", "Opened {count} layers", len(layers))
+    if hidden:
+        opened = tr("{opened}, {hidden} of them hidden", opened=opened, hidden=hidden)
+    return tr("{opened}; Merge Layers in the File menu makes one drawing of them", opened=opened)
 
 
 def read_picture(path: str | Path) -> tuple[Picture, tuple[str, ...]]:
@@ -135,8 +140,12 @@ def opening_notes(document: Document, setting: str = THRESHOLD_OPTION) -> list[s
     most = int(alpha.max())
     if most <= 255 * DEFAULT_THRESHOLD and threshold < DEFAULT_THRESHOLD:
         notes.append(
-            f"The picture is faint, at most {most / 255:.0%} opaque, so it was cut out at {threshold:.0%} "
-            "opacity"
+            tr(
+                "The picture is faint, at most {most:.0%} opaque, so it was cut out at {threshold:.0%} "
+                "opacity",
+                most=most / 255,
+                threshold=threshold,
+            )
         )
     share = faint_share(alpha, drawing.mesh, threshold)
     if share >= MIN_REPORTED_SHARE:
@@ -146,9 +155,11 @@ def opening_notes(document: Document, setting: str = THRESHOLD_OPTION) -> list[s
 
 def faint_note(share: float, setting: str = THRESHOLD_OPTION) -> str:
     """A sentence about the share of the visible pixels that the threshold cuts off; see `opening_notes`."""
-    return (
-        f"{share:.0%} of what is visible is fainter than the edge and left out; "
-        f"a lower alpha threshold ({setting}) keeps it"
+    return tr(
+        "{share:.0%} of what is visible is fainter than the edge and left out; "
+        "a lower alpha threshold ({setting}) keeps it",
+        share=share,
+        setting=setting,
     )
 
 
@@ -160,5 +171,5 @@ def _open_recording(path: Path) -> Document:
         for _ in replay.events():
             pass
         if replay.session is None:
-            raise InputError("the recording is empty")
+            raise InputError(tr("the recording is empty"))
         return replay.end().document

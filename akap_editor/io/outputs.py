@@ -5,7 +5,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from ..display_text import display_name
-from ..errors import FileError
+from ..errors import FileError, joined
+from ..words import tr, tr_plural
 
 _MOST_NAMES = 3  # in a message
 
@@ -27,10 +28,10 @@ def unused_path(path: Path, *suffixes: str) -> Path:
 
 def quoted_names(paths: list[Path]) -> str:
     """The names of files in a sentence: "“a”, “b” and 3 more"."""
-    names = [f"“{display_name(path)}”" for path in paths[:_MOST_NAMES]]
+    names = [tr("“{file}”", file=display_name(path)) for path in paths[:_MOST_NAMES]]
     if len(paths) > _MOST_NAMES:
-        names[_MOST_NAMES - 1 :] = [f"{len(paths) - _MOST_NAMES + 1} more"]
-    return " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+        names[_MOST_NAMES - 1 :] = [tr("{count} more", count=len(paths) - _MOST_NAMES + 1)]
+    return joined(names, tr("{names} and {last}"))
 
 
 def refuse_replacing(path: Path, unnamed: Iterable[Path], overwrite: bool) -> None:
@@ -40,9 +41,11 @@ def refuse_replacing(path: Path, unnamed: Iterable[Path], overwrite: bool) -> No
     """
     replaced = [] if overwrite else existing(unnamed)
     if replaced:
-        verb = "exists" if len(replaced) == 1 else "exist"
-        reason = (
-            f"{quoted_names(replaced)} {verb} already; choose another name, or replace them (--overwrite)"
+        reason = tr_plural(
+            "{files} exists already; choose another name, or replace them (--overwrite)",
+            "{files} exist already; choose another name, or replace them (--overwrite)",
+            len(replaced),
+            files=quoted_names(replaced),
         )
         raise FileError("export", path, reason)
 
@@ -50,7 +53,7 @@ def refuse_replacing(path: Path, unnamed: Iterable[Path], overwrite: bool) -> No
 def refuse_source(path: Path, sources: Iterable[Path | None], overwrite: bool) -> None:
     """Raise FileError if ``path`` is one of the files that the export reads, unless ``overwrite``."""
     if not overwrite and is_source(path, sources):
-        reason = "it is a file that is read; choose another name, or replace it (--overwrite)"
+        reason = tr("it is a file that is read; choose another name, or replace it (--overwrite)")
         raise FileError("export", path, reason)
 
 

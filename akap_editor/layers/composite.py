@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..progress import announce
+from ..words import tr
 from .layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
 
 Samples = NDArray[np.float32]  # (h, w, 4) premultiplied, 0 to 1
@@ -48,7 +49,7 @@ def composite(layered: LayeredPicture) -> NDArray[np.uint8]:
     result = np.empty((height, width, 4), np.uint8)
     rows = max(1, STRIP_PIXELS // width)
     for top in range(0, height, rows):
-        announce(top / height, "Merging the layers")
+        announce(top / height, tr("Merging the layers"))
         bottom = min(top + rows, height)
         strip = np.zeros((bottom - top, width, 4), np.float32)
         _draw(nodes, strip, (0, top, width, bottom))

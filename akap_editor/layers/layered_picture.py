@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..display_text import display_text
 from ..errors import InputError
 from ..geometry.validation import as_choice, as_number, as_picture, as_switch, freeze
+from ..words import tr
 
 MAX_NAME = 255  # characters
 PASS_THROUGH = "pass through"  # the blending of a group whose layers are blended with what lies below it
@@ -104,9 +105,11 @@ class LayeredPicture:
     def __post_init__(self) -> None:
         width, height = self.size
         if not (width >= 1 and height >= 1):
-            raise InputError(f"size: expected at least 1 x 1 pixels, got {width} x {height}")
+            raise InputError(
+                tr("size: expected at least 1 x 1 pixels, got {width} x {height}", width=width, height=height)
+            )
         if not self.layers:
-            raise InputError("expected a picture with layers, got none")
+            raise InputError(tr("expected a picture with layers, got none"))
         object.__setattr__(self, "size", (int(width), int(height)))
         object.__setattr__(self, "layers", tuple(self.layers))
         object.__setattr__(self, "left_out", tuple(self.left_out))

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..geometry.validation import Floats, as_number, as_picture
+from ..words import tr
 
 DEFAULT_TOLERANCE = 0.125
 
@@ -22,7 +23,7 @@ def background_color(image: NDArray[np.uint8]) -> Floats:
     border = np.concatenate([image[0], image[-1], image[:, 0], image[:, -1]])
     colors = border[border[:, 3] > 0, :3]
     if not len(colors):
-        raise InputError("background: expected a border that can be seen, got a transparent one")
+        raise InputError(tr("background: expected a border that can be seen, got a transparent one"))
     coarse = (colors >> _DROPPED_BITS).astype(np.int32) @ [1 << 16, 1 << 8, 1]
     values, counts = np.unique(coarse, return_counts=True)
     color = np.median(colors[coarse == values[np.argmax(counts)]], axis=0)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..geometry.mesh import TriMesh
 from ..geometry.validation import Floats, Ints, as_number
 from ..progress import announce, part
+from ..words import tr
 from .faint import fitting_threshold
 from .outline import NoOutlineError, check_lengths
 from .picture_mesh import mesh_picture
@@ -48,7 +49,10 @@ def mesh_layers(
     faces: list[Ints] = []
     done = 0
     for number, (alpha, level) in enumerate(zip(alphas, thresholds, strict=True)):
-        announce(number / len(alphas), f"Meshing layer {number + 1} of {len(alphas)}")
+        announce(
+            number / len(alphas),
+            tr("Meshing layer {number} of {count}", number=number + 1, count=len(alphas)),
+        )
         if known is not None and number in known:
             points, triangles = known[number]
         else:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..geometry.validation import Floats, Ints
+from ..words import mark, tr
 from .mesher_worker import read_message, write_message
 from .meshers import MESHERS
 
@@ -68,12 +69,12 @@ class MesherProcess:
         Raises InputError if the mesher crashes, needs more than ``limit`` seconds, or finds no faces.
         """
         if not np.isfinite(graph["vertices"]).all():
-            raise InputError("outlines: expected finite coordinates")
+            raise InputError(tr("outlines: expected finite coordinates"))
         job = {name: np.array(value) for name, value in refinement._asdict().items()}
         title = MESHERS[refinement.mesher]
         answer = self._exchange({**graph, **job}, title, limit)
         if not len(answer["triangles"]) or not np.isfinite(answer["vertices"]).all():
-            raise InputError(f"the outline cannot be triangulated: {title} returned no faces")
+            raise InputError(tr("the outline cannot be triangulated: {title} returned no faces", title=title))
         return answer["vertices"], answer["triangles"]
 
     def _exchange(self, job: dict[str, np.ndarray], title: str, limit: float) -> dict[str, np.ndarray]:
@@ -99,10 +100,11 @@ class MesherProcess:
                 timer.cancel()
             if answer is None:
                 self.close()
-                reason = (
-                    f"took longer than {limit:g} s" if timed_out.is_set() else "stopped without an answer"
-                )
-                raise InputError(f"the outline cannot be triangulated: {title} {reason}")
+                if timed_out.is_set():
+                    reason = mark("the outline cannot be triangulated: {title} took longer than {limit:g} s")
+                else:
+                    reason = mark("the outline cannot be triangulated: {title} stopped without an answer")
+                raise InputError(tr(reason, title=title, limit=limit))
             return answer
 
     def close(self) -> None:

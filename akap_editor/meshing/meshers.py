@@ -6,6 +6,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from ..errors import InputError
+from ..words import tr
 
 TRIANGLE, PYTHONCDT = "triangle", "pythoncdt"
 MESHERS = {TRIANGLE: "Triangle", PYTHONCDT: "PythonCDT"}  # in order of preference, with their titles
@@ -23,14 +24,20 @@ def default_mesher() -> str:
     Raises InputError if neither is.
     """
     if not installed_meshers():
-        raise InputError("no mesher is installed; install one with: pip install pythoncdt")
+        raise InputError(tr("no mesher is installed; install one with: pip install pythoncdt"))
     return installed_meshers()[0]
 
 
 def check_known(name: Any) -> str:
     """Return the name of a mesher, installed or not. Raises InputError on other values."""
     if not isinstance(name, str) or name not in MESHERS:
-        raise InputError(f"mesher: expected one of {', '.join(MESHERS)}, got {reprlib.repr(name)}")
+        raise InputError(
+            tr(
+                "mesher: expected one of {names}, got {name}",
+                names=", ".join(MESHERS),
+                name=reprlib.repr(name),
+            )
+        )
     return name
 
 
@@ -39,7 +46,13 @@ def check_mesher(name: str | None) -> str:
     if name is None:
         return default_mesher()
     if check_known(name) not in installed_meshers():
-        raise InputError(f"{MESHERS[name]} is not installed; install it with: pip install {name}")
+        raise InputError(
+            tr(
+                "{mesher} is not installed; install it with: pip install {name}",
+                mesher=MESHERS[name],
+                name=name,
+            )
+        )
     return name
 
 

@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
 from ..geometry.validation import Floats, as_channel, as_number, as_points, freeze
+from ..words import tr
 from .contours import contours
 
 MIN_PART_AREA = 10.0  # square pixels; a smaller part is a speck
@@ -108,17 +109,29 @@ def cut_out(
     rings = contours(alpha, 255 * threshold)
     if not rings:
         raise NoOutlineError(
-            f"the picture is fully transparent: expected a drawing, but none of its {width}×{height} pixels "
-            f"is more than {threshold:.0%} opaque"
+            tr(
+                "the picture is fully transparent: expected a drawing, but none of its {width}×{height} "
+                "pixels is more than {threshold:.0%} opaque",
+                width=width,
+                height=height,
+                threshold=threshold,
+            )
         )
     # An expansion by r closes every hole of at most π r² square pixels.
     drawn = polygons_of(rings, max(MIN_HOLE_AREA, np.pi * expand**2))
     specks = _specks(drawn, 2 * expand)
     if specks.all():
         raise NoOutlineError(
-            f"the picture is too small to bend: expected a part of at least {MIN_PART_AREA:g} square pixels, "
-            f"got {width}×{height} pixels with {int((alpha > 255 * threshold).sum())} of them visible, "
-            f"in {len(drawn)} pieces"
+            tr(
+                "the picture is too small to bend: expected a part of at least {least:g} square pixels, "
+                "got {width}×{height} pixels with {sum} of them visible, "
+                "in {count} pieces",
+                least=MIN_PART_AREA,
+                width=width,
+                height=height,
+                sum=int((alpha > 255 * threshold).sum()),
+                count=len(drawn),
+            )
         )
     visible = drawn[~specks]
     frame = shapely.box(0, 0, width, height)
@@ -144,7 +157,9 @@ def _topology(cut: CutOut, max_points: float) -> tuple[int, int]:
 def check_lengths(threshold: float, expand: float, tolerance: float = 0.0) -> None:
     """Raise InputError if lengths in pixels or a threshold are out of range."""
     if as_number(threshold, "threshold", 0, 1) in (0, 1):
-        raise InputError(f"threshold: expected a share between 0 and 1, got {threshold:g}")
+        raise InputError(
+            tr("threshold: expected a share between 0 and 1, got {threshold:g}", threshold=threshold)
+        )
     for name, value in (("expand", expand), ("tolerance", tolerance)):
         as_number(value, name, 0, MAX_LENGTH)
 
@@ -247,5 +262,5 @@ def _outline(polygon: shapely.Polygon) -> Outline:
 def _ring(points: ArrayLike, name: str) -> Floats:
     ring = as_points(points, name)
     if len(ring) < 3:
-        raise InputError(f"{name}: expected at least 3 points, got {len(ring)}")
+        raise InputError(tr("{name}: expected at least 3 points, got {count}", name=name, count=len(ring)))
     return freeze(ring)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..geometry.mesh import TriMesh
 from ..geometry.validation import as_number
 from ..progress import announce
+from ..words import tr
 from .mesher_process import MESHER_PROCESS
 from .meshers import check_mesher
 from .outline import cut_out
@@ -54,12 +55,15 @@ def mesh_picture(
     max_points, fewest = OUTLINE_SHARE * vertices, np.inf
     for number in range(MAX_OUTLINES):
         share = 1 - 0.5**number  # an unknown number of rounds, each less likely than the one before
-        announce(share, "Finding the outline")
+        announce(share, tr("Finding the outline"))
         cut = cut_out(alpha, threshold, expand, max_points=max_points)
         if cut.points >= fewest:
             break
         fewest = cut.points
-        announce(share + 0.25 * 0.5**number, f"Triangulating {cut.points:,} points of the outline")
+        announce(
+            share + 0.25 * 0.5**number,
+            tr("Triangulating {points:,} points of the outline", points=cut.points),
+        )
         mesh = triangulate(cut.parts, vertices, mesher)
         if len(mesh.vertices) <= (1 + EXCESS_TOLERANCE) * vertices:
             break

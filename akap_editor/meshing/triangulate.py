@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from ..errors import InputError
 from ..geometry.mesh import TriMesh, signed_areas
 from ..geometry.validation import Floats, Ints, as_number
+from ..words import tr
 from .mesher_process import MESHER_PROCESS, Refinement
 from .meshers import PYTHONCDT, check_mesher
 from .outline import Outline
@@ -137,18 +138,25 @@ class _EdgeLengthModel:
 def _union(parts: Sequence[Outline]) -> shapely.Geometry:
     """The parts as one shape. Raises InputError if a polygon is not simple, or if rings meet."""
     if not isinstance(parts, Sequence) or not all(isinstance(part, Outline) for part in parts):
-        raise InputError(f"outlines: expected a sequence of outlines, got {reprlib.repr(parts)}")
+        raise InputError(
+            tr("outlines: expected a sequence of outlines, got {value}", value=reprlib.repr(parts))
+        )
     if not parts:
-        raise InputError("outlines: expected at least one part, got none")
+        raise InputError(tr("outlines: expected at least one part, got none"))
     polygons = [part.polygon for part in parts]
     for polygon in polygons:
         if not polygon.is_valid:
-            raise InputError(f"outlines: expected simple polygons, got {shapely.is_valid_reason(polygon)}")
+            raise InputError(
+                tr(
+                    "outlines: expected simple polygons, got {reason}",
+                    reason=shapely.is_valid_reason(polygon),
+                )
+            )
     shape = shapely.union_all(polygons)
     rings = shapely.get_rings(polygons)
     pairs = shapely.STRtree(rings).query(rings, predicate="intersects")
     if pairs.shape[1] > len(rings) or len(shapely.get_parts(shape)) < len(parts):
-        raise InputError("outlines: expected parts and holes apart from one another, but some touch")
+        raise InputError(tr("outlines: expected parts and holes apart from one another, but some touch"))
     return shape
 
 

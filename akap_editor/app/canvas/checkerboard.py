@@ -7,6 +7,7 @@ import numpy as np
 
 from ...editor.document.drawing import Drawing
 from ...render.renderer import CANVAS, Background
+from ...words import mark
 
 Shade = Literal["light", "mid", "dark"]
 BoardChoice = Literal["automatic", "light", "mid", "dark"]
@@ -17,10 +18,10 @@ _CHECKERS = {
     "dark": CANVAS.checker,
 }
 BOARD_LABELS: dict[BoardChoice, str] = {
-    "automatic": "Automatic",
-    "light": "Light",
-    "mid": "Mid",
-    "dark": "Dark",
+    "automatic": mark("Automatic"),
+    "light": mark("Light"),
+    "mid": mark("Mid"),
+    "dark": mark("Dark"),
 }
 _MOST_PIXELS = 400  # a side of the picture in which the rim is looked at
 _DARK, _BRIGHT = 0.3, 0.6  # luminance of the rim, 0 to 1

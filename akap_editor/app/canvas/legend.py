@@ -6,6 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from ...deform.methods import get_method
 from ...editor.editor import Editor
 from ...editor.session.session import Session
+from ...words import tr
 from ..theme import SECONDARY, TEXT, packed
 from .vector_field_arrows import U_OPT_COLOR, U_SMOOTH_COLOR
 from .view_options import DISTORTION_RANGES, DISTORTION_SCALES, Measure, ViewOptions
@@ -36,11 +37,11 @@ def draw_legend(view: ViewOptions, editor: Editor, scale: float) -> None:
 def _draw_vector_fields(session: Session, scale: float) -> None:
     """An arrow in the color of each field, and the field's name."""
     if not get_method(session.state.settings.method).deformer.has_vector_fields:
-        imgui.text_colored(ImVec4(*SECONDARY), "This method has no vector field")
+        imgui.text_colored(ImVec4(*SECONDARY), tr("This method has no vector field"))
         return
     for color, label in (
-        (U_OPT_COLOR, "U_opt, the field followed"),
-        (U_SMOOTH_COLOR, "U°, before the second solve"),
+        (U_OPT_COLOR, tr("U_opt, the field followed")),
+        (U_SMOOTH_COLOR, tr("U°, before the second solve")),
     ):
         corner, height = imgui.get_cursor_screen_pos(), imgui.get_text_line_height()
         start = ImVec2(corner.x, corner.y + height / 2)
@@ -57,7 +58,11 @@ def _draw_vector_fields(session: Session, scale: float) -> None:
 def _draw_distortion_scale(view: ViewOptions, measure: Measure, scale: float) -> None:
     """The color scale with the ratios at its ends."""
     limit = DISTORTION_RANGES[view.distortion_range]
-    title = "Area, against the drawing at rest" if measure == "area" else "Stretch, longer by shorter axis"
+    title = (
+        tr("Area, against the drawing at rest")
+        if measure == "area"
+        else tr("Stretch, longer by shorter axis")
+    )
     imgui.text_colored(ImVec4(*SECONDARY), title)
     size, gap = ImVec2(230 * scale, 10 * scale), 3 * scale
     corner = imgui.get_cursor_screen_pos()
@@ -65,13 +70,17 @@ def _draw_distortion_scale(view: ViewOptions, measure: Measure, scale: float) ->
     if imgui.invisible_button("##range", size_with_labels, imgui.ButtonFlags_.enable_nav):
         view.use_next_distortion_range()
     if imgui.is_item_hovered(imgui.HoveredFlags_.delay_normal):
-        imgui.set_tooltip("Click, or Shift+R, for another range")
+        imgui.set_tooltip(tr("Click, or Shift+R, for another range"))
     draw, colors = imgui.get_window_draw_list(), DISTORTION_SCALES[measure]
     edges = np.linspace(corner.x, corner.x + size.x, len(colors) + 1).tolist()
     for low, high, color in zip(edges, edges[1:], colors.tolist(), strict=False):
         lower_right = ImVec2(high + 0.5, corner.y + size.y)
         draw.add_rect_filled(ImVec2(low, corner.y), lower_right, packed((*color, 1.0)))
-    labels = (f"÷ {limit:g}", "same", f"× {limit:g}") if measure == "area" else ("1 (none)", "", f"{limit:g}")
+    labels = (
+        (f"÷ {limit:g}", tr("same"), f"× {limit:g}")
+        if measure == "area"
+        else (tr("1 (none)"), "", f"{limit:g}")
+    )
     for position, label in zip((0.0, 0.5, 1.0), labels, strict=True):
         x = corner.x + position * (size.x - imgui.calc_text_size(label).x)
         draw.add_text(ImVec2(x, corner.y + size.y + gap), packed(TEXT), label)

@@ -9,6 +9,7 @@ from imgui_bundle import ImVec2, imgui
 from ...editor import gestures
 from ...editor.document.pin import Pin
 from ...editor.events import PinRequest
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..commands.clipboard import COPY_PICTURE, COPY_POSE, PASTE
@@ -86,14 +87,14 @@ class PinPopup:
 def _draw_values(state: AppState, pin: Pin, scale: float) -> None:
     """Draw fields for target, depth and angle; each is applied when its edit ends."""
     x, y = pin.target.tolist()
-    widgets.secondary_text(f"Pin {pin.id}")
+    widgets.secondary_text(tr("Pin {number}", number=pin.id))
     imgui.push_item_width(_FIELD_WIDTH * scale)
     if imgui.is_window_appearing():
         imgui.set_keyboard_focus_here()
     new_x = _number_field(state, pin, "X", x, "%.2f")
     new_y = _number_field(state, pin, "Y", y, "%.2f")
-    depth = _field(state, pin, "Depth", pin.depth, lambda value: imgui.input_int("##Depth", value, 0, 0))
-    widgets.show_tooltip("Where limbs overlap, the higher number is in front.")
+    depth = _field(state, pin, tr("Depth"), pin.depth, lambda value: imgui.input_int("##Depth", value, 0, 0))
+    widgets.show_tooltip(tr("Where limbs overlap, the higher number is in front."))
     _draw_angle(state, pin)
     imgui.pop_item_width()
     if widgets.cancel_pressed():  # ImGui would only leave the field
@@ -112,11 +113,11 @@ def _draw_angle(state: AppState, pin: Pin) -> None:
     imgui.begin_disabled(not session.supports_rotation)
     degrees = math.degrees(session.pin_angle(pin.id) if pin.angle is None else pin.angle)
     degrees = 0.0 if abs(degrees) < 0.05 else degrees  # not -0.0°
-    new_degrees = _number_field(state, pin, "Angle", degrees, "%.1f°")
-    widgets.show_tooltip("Rotation of the drawing around the pin, clockwise.")
+    new_degrees = _number_field(state, pin, tr("Angle"), degrees, "%.1f°")
+    widgets.show_tooltip(tr("Rotation of the drawing around the pin, clockwise."))
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + _LABEL_WIDTH * imgui.get_font_size())
     is_clicked, is_held = widgets.switch(
-        "Hold angle", pin.angle is not None, "Off: the drawing can rotate freely around the pin."
+        tr("Hold angle"), pin.angle is not None, tr("Off: the drawing can rotate freely around the pin.")
     )
     imgui.end_disabled()
     if new_degrees is not None:
@@ -147,9 +148,9 @@ def _field(state: AppState, pin: Pin, name: str, value: T, item: Callable[[T], t
 
 def _draw_menu(state: AppState, pin: Pin) -> None:
     """Draw the content of a pin's context menu."""
-    if imgui.menu_item_simple("Values..."):
+    if imgui.menu_item_simple(tr("Values...")):
         state.editor.request_pin_popup("values", pin.id)
-    if len(state.editor.selection) > 1 and imgui.menu_item_simple("Select Only This Pin"):
+    if len(state.editor.selection) > 1 and imgui.menu_item_simple(tr("Select Only This Pin")):
         state.editor.select({pin.id})
     _draw_commands(state, _MENU)
 
@@ -172,5 +173,5 @@ def _draw_commands(state: AppState, commands: tuple[Command | None, ...]) -> Non
             imgui.separator()
         else:
             is_checked, is_enabled = command.is_checked(state), command.enabled(state)
-            if imgui.menu_item(command.label, command.key_name, is_checked, is_enabled)[0]:
+            if imgui.menu_item(command.text, command.key_name, is_checked, is_enabled)[0]:
                 widgets.run(state, command)

@@ -8,6 +8,7 @@ from ...editor.editor import FRAME_BUDGET
 from ...editor.events import ScrollEvent
 from ...editor.session.session import Session
 from ...geometry.distortion import Distortion
+from ...words import tr
 from ..app_state import AppState
 from ..theme import SECONDARY, TEXT, packed
 from .pin_markers import draw_pin
@@ -60,8 +61,8 @@ def draw(state: AppState, canvas: Rectangle, scale: float) -> Rectangle:
         state.view.is_split = False
         return canvas
     settings = session.state.settings
-    method = nearest_preset(settings.method, dict(settings.parameters)).label
-    _draw_caption(left, method, state.measure_distortion(), session, scale)
+    method = nearest_preset(settings.method, dict(settings.parameters))
+    _draw_caption(left, tr(method.label), state.measure_distortion(), session, scale)
     _draw_right_half(state, right, scale)
     return left
 
@@ -77,7 +78,7 @@ def _draw_right_half(state: AppState, half: Rectangle, scale: float) -> None:
     imgui.begin("Comparison", None, _RIGHT_HALF_FLAGS)
     imgui.set_next_item_width(min(220 * scale, right - left - 24 * scale))
     specs = [preset.spec for preset in presets()]
-    labels = [preset.label for preset in presets()]
+    labels = [tr(preset.label) for preset in presets()]
     changed, index = imgui.combo("##beside", specs.index(comparison.spec), labels, len(labels))
     if changed:
         comparison.spec = specs[index]
@@ -106,10 +107,12 @@ def _draw_caption(
         return
     first_line = [f"E_area {distortion.area:.3f}", f"E_angle {distortion.angle:.3f}"]
     if distortion.flipped:
-        first_line.append(f"{distortion.flipped} flipped")
-    second_line = [f"Pin error {session.pin_error():.2f} px"]
+        first_line.append(tr("{count} flipped", count=distortion.flipped))
+    second_line = [tr("Pin error {pixels:.2f} px", pixels=session.pin_error())]
     if session.last_step is not None:
-        second_line.append(f"{1e3 * session.last_step.report.seconds:.1f} ms per step")
+        second_line.append(
+            tr("{milliseconds:.1f} ms per step", milliseconds=1e3 * session.last_step.report.seconds)
+        )
     width = right - left - 24 * scale
     numbers = "\n".join(_fit_into(width, line) for line in (first_line, second_line))
     height = imgui.calc_text_size(numbers).y

@@ -4,6 +4,7 @@ import time
 
 from imgui_bundle import ImVec2, imgui
 
+from ...words import tr
 from ..app_state import AppState
 from ..jobs.task import LATE_SECONDS
 from ..theme import DARK, TEXT, packed
@@ -30,7 +31,7 @@ class WaitingPlate:
             imgui.set_mouse_cursor(imgui.MouseCursor_.not_allowed)
         if now < self._since + LATE_SECONDS or state.task is not None:  # the dialog of the task says more
             return
-        text = state.remesher.progress[1] or "Making the mesh"
+        text = state.remesher.progress[1] or tr("Making the mesh")
         size, margin = imgui.calc_text_size(text), 10 * scale
         x, y = (left + right - size.x) / 2, top + _TOP * scale
         draw = imgui.get_background_draw_list()

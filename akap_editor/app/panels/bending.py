@@ -4,12 +4,13 @@ from imgui_bundle import ImVec2, imgui
 
 from ...deform.methods import get_method, nearest_preset, presets
 from ...editor.document.settings import Settings
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..commands.registry import REMEMBER_REST_SHAPE, RESET_POSE, remembers_rest_shape
 from . import method_parameters
 
-_MEMORY_TOOLTIP = (
+_MEMORY_TOOLTIP = mark(
     "On: the drawing springs back towards its rest shape as you drag, so that a drag back and forth leaves "
     "no trace. Off: it keeps the effect of each drag, like clay."
 )
@@ -20,12 +21,12 @@ def draw(state: AppState, scale: float) -> None:
     assert state.document is not None
     _draw_method(state, state.document.state.settings)
     imgui.begin_disabled(not REMEMBER_REST_SHAPE.enabled(state))
-    if widgets.switch("Remember rest shape", remembers_rest_shape(state), _MEMORY_TOOLTIP)[0]:
+    if widgets.switch(tr("Remember rest shape"), remembers_rest_shape(state), tr(_MEMORY_TOOLTIP))[0]:
         widgets.run(state, REMEMBER_REST_SHAPE)
     imgui.end_disabled()
     method_parameters.draw(state)
     imgui.begin_disabled(not RESET_POSE.enabled(state))
-    if imgui.button(RESET_POSE.label, ImVec2(widgets.FULL, 0)):
+    if imgui.button(RESET_POSE.text, ImVec2(widgets.FULL, 0)):
         widgets.run(state, RESET_POSE)
     imgui.end_disabled()
 
@@ -34,7 +35,7 @@ def _draw_method(state: AppState, settings: Settings) -> None:
     """Draw the list of methods. A new choice keeps whether the rest shape is remembered."""
     choices, current = presets(), nearest_preset(settings.method, dict(settings.parameters))
     imgui.set_next_item_width(widgets.FULL)
-    labels = [preset.label for preset in choices]
+    labels = [tr(preset.label) for preset in choices]
     is_changed, index = imgui.combo("##method", choices.index(current), labels, len(labels))
     widgets.show_tooltip(current.description)
     if is_changed:

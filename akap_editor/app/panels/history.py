@@ -2,12 +2,14 @@
 
 from imgui_bundle import ImVec4, imgui
 
+from ...words import mark
 from .. import widgets
 from ..app_state import AppState
+from ..history_labels import shown_label
 from ..theme import SECONDARY
 
 _ROWS = 6  # steps that are visible at once
-_FIRST = "Open"  # the state before the first step
+_FIRST = mark("Open")  # the state before the first step
 
 
 def step_count(state: AppState) -> str:
@@ -26,7 +28,7 @@ def draw(state: AppState, scale: float) -> None:
         is_undone = index > depth
         if is_undone:
             imgui.push_style_color(imgui.Col_.text, ImVec4(*SECONDARY))
-        if imgui.selectable(f"  {widgets.as_label(label)}##step {index}", index == depth)[0]:
+        if imgui.selectable(f"  {widgets.as_label(shown_label(label))}##step {index}", index == depth)[0]:
             state.notice = ""
             state.run_reporting_errors(lambda index=index: state.editor.undo_or_redo_to(index))  # type: ignore[misc]
         if is_undone:

@@ -9,6 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...editor import gestures
 from ...layers.drawing_layer import DrawingLayer, shown_layers
 from ...layers.layer_view import slot_members, unused_slot_name
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..commands.command import context_menu_pressed
@@ -135,7 +136,7 @@ class LayerList:
             imgui.set_cursor_pos(ImVec2(name_left, middle))
             name = self._name_field.draw("##new name", layer.name, name_width)
             if name:
-                _set(state, "Rename Layer", number, title=name)
+                _set(state, mark("Rename Layer"), number, title=name)
         else:
             width = room - (corner.x - imgui.get_window_pos().x - left) - (2 * _ICON_WIDTH + 0.2) * font_size
             self._draw_name(state, layer, number, place, ImVec2(width, side))
@@ -149,16 +150,27 @@ class LayerList:
             icons.ICON_FA_STAR,
             f"solo {number}",
             layer.solo,
-            "Solo: show only this and other such layers",
+            tr("Solo: show only this and other such layers"),
             _ICON_WIDTH,
         ):
-            _set(state, "Unsolo Layer" if layer.solo else "Solo Layer", number, solo=not layer.solo)
+            _set(
+                state, mark("Unsolo Layer") if layer.solo else mark("Solo Layer"), number, solo=not layer.solo
+            )
         imgui.set_cursor_pos(ImVec2(left + room - _ICON_WIDTH * font_size, middle))
         lock = icons.ICON_FA_LOCK if layer.locked else icons.ICON_FA_LOCK_OPEN
         if widgets.icon_switch(
-            lock, f"lock {number}", layer.locked, "Lock: clicks go through to the layers behind", _ICON_WIDTH
+            lock,
+            f"lock {number}",
+            layer.locked,
+            tr("Lock: clicks go through to the layers behind"),
+            _ICON_WIDTH,
         ):
-            _set(state, "Unlock Layer" if layer.locked else "Lock Layer", number, locked=not layer.locked)
+            _set(
+                state,
+                mark("Unlock Layer") if layer.locked else mark("Lock Layer"),
+                number,
+                locked=not layer.locked,
+            )
         imgui.set_cursor_pos(ImVec2(left, top + side + imgui.get_style().item_spacing.y))
         imgui.dummy(ImVec2(0, 0))
         imgui.set_cursor_pos(ImVec2(left, top + side + imgui.get_style().item_spacing.y))
@@ -189,14 +201,14 @@ class LayerList:
         """Draw the content of a layer's context menu."""
         assert state.document is not None
         last = len(state.document.drawing.layers) - 1
-        if imgui.menu_item("Rename", "F2", False)[0]:
+        if imgui.menu_item(tr("Rename"), "F2", False)[0]:
             self._name_field.begin(number)
         imgui.separator()
         for label, new_place, possible in (
-            ("Bring to Front", last, place < last),
-            ("Bring Forward", place + 1, place < last),
-            ("Send Backward", place - 1, place > 0),
-            ("Send to Back", 0, place > 0),
+            (tr("Bring to Front"), last, place < last),
+            (tr("Bring Forward"), place + 1, place < last),
+            (tr("Send Backward"), place - 1, place > 0),
+            (tr("Send to Back"), 0, place > 0),
         ):
             if imgui.menu_item(label, "", False, possible)[0]:
                 _move(state, number, new_place)
@@ -321,7 +333,7 @@ def _draw_opacity(state: AppState, layers: Sequence[DrawingLayer], selected: int
     """Draw the opacity of the selected layer; a whole drag of the slider is one entry of the history."""
     value = 100.0 if selected is None else 100 * layers[selected].opacity
     imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*SECONDARY), "Opacity")
+    imgui.text_colored(ImVec4(*SECONDARY), tr("Opacity"))
     imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
     begins = not imgui.is_mouse_dragging(0, 0.0)
     is_moved, percent, _ = widgets.slider("##layer opacity", value, (0, 100), "%.0f %%")

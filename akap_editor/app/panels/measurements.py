@@ -10,6 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from ...editor.session.session import Session
 from ...geometry.distortion import Distortion
 from ...render.overlays import Rgba
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import FRAME, packed
@@ -85,18 +86,22 @@ def draw(state: AppState, scale: float) -> None:
     distortion = measurements.distortion
     assert distortion is not None
     area, angle = distortion.area, distortion.angle
-    _draw_energy("E_area", area, AREA_COLOR, "Change of areas, averaged over the drawing.", scale)
-    _draw_energy("E_angle", angle, ANGLE_COLOR, "Shear and stretch, averaged over the drawing.", scale)
+    _draw_energy("E_area", area, AREA_COLOR, tr("Change of areas, averaged over the drawing."), scale)
+    _draw_energy("E_angle", angle, ANGLE_COLOR, tr("Shear and stretch, averaged over the drawing."), scale)
     _draw_sparkline(((measurements.areas, AREA_COLOR), (measurements.angles, ANGLE_COLOR)), scale)
     worst = max(float(distortion.face_area.max()), float(distortion.face_angle.max()))
-    text = f"{worst:.3f}" if distortion.flipped == 0 else f"{distortion.flipped} flipped"
-    widgets.row("Worst face", text, "E_area or E_angle of the most distorted triangle; 2 is undistorted.")
+    text = f"{worst:.3f}" if distortion.flipped == 0 else tr("{count} flipped", count=distortion.flipped)
+    widgets.row(
+        tr("Worst face"), text, tr("E_area or E_angle of the most distorted triangle; 2 is undistorted.")
+    )
     error = f"{session.pin_error():.2f} px"
-    widgets.row("Pin error", error, "Largest distance of a pin from its target.")
+    widgets.row(tr("Pin error"), error, tr("Largest distance of a pin from its target."))
     step, rate = measurements.step_seconds, measurements.frame_rate
-    widgets.row("Step time", "–" if step is None else f"{1000 * step:.1f} ms", "Time of one solver step.")
-    rate_text = "–" if rate is None else f"{rate:.0f} per s"
-    widgets.row("Frame rate", rate_text, "While something moves; otherwise the window sleeps.")
+    widgets.row(
+        tr("Step time"), "–" if step is None else f"{1000 * step:.1f} ms", tr("Time of one solver step.")
+    )
+    rate_text = "–" if rate is None else tr("{rate:.0f} per s", rate=rate)
+    widgets.row(tr("Frame rate"), rate_text, tr("While something moves; otherwise the window sleeps."))
 
 
 def _draw_energy(name: str, value: float, color: Rgba, tooltip: str, scale: float) -> None:
@@ -104,7 +109,7 @@ def _draw_energy(name: str, value: float, color: Rgba, tooltip: str, scale: floa
     center = ImVec2(corner.x + 4 * scale, corner.y + 0.55 * height)
     imgui.get_window_draw_list().add_circle_filled(center, 3.5 * scale, packed(color))
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 14 * scale)
-    widgets.row(name, f"{value:.4f}", f"{tooltip} 2 is undistorted.")
+    widgets.row(name, f"{value:.4f}", f"{tooltip} {tr('2 is undistorted.')}")
 
 
 def _draw_sparkline(lines: Sequence[tuple[Sequence[float], Rgba]], scale: float) -> None:
@@ -125,4 +130,4 @@ def _draw_sparkline(lines: Sequence[tuple[Sequence[float], Rgba]], scale: float)
             draw.add_line(start, end, packed(color), 1.4 * scale)
     imgui.dummy(ImVec2(width, height))
     if imgui.is_item_hovered(imgui.HoveredFlags_.delay_normal):
-        imgui.set_tooltip(f"E_area and E_angle, from 2 to {_UNDISTORTED + span:.3f}")
+        imgui.set_tooltip(tr("E_area and E_angle, from 2 to {end:.3f}", end=_UNDISTORTED + span))

@@ -10,6 +10,7 @@ from ...geometry.mesh import TriMesh
 from ...meshing import meshers
 from ...meshing.background import DEFAULT_TOLERANCE
 from ...meshing.quality import smallest_angles
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import SECONDARY
@@ -29,10 +30,10 @@ def draw(state: AppState, scale: float) -> None:
     _draw_background(state, meshing)
     vertices = _slider(
         state,
-        "Detail",
+        tr("Detail"),
         float(min(max(meshing.vertices, MIN_VERTICES), MAX_VERTICES)),
         (MIN_VERTICES, MAX_VERTICES, "%.0f"),
-        "Number of vertices. More bend more smoothly, fewer bend faster. The outline may need more.",
+        tr("Number of vertices. More bend more smoothly, fewer bend faster. The outline may need more."),
         imgui.SliderFlags_.logarithmic,
     )
     if vertices is not None:
@@ -56,19 +57,19 @@ def _draw_outline(state: AppState, meshing: Meshing) -> None:
     """Draw what decides on the outline: how far it is from the picture, and what belongs to the picture."""
     margin = _slider(
         state,
-        "Margin",
+        tr("Margin"),
         meshing.expand,
         (0.0, MAX_MARGIN, "%.1f px"),
-        "How far the mesh extends beyond the outline. Parts that are closer to each other are joined.",
+        tr("How far the mesh extends beyond the outline. Parts that are closer to each other are joined."),
     )
     if margin is not None:
         state.remesher.request(replace(meshing, expand=round(margin, 1)), imgui.is_item_active())
     threshold = _slider(
         state,
-        "Alpha threshold",
+        tr("Alpha threshold"),
         100 * meshing.threshold,
         (1.0, 99.0, "%.0f %%"),
-        "How opaque a pixel must be to belong to the drawing. Lower it to include faint parts.",
+        tr("How opaque a pixel must be to belong to the drawing. Lower it to include faint parts."),
     )
     if threshold is not None:
         state.remesher.request(replace(meshing, threshold=round(threshold) / 100), imgui.is_item_active())
@@ -80,23 +81,23 @@ def _draw_background(state: AppState, meshing: Meshing) -> None:
     if meshing.background is not None:
         tolerance = _slider(
             state,
-            "Tolerance",
+            tr("Tolerance"),
             100 * meshing.background,
             (0.0, MAX_TOLERANCE, "%.0f %%"),
-            "How different from the border's color the background may be.",
+            tr("How different from the border's color the background may be."),
         )
         if tolerance is not None:
             state.remesher.request(
                 replace(meshing, background=round(tolerance) / 100), imgui.is_item_active()
             )
-        if imgui.button("Restore Background", ImVec2(widgets.FULL, 0)):
+        if imgui.button(tr("Restore Background"), ImVec2(widgets.FULL, 0)):
             state.remesher.request(replace(meshing, background=None))
     elif state.document.drawing.is_opaque:
-        widgets.secondary_text("This picture has no transparency, so the whole rectangle bends.")
-        if imgui.button("Remove Background", ImVec2(widgets.FULL, 0)):
+        widgets.secondary_text(tr("This picture has no transparency, so the whole rectangle bends."))
+        if imgui.button(tr("Remove Background"), ImVec2(widgets.FULL, 0)):
             state.notice = ""
             state.remesher.request(replace(meshing, background=DEFAULT_TOLERANCE))
-        widgets.show_tooltip("Makes the area transparent that touches the border and has its color.")
+        widgets.show_tooltip(tr("Makes the area transparent that touches the border and has its color."))
 
 
 def _draw_mesher(state: AppState, meshing: Meshing) -> None:
@@ -105,10 +106,12 @@ def _draw_mesher(state: AppState, meshing: Meshing) -> None:
     if len(names) < 2:
         return
     imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*SECONDARY), "Mesher")
+    imgui.text_colored(ImVec4(*SECONDARY), tr("Mesher"))
     widgets.show_tooltip(
-        "Program that makes the mesh. Triangle's license allows non-commercial use only; "
-        "PythonCDT may be used for everything."
+        tr(
+            "Program that makes the mesh. Triangle's license allows non-commercial use only; "
+            "PythonCDT may be used for everything."
+        )
     )
     imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
     imgui.set_next_item_width(widgets.FULL)
@@ -151,12 +154,19 @@ def _figures(mesh: TriMesh) -> tuple[tuple[str, str, str], ...]:
     parts = int(mesh.component.max()) + 1
     holes = len(mesh.boundary_loops) - parts
     return (
-        ("Parts", f"{parts:,}", "Pieces of the mesh. A piece without a pin moves with the nearest one."),
-        ("Holes", f"{holes:,}", "Openings inside the outline."),
-        ("Vertices", f"{len(mesh.vertices):,}", "The drawing bends at the vertices of its mesh."),
         (
-            "Smallest angle",
+            mark("Parts"),
+            f"{parts:,}",
+            mark("Pieces of the mesh. A piece without a pin moves with the nearest one."),
+        ),
+        (mark("Holes"), f"{holes:,}", mark("Openings inside the outline.")),
+        (mark("Vertices"), f"{len(mesh.vertices):,}", mark("The drawing bends at the vertices of its mesh.")),
+        (
+            mark("Smallest angle"),
             f"{smallest_angles(mesh).min():.0f}°",
-            "Of all triangles. Thin triangles bend badly; less than 25° means a sharp corner in the outline.",
+            mark(
+                "Of all triangles. Thin triangles bend badly; less than 25° means a sharp corner in the "
+                "outline."
+            ),
         ),
     )

@@ -7,6 +7,7 @@ from imgui_bundle import ImVec4, imgui
 
 from ...deform.methods import Choice, NumberRange, Parameter, Switch, default_parameters, get_method
 from ...editor.document.settings import Settings
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..pending_values import PendingValues
@@ -36,11 +37,13 @@ def draw_value(kind: Switch | Choice | NumberRange, value: Any) -> tuple[bool, A
             return widgets.switch("##value", bool(value))
         case Choice(labels):
             names = list(labels)
-            is_changed, index = imgui.combo("##value", names.index(value), list(labels.values()))
+            is_changed, index = imgui.combo(
+                "##value", names.index(value), [tr(label) for label in labels.values()]
+            )
             return is_changed, names[index]
     limits, flags = (kind.low, kind.high), imgui.SliderFlags_.logarithmic if kind.is_logarithmic else 0
     if value is None:
-        return widgets.slider("##value", kind.low, limits, kind.format, flags, word="auto")[:2]
+        return widgets.slider("##value", kind.low, limits, kind.format, flags, word=tr("auto"))[:2]
     is_changed, number, _ = widgets.slider("##value", float(value), limits, kind.format, flags)
     return is_changed, round(number) if kind.is_whole else number
 
@@ -64,10 +67,10 @@ def _draw_parameter(state: AppState, settings: Settings, parameter: Parameter) -
     imgui.push_id(parameter.name)
     imgui.align_text_to_frame_padding()
     if value == default:
-        imgui.text_colored(ImVec4(*SECONDARY), parameter.label)
+        imgui.text_colored(ImVec4(*SECONDARY), tr(parameter.label))
     else:
-        imgui.text(parameter.label)
-    widgets.show_tooltip(f"{parameter.tooltip} Double-click to reset.")
+        imgui.text(tr(parameter.label))
+    widgets.show_tooltip(f"{tr(parameter.tooltip)} {tr('Double-click to reset.')}")
     is_reset = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0)
     imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
     imgui.set_next_item_width(widgets.FULL)

@@ -5,6 +5,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor import gestures
 from ...editor.document.pin import MAX_DEPTH, Pin
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..pending_values import NameField, PendingValues
@@ -36,7 +37,7 @@ class PinList:
         pins = state.document.state.pins
         widgets.begin_list("##pins", _ROWS)
         if not pins:
-            widgets.secondary_text("None yet. Click on the drawing where it should hold still.")
+            widgets.secondary_text(tr("None yet. Click on the drawing where it should hold still."))
         for index, pin in enumerate(pins):
             self._draw_row(state, pin, index)
         imgui.end_child()
@@ -49,7 +50,7 @@ class PinList:
             eye,
             f"eye {pin.id}",
             not pin.is_hidden,
-            "Hide on the canvas; it still holds the drawing",
+            tr("Hide on the canvas; it still holds the drawing"),
             _ICON_WIDTH,
         ):
             state.run_reporting_errors(lambda: gestures.set_pin_hidden(editor, pin.id, not pin.is_hidden))
@@ -59,7 +60,7 @@ class PinList:
             lock,
             f"lock {pin.id}",
             pin.is_locked,
-            "Lock: it cannot be moved or removed by hand",
+            tr("Lock: it cannot be moved or removed by hand"),
             _ICON_WIDTH,
         ):
             state.run_reporting_errors(lambda: gestures.set_pin_locked(editor, pin.id, not pin.is_locked))
@@ -91,7 +92,9 @@ class PinList:
         if is_at and imgui.is_key_pressed(imgui.Key.f2, False):
             self._name_field.begin(pin.id)
         target = f"{pin.target[0]:.0f}, {pin.target[1]:.0f}"
-        widgets.show_tooltip(f"{pin.label} at {target}. Double-click or F2 to rename.")
+        widgets.show_tooltip(
+            tr("{pin} at {target}. Double-click or F2 to rename.", pin=pin.label, target=target)
+        )
 
 
 def _draw_depth(state: AppState, pin: Pin) -> None:
@@ -108,6 +111,8 @@ def _draw_depth(state: AppState, pin: Pin) -> None:
     )
     imgui.pop_style_color()
     imgui.pop_style_var()
-    widgets.show_tooltip("Depth: where limbs overlap, the higher number is in front. Drag, or double-click.")
+    widgets.show_tooltip(
+        tr("Depth: where limbs overlap, the higher number is in front. Drag, or double-click.")
+    )
     if depth is not None and depth != pin.depth:
         state.run_reporting_errors(lambda: gestures.set_depth(state.editor, pin.id, depth))

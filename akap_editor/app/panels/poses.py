@@ -11,6 +11,7 @@ from ...editor.document.named_poses import NamedPose
 from ...editor.framing import frame_box
 from ...editor.session.edits import RenamePose, ReorderPoses
 from ...io.images import Picture
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..commands.command import context_menu_pressed
@@ -49,7 +50,7 @@ class PosesSection:
         assert state.document is not None
         poses = state.document.state.poses
         self._draw_poses(state, poses, scale)
-        if imgui.button(f"{icons.ICON_FA_PLUS}  Add to Poses", ImVec2(widgets.FULL, 0)):
+        if imgui.button(f"{icons.ICON_FA_PLUS}  {tr('Add to Poses')}", ImVec2(widgets.FULL, 0)):
             state.notice = ""
             state.run_reporting_errors(lambda: gestures.add_pose(state.editor))
         imgui.begin_disabled(len(poses) < 2)
@@ -62,7 +63,7 @@ class PosesSection:
         row_height = round(_SIDE * scale) + _NAME_SIZE * imgui.get_text_line_height() + gaps
         imgui.begin_child("##poses", ImVec2(0, _ROWS * row_height), widgets.NAV_FLATTENED)
         if not poses:
-            widgets.secondary_text("None yet. Add a pose to return to it with a click.")
+            widgets.secondary_text(tr("None yet. Add a pose to return to it with a click."))
         for number, pose in enumerate(poses):
             if number % _COLUMNS:
                 imgui.same_line(0, _GAP * scale)
@@ -80,7 +81,10 @@ class PosesSection:
             )
         is_hovered, is_focused = imgui.is_item_hovered(), imgui.is_item_focused()
         widgets.show_tooltip(
-            f"{pose.name}: click to apply, drag to the timeline or to reorder, right-click for more"
+            tr(
+                "{name}: click to apply, drag to the timeline or to reorder, right-click for more",
+                name=pose.name,
+            )
         )
         if (is_hovered or is_focused) and imgui.is_key_pressed(imgui.Key.f2, False):
             self.name_field.begin(pose.name)
@@ -106,25 +110,25 @@ class PosesSection:
         imgui.text_colored(ImVec4(*SECONDARY), widgets.shortened(pose.name, width))
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0):
             self.name_field.begin(pose.name)
-        widgets.show_tooltip(f"{pose.name}: double-click or F2 to rename")
+        widgets.show_tooltip(tr("{name}: double-click or F2 to rename", name=pose.name))
 
     def _draw_menu(self, state: AppState, pose: NamedPose) -> None:
         """Draw the content of a pose's context menu."""
         assert state.document is not None
         poses = state.document.state.poses
         index = poses.index(pose)
-        if imgui.menu_item("Rename", "F2", False)[0]:
+        if imgui.menu_item(tr("Rename"), "F2", False)[0]:
             self.name_field.begin(pose.name)
-        if imgui.menu_item_simple("Update from Current Pose"):
+        if imgui.menu_item_simple(tr("Update from Current Pose")):
             state.run_reporting_errors(lambda: gestures.add_pose(state.editor, pose.name))
-        if imgui.menu_item_simple("Add as Keyframe"):
+        if imgui.menu_item_simple(tr("Add as Keyframe")):
             state.run_reporting_errors(lambda: state.timeline.add_keyframe(pose))
         imgui.separator()
-        for label, new_index in (("Move Forward", index - 1), ("Move Back", index + 1)):
+        for label, new_index in ((tr("Move Forward"), index - 1), (tr("Move Back"), index + 1)):
             if imgui.menu_item(label, "", False, 0 <= new_index < len(poses))[0]:
                 _reorder(state, index, new_index)
         imgui.separator()
-        if imgui.menu_item_simple("Delete Pose"):
+        if imgui.menu_item_simple(tr("Delete Pose")):
             gestures.delete_pose(state.editor, pose.name)
 
     def _draw_blend(self, state: AppState, scale: float) -> None:
@@ -143,7 +147,7 @@ class PosesSection:
         has_new_end, end = imgui.combo("##mix to", end, names)
         if has_new_start or has_new_end:
             blend.start, blend.end, blend.share = names[start], names[end], 0.0
-        tooltip = "Blends the two poses: every edge rotates and grows at a constant rate."
+        tooltip = tr("Blends the two poses: every edge rotates and grows at a constant rate.")
         is_moved, percent, is_released = widgets.slider(
             "##mix", 100 * blend.share, (0, 100), "%.0f %%", tooltip=tooltip
         )
@@ -155,7 +159,7 @@ class PosesSection:
             blended = blend.blend(session)
             if blended is not None:
                 state.run_reporting_errors(
-                    lambda: gestures.set_pose(state.editor, blended[0], "Apply Blend", blended[1])
+                    lambda: gestures.set_pose(state.editor, blended[0], mark("Apply Blend"), blended[1])
                 )
 
 
@@ -201,4 +205,4 @@ def _reorder(state: AppState, index: int, new_index: int) -> None:
     assert state.document is not None
     names = [pose.name for pose in state.document.state.poses]
     names.insert(new_index, names.pop(index))
-    state.run_reporting_errors(lambda: state.editor.apply("Reorder Poses", ReorderPoses(names)))
+    state.run_reporting_errors(lambda: state.editor.apply(mark("Reorder Poses"), ReorderPoses(names)))

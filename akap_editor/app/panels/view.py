@@ -2,6 +2,7 @@
 
 from imgui_bundle import imgui
 
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..canvas.checkerboard import BOARD_LABELS
@@ -9,31 +10,48 @@ from ..canvas.view_options import DISTORTION_RANGES
 from ..commands.registry import OVERLAYS, SHOW_CHECKERBOARD, SHOW_MESH, SHOW_PINS, SHOW_REFERENCE
 
 _SWITCHES = (SHOW_MESH, SHOW_PINS, SHOW_CHECKERBOARD, *OVERLAYS, SHOW_REFERENCE)
+_LABELS = {  # of switches, by the labels of their commands
+    "Show Mesh": mark("Mesh"),
+    "Show Pins": mark("Pins"),
+    "Show Checkerboard": mark("Checkerboard"),
+    "Show Vector Field": mark("Vector field"),
+    "Show Area Distortion": mark("Area distortion"),
+    "Show Angle Distortion": mark("Angle distortion"),
+    "Show Rest Pose": mark("Rest pose"),
+    "Show Pin Trails": mark("Pin trails"),
+    "Show Motion Paths": mark("Motion paths"),
+    "Show Reference Picture": mark("Reference picture"),
+}
 
 
 def draw(state: AppState, scale: float) -> None:
     """Draw the section. scale: points per design point."""
     for command in _SWITCHES:
-        if command.enabled(state):
-            label = command.label.removeprefix("Show ").capitalize()
-            if widgets.switch(label, command.is_checked(state), f"Key: {command.key_name}")[0]:
-                widgets.run(state, command)
+        if not command.enabled(state):
+            continue
+        label, tooltip = tr(_LABELS[command.label]), tr("Key: {key}", key=command.key_name)
+        if widgets.switch(label, command.is_checked(state), tooltip)[0]:
+            widgets.run(state, command)
     if state.view.show_checkerboard:
         imgui.align_text_to_frame_padding()
-        imgui.text("Board")
+        imgui.text(tr("Board"))
         imgui.same_line()
         imgui.set_next_item_width(-1)
         names = list(BOARD_LABELS)
-        _, index = imgui.combo("##board", names.index(state.view.board), list(BOARD_LABELS.values()))
+        _, index = imgui.combo(
+            "##board", names.index(state.view.board), [tr(label) for label in BOARD_LABELS.values()]
+        )
         state.view.board = names[index]
-        widgets.show_tooltip("Shade of the checkerboard. Automatic: so that the rim of the drawing is seen.")
+        widgets.show_tooltip(
+            tr("Shade of the checkerboard. Automatic: so that the rim of the drawing is seen.")
+        )
     if state.view.distortion_measure is not None:
         imgui.align_text_to_frame_padding()
-        imgui.text("Scale ends at")
+        imgui.text(tr("Scale ends at"))
         imgui.same_line()
         imgui.set_next_item_width(-1)
         ends = [f"× {limit:g}" for limit in DISTORTION_RANGES]
         _, state.view.distortion_range = imgui.combo("##range", state.view.distortion_range, ends)
         widgets.show_tooltip(
-            "Change of area or shape at the ends of the color scale. Shift+R selects the next one."
+            tr("Change of area or shape at the ends of the color scale. Shift+R selects the next one.")
         )

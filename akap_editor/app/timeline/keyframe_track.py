@@ -10,6 +10,7 @@ from ...editor.animation.keyframe_playback import KeyframePlayback
 from ...editor.animation.keyframe_times import stretch_times
 from ...editor.animation.playback import VisibleRange
 from ...editor.document.easing import easing_label
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, FRAME, SECONDARY, STRONG_LINE, TEXT, packed
@@ -69,7 +70,7 @@ class KeyframeTrack:
         imgui.text_colored(ImVec4(*SECONDARY), label)
         if is_unkeyed:
             widgets.show_tooltip(
-                "* The pose on the canvas is not the animation's at this time. K keeps it there."
+                tr("* The pose on the canvas is not the animation's at this time. K keeps it there.")
             )
         return time_scale
 
@@ -170,10 +171,14 @@ def _show_tooltip(playback: KeyframePlayback, time_scale: TimeScale, scale: floa
     time = _time_at_pointer(playback, time_scale, scale)
     keyframe = next((each for each in playback.animation.keyframes if each.time == time), None)
     if keyframe is not None:
-        easing = easing_label(keyframe.ease or playback.animation.ease)
+        easing = tr(easing_label(keyframe.ease or playback.animation.ease))
         widgets.show_tooltip(
-            f"{keyframe.time:.2f} s, {easing}. Drag to move, Ctrl-drag to copy, Alt-drag to stretch; "
-            "right-click for more."
+            tr(
+                "{time:.2f} s, {easing}. Drag to move, Ctrl-drag to copy, Alt-drag to stretch; "
+                "right-click for more.",
+                time=keyframe.time,
+                easing=easing,
+            )
         )
 
 

@@ -4,6 +4,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...render.overlays import Rgba
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..dialogs.export.animation import ExportAnimationDialog
@@ -20,9 +21,19 @@ _BUTTON_WIDTH, _BUTTON_HEIGHT = 30, 28
 _MIN_LABELED_WIDTH = 800  # of the panel for names beside the icons of the modes
 _GRAPH_GAP = 8  # between the track and the speed graph
 _TRACK_RISE = 10  # the top of the keyframe track above that of the buttons
-_MODES: tuple[tuple[TimelineMode, str, str], ...] = (
-    ("session", icons.ICON_FA_CLOCK_ROTATE_LEFT, "Session: look back at what was done, and continue there"),
-    ("keyframes", icons.ICON_FA_DIAMOND, "Keyframes: poses at times, and the motion between them"),
+_MODES: tuple[tuple[TimelineMode, str, str, str], ...] = (
+    (
+        "session",
+        mark("Session"),
+        icons.ICON_FA_CLOCK_ROTATE_LEFT,
+        mark("Session: look back at what was done, and continue there"),
+    ),
+    (
+        "keyframes",
+        mark("Keyframes"),
+        icons.ICON_FA_DIAMOND,
+        mark("Keyframes: poses at times, and the motion between them"),
+    ),
 )
 
 
@@ -72,13 +83,13 @@ def _draw_content(state: AppState, scale: float) -> None:
 def _draw_mode_buttons(state: AppState, scale: float) -> None:
     """Draw a button for each mode, with its name where there is room."""
     has_room = imgui.get_window_width() >= _MIN_LABELED_WIDTH * scale
-    for number, (mode, icon, tooltip) in enumerate(_MODES):
+    for number, (mode, name, icon, tooltip) in enumerate(_MODES):
         if number:
             imgui.same_line(0, 2 * scale)
-        label = f"{icon}  {mode.capitalize()}" if has_room else icon
+        label = f"{icon}  {tr(name)}" if has_room else icon
         if _icon_button(label, mode, scale, ACCENT if state.timeline.mode == mode else SECONDARY):
             state.timeline.set_mode(mode)
-        widgets.show_tooltip(tooltip)
+        widgets.show_tooltip(tr(tooltip))
 
 
 def _draw_record_button(state: AppState, scale: float) -> None:
@@ -88,7 +99,7 @@ def _draw_record_button(state: AppState, scale: float) -> None:
     icon = icons.ICON_FA_STOP if is_recording else icons.ICON_FA_CIRCLE
     if _icon_button(icon, "record", scale, ACCENT if is_recording else RED):
         (playback.end_take if is_recording else playback.start_take)()
-    widgets.show_tooltip("Record a take: what you do until the next click becomes the range")
+    widgets.show_tooltip(tr("Record a take: what you do until the next click becomes the range"))
 
 
 def _draw_playback_buttons(state: AppState, scale: float) -> None:
@@ -97,24 +108,24 @@ def _draw_playback_buttons(state: AppState, scale: float) -> None:
     icon = icons.ICON_FA_PAUSE if playback.is_playing else icons.ICON_FA_PLAY
     if _icon_button(icon, "play", scale, TEXT):
         playback.toggle_playing()
-    widgets.show_tooltip("Play (L)")
+    widgets.show_tooltip(tr("Play (L)"))
     imgui.same_line(0, 4 * scale)
     if _icon_button(icons.ICON_FA_REPEAT, "loop", scale, ACCENT if playback.loop else SECONDARY):
         playback.loop = not playback.loop
-    widgets.show_tooltip("Loop")
+    widgets.show_tooltip(tr("Loop"))
     imgui.same_line(0, 4 * scale)
     view = state.view
     if _icon_button(icons.ICON_FA_CHART_LINE, "speed", scale, ACCENT if view.show_speed_graph else SECONDARY):
         view.show_speed_graph = not view.show_speed_graph
     widgets.show_tooltip(
-        "Speed graph: how fast pins or drawing move, and the easing of the selected interval"
+        tr("Speed graph: how fast pins or drawing move, and the easing of the selected interval")
     )
     imgui.same_line(0, 4 * scale)
     imgui.begin_disabled(playback.played_range[1] <= playback.played_range[0])
     if _icon_button(icons.ICON_FA_FILM, "export", scale, TEXT):
         state.part(ExportAnimationDialog).open(state)
     imgui.end_disabled()
-    widgets.show_tooltip("Export the range as an animation, video or sprite sheet")
+    widgets.show_tooltip(tr("Export the range as an animation, video or sprite sheet"))
 
 
 def _icon_button(icon: str, name: str, scale: float, color: Rgba) -> bool:

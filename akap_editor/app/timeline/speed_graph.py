@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ...editor.animation.keyframe_playback import KeyframePlayback
 from ...editor.animation.playback import Playback
+from ...words import tr, tr_plural
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, SECONDARY, TEXT, packed
@@ -89,7 +90,11 @@ class SpeedGraph:
         if 0 <= index < len(speeds):
             values = " ".join(f"{value:.0f}" for value in speeds[index].tolist())
             widgets.show_tooltip(
-                f"{time:.2f} s: {values} px/s. Click an interval for the handles of its easing."
+                tr(
+                    "{time:.2f} s: {values} px/s. Click an interval for the handles of its easing.",
+                    time=time,
+                    values=values,
+                )
             )
 
     def _draw_speeds(self, time_scale: TimeScale, top: float, bottom: float, scale: float) -> None:
@@ -115,12 +120,17 @@ class SpeedGraph:
         """Write whose speed it is, and the highest one, left of the graph."""
         samples = self._samples
         count = samples.pin_count
-        what = "the drawing" if not count else "1 pin" if count == 1 else f"{count} pins"
         imgui.set_cursor_screen_pos(ImVec2(imgui.get_window_pos().x + 10 * scale, top + 2 * scale))
         imgui.begin_group()
-        widgets.secondary_text(f"Speed of {what}")
+        if count:
+            text = tr_plural("Speed of {count} pin", "Speed of {count} pins", count)
+        else:
+            text = tr("Speed of the drawing")
+        widgets.secondary_text(text)
         widgets.secondary_text(
-            f"up to {samples.highest:.0f} px/s" if samples.times else "There is no motion yet"
+            tr("up to {speed:.0f} px/s", speed=samples.highest)
+            if samples.times
+            else tr("There is no motion yet")
         )
         imgui.end_group()
 

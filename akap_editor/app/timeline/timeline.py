@@ -8,6 +8,7 @@ from ...editor.animation.playback import Playback
 from ...editor.animation.session_playback import SessionPlayback
 from ...editor.document.named_poses import NamedPose
 from ...editor.editor import Editor
+from ...words import tr
 
 TimelineMode = Literal["session", "keyframes"]
 
@@ -42,7 +43,7 @@ class Timeline:
         if not self.shows_keyframes:
             self.keyframe_playback.auto_key.forget()
         if self.session_playback.follow(self._editor.session):
-            return "Continued from an earlier moment: what came after it is cut off. Undo brings it back."
+            return tr("Continued from an earlier moment: what came after it is cut off. Undo brings it back.")
         return ""
 
     def set_mode(self, mode: TimelineMode) -> None:

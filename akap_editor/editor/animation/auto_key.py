@@ -2,6 +2,7 @@
 
 from ...geometry.validation import Floats, Ints
 from ...layers.layer_view import LayerView
+from ...words import mark
 from ..document.easing import NEW_EASING
 from ..document.keyframes import Animation, as_keyframe_time
 from ..gestures import EditContext
@@ -53,7 +54,7 @@ class AutoKey:
         if due is None:
             return False
         session.end_preview()
-        session.begin("Auto Key")
+        session.begin(mark("Auto Key"))
         for edit in key_edits(session.present.animation, as_keyframe_time(due)):
             session.apply(edit)
         session.commit(join=True)

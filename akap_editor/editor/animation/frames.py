@@ -8,6 +8,7 @@ import numpy as np
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints, as_number
 from ...overlap.seams import CutMesh
+from ...words import tr
 from ..document.drawing import Drawing
 from ..document.easing import easing_function
 from ..session.recording import MAX_TIME
@@ -40,8 +41,13 @@ def frame_times(start: float, end: float, fps: float, speed: float = 1.0, ease: 
     count = int(span / speed * fps + 1e-6)
     if count > MAX_FRAMES:
         raise InputError(
-            f"expected at most {MAX_FRAMES} frames, got {count} for {span:g} s; "
-            "take fewer frames a second, a higher speed, a part of the time, or shorter pauses"
+            tr(
+                "expected at most {most} frames, got {count} for {span:g} s; "
+                "take fewer frames a second, a higher speed, a part of the time, or shorter pauses",
+                most=MAX_FRAMES,
+                count=count,
+                span=span,
+            )
         )
     return [*(start + span * eased(k * speed / fps / span) for k in range(count)), end]
 

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from ...geometry.validation import Floats, Ints
+from ...words import mark
 from ..document.crossings import draw_order
 from ..document.drawing import Drawing
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
@@ -95,7 +96,7 @@ class KeyframePlayback(Playback):
 
     @loop.setter
     def loop(self, loop: bool) -> None:
-        self._edit("Loop Forever" if loop else "Play Once", SetLoop(loop))
+        self._edit(mark("Loop Forever") if loop else mark("Play Once"), SetLoop(loop))
 
     @property
     def is_previewing(self) -> bool:
@@ -324,11 +325,11 @@ class KeyframePlayback(Playback):
         """Set the easing after the selected keyframes, or the one at the playhead; None: the default."""
         times = self._affected_times()
         if times:
-            self._edit("Change Easing", SetEasing(times, easing))
+            self._edit(mark("Change Easing"), SetEasing(times, easing))
 
     def set_default_easing(self, easing: str) -> None:
         """Set the easing after all keyframes that have none of their own."""
-        self._edit("Change Easing", SetEasing(None, easing))
+        self._edit(mark("Change Easing"), SetEasing(None, easing))
 
     def drag_keyframes(self, moves: Mapping[float, float], copy: bool = False) -> None:
         """Show the animation with keyframes at other times; `drop_keyframes` makes it an edit.

@@ -24,6 +24,7 @@ from ...overlap.overlaps import (
 )
 from ...overlap.rules import Rules
 from ...overlap.seams import CutMesh, cut_along_seams
+from ...words import tr
 from .drawing import Drawing
 from .pin import MAX_DEPTH, Pin
 
@@ -248,8 +249,15 @@ def check_depths(depths: Mapping[int, int]) -> None:
     """Check depths by the ids of pins. Raises InputError on one out of range."""
     for pin_id, depth in depths.items():
         if not -MAX_DEPTH <= depth <= MAX_DEPTH:
-            expected = f"a whole number from -{MAX_DEPTH} to {MAX_DEPTH}"
-            raise InputError(f"depth of pin {pin_id}: expected {expected}, got {depth}")
+            expected = tr("a whole number from -{most} to {most}", most=MAX_DEPTH)
+            raise InputError(
+                tr(
+                    "depth of pin {pin_id}: expected {expected}, got {depth}",
+                    pin_id=pin_id,
+                    expected=expected,
+                    depth=depth,
+                )
+            )
 
 
 def depth_order(mesh: TriMesh, pins: Sequence[Pin]) -> Ints | None:

@@ -22,6 +22,7 @@ from ...meshing.layer_mesh import mesh_layers
 from ...meshing.meshers import check_mesher, default_mesher, nearest_mesher
 from ...meshing.picture_mesh import mesh_picture
 from ...progress import announce, part
+from ...words import tr
 
 MAX_NAME = 255  # characters
 
@@ -88,11 +89,23 @@ class Drawing:
         count = len(self.layers)
         used = 0 if self.mesh.layers is None else int(self.mesh.layers.max()) + 1
         if used != count or len(set(self.face_layers.tolist())) != max(count, 1):
-            raise InputError(f"layers: expected one for each layer of the mesh, {used}, got {count}")
+            raise InputError(
+                tr(
+                    "layers: expected one for each layer of the mesh, {used}, got {count}",
+                    used=used,
+                    count=count,
+                )
+            )
         if sorted(self.layer_order) != list(range(count)):
-            raise InputError(f"layer_order: expected each of {count} layers once, got {self.layer_order}")
+            raise InputError(
+                tr(
+                    "layer_order: expected each of {count} layers once, got {layer_order}",
+                    count=count,
+                    layer_order=self.layer_order,
+                )
+            )
         if (self.canvas is None) != (not count):
-            raise InputError("canvas: expected a size for a drawing in layers, and none for another one")
+            raise InputError(tr("canvas: expected a size for a drawing in layers, and none for another one"))
         object.__setattr__(self, "layers", tuple(self.layers))
         object.__setattr__(self, "layer_order", tuple(self.layer_order))
 
@@ -163,9 +176,9 @@ def make_drawing(
     ['body', 'skull', 'eye left']
     """
     if (image is None) == (layers is None):
-        raise InputError("image: expected either a picture or layers")
+        raise InputError(tr("image: expected either a picture or layers"))
     if layers is not None and background is not None:
-        raise InputError("background: expected None for a picture in layers")
+        raise InputError(tr("background: expected None for a picture in layers"))
     mesher = check_mesher(mesher)
     if layers is not None:
         layered = as_instance(layers, "layers", LayeredPicture)
@@ -189,7 +202,7 @@ def remove_background_and_mesh(image: NDArray[np.uint8], meshing: Meshing, name:
     if meshing.background is None:
         return mesh_drawing(image, meshing, name)
     original = image if not image.flags.writeable else freeze(image.copy())
-    announce(0.0, "Removing the background")
+    announce(0.0, tr("Removing the background"))
     cut_out = remove_background(image, meshing.background)
     with part(0.4, 1.0):
         return mesh_drawing(cut_out, meshing, name, original)
@@ -220,7 +233,7 @@ def mesh_layered_drawing(layered: LayeredPicture, meshing: Meshing, name: str) -
     """
     movable = movable_layers(layered)
     if not movable:
-        raise InputError("the layers are fully transparent: expected a drawing")
+        raise InputError(tr("the layers are fully transparent: expected a drawing"))
     pictures, offsets = [layer.picture for layer in movable], [layer.offset for layer in movable]
     texture, corners = pack(pictures, meshing.expand)
     artworks = [
@@ -298,8 +311,14 @@ def mask_layers(layered: LayeredPicture, mask: NDArray[np.uint8]) -> LayeredPict
     width, height = layered.size
     if mask.shape != (height, width):
         raise InputError(
-            f"mask: expected the size of the picture, {width} x {height} pixels, "
-            f"got {mask.shape[1]} x {mask.shape[0]}"
+            tr(
+                "mask: expected the size of the picture, {width} x {height} pixels, "
+                "got {mask_width} x {mask_height}",
+                width=width,
+                height=height,
+                mask_width=mask.shape[1],
+                mask_height=mask.shape[0],
+            )
         )
 
     def masked(layer: Layer) -> Layer:
@@ -347,7 +366,13 @@ def apply_mask(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> NDArray[np.
     mask = as_channel(mask, "mask")
     if mask.shape != image.shape[:2]:
         sizes = [f"{shape[1]} x {shape[0]}" for shape in (image.shape, mask.shape)]
-        raise InputError(f"mask: expected the size of the picture, {sizes[0]} pixels, got {sizes[1]}")
+        raise InputError(
+            tr(
+                "mask: expected the size of the picture, {size} pixels, got {other}",
+                size=sizes[0],
+                other=sizes[1],
+            )
+        )
     result = image.copy()
     result[..., 3] = (image[..., 3].astype(np.uint16) * mask + 127) // 255
     return result

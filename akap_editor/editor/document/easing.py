@@ -8,7 +8,7 @@ from math import hypot
 
 from ...errors import InputError
 from ...geometry.validation import as_number
-from ...words import mark
+from ...words import mark, tr
 
 EASINGS: dict[str, Callable[[float], float]] = {
     "none": lambda t: t,
@@ -43,7 +43,7 @@ EASING_LABELS = {
 
 
 MIN_PROGRESS, MAX_PROGRESS = -1.0, 2.0  # of the handles of a curve: beyond 0 and 1 it overshoots a pose
-CURVE_LABEL = "Curve"  # on the screen
+CURVE_LABEL = mark("Curve")  # on the screen
 _NUMBER = r"\s*(-?[0-9]+(?:\.[0-9]+)?)\s*"
 _CURVE_TEXT = re.compile(rf"cubic-bezier\({_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}\)")
 _MAX_TEXT = 100  # characters
@@ -159,7 +159,8 @@ def easing_label(name: str) -> str:
 
 def _check_name(name: object, easings: dict[str, Callable[[float], float]], more: str = "") -> str:
     if not isinstance(name, str) or name not in easings:
-        raise InputError(f"ease: expected one of {', '.join(easings)}{more}, got {name!r:.80}")
+        names = ", ".join(easings) + more
+        raise InputError(tr("ease: expected one of {names}, got {name!r:.80}", names=names, name=name))
     return name
 
 

@@ -7,6 +7,7 @@ from typing import Any
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints, as_number
 from ...layers.layer_view import LayerView
+from ...words import tr
 from .crossings import as_crossings, no_crossings
 from .easing import check_keyframe_easing, keyframe_easing_function
 from .named_poses import as_pose
@@ -55,7 +56,7 @@ class Animation:
         check_keyframe_easing(self.ease)
         times = [keyframe.time for keyframe in self.keyframes]
         if times != sorted(set(times)):
-            raise InputError(f"keyframes: expected times that grow, got {times}")
+            raise InputError(tr("keyframes: expected times that grow, got {times}", times=times))
 
     @property
     def duration(self) -> float:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ...display_text import display_text
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints, as_pixels, freeze
+from ...words import tr
 from .crossings import as_crossings, no_crossings
 
 MAX_POSE_NAME = 80  # characters
@@ -42,8 +43,10 @@ class NamedPose:
 
     def __post_init__(self) -> None:
         if not self.name.strip() or len(self.name) > MAX_POSE_NAME:
-            expected = f"a name of 1 to {MAX_POSE_NAME} characters"
-            raise InputError(f"pose: expected {expected}, got {self.name[:99]!r}")
+            expected = tr("a name of 1 to {most} characters", most=MAX_POSE_NAME)
+            raise InputError(
+                tr("pose: expected {expected}, got {name!r}", expected=expected, name=self.name[:99])
+            )
         object.__setattr__(self, "name", display_text(self.name))
         object.__setattr__(self, "positions", as_pose(self.positions, "pose"))
         object.__setattr__(self, "crossings", as_crossings(self.crossings))
@@ -59,4 +62,8 @@ def with_pose(poses: Sequence[NamedPose], pose: NamedPose) -> tuple[NamedPose, .
 def unused_pose_name(poses: Sequence[NamedPose]) -> str:
     """The first of "Pose 1", "Pose 2", ... that no pose has."""
     names = {pose.name for pose in poses}
-    return next(name for number in range(1, len(names) + 2) if (name := f"Pose {number}") not in names)
+    return next(
+        name
+        for number in range(1, len(names) + 2)
+        if (name := tr("Pose {number}", number=number)) not in names
+    )

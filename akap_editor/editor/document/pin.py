@@ -12,6 +12,7 @@ from ...errors import InputError
 from ...geometry.json_numbers import MAX_INTEGER
 from ...geometry.mesh import MeshPoints
 from ...geometry.validation import MAX_COORDINATE, Floats, as_floats
+from ...words import tr
 
 MAX_PINS = 10_000
 MAX_DEPTH = 999  # in front of the drawing or behind it
@@ -45,7 +46,7 @@ class Pin:
     @property
     def label(self) -> str:
         """The name on the screen."""
-        return self.name or f"Pin {self.id}"
+        return self.name or tr("Pin {number}", number=self.id)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "weights", as_floats(self.weights, "weights"))
@@ -80,44 +81,88 @@ def check_pins(pins: Sequence[Pin], faces: int) -> None:
     Raises InputError on more than `MAX_PINS`, an id that occurs twice, or a value out of range.
     """
     if len(pins) > MAX_PINS:
-        raise InputError(f"expected at most {MAX_PINS} pins, got {len(pins)}")
+        raise InputError(tr("expected at most {most} pins, got {count}", most=MAX_PINS, count=len(pins)))
     for pin in pins:
         _check_pin(pin, faces)
     for pin_id, count in Counter(pin.id for pin in pins).items():
         if count > 1:
-            raise InputError(f"expected each pin once, got pin {pin_id} {count} times")
+            raise InputError(
+                tr("expected each pin once, got pin {pin_id} {count} times", pin_id=pin_id, count=count)
+            )
 
 
 def _check_pin(pin: Pin, faces: int) -> None:
     if abs(pin.id) > MAX_INTEGER:
-        raise InputError(f"pins: expected ids up to {MAX_INTEGER}, got {_short(pin.id)}")
+        raise InputError(tr("pins: expected ids up to {most}, got {id}", most=MAX_INTEGER, id=_short(pin.id)))
     if not 0 <= pin.face < faces:
-        raise InputError(f"pin {pin.id}: expected a face from 0 to {faces - 1}, got {_short(pin.face)}")
+        raise InputError(
+            tr(
+                "pin {pin}: expected a face from 0 to {last}, got {face}",
+                pin=pin.id,
+                last=faces - 1,
+                face=_short(pin.face),
+            )
+        )
     if pin.weights.shape != (3,) or pin.target.shape != (2,):
         actual = f"{pin.weights.size} and {pin.target.size}"
-        raise InputError(f"pin {pin.id}: expected 3 weights and a target of 2 coordinates, got {actual}")
+        raise InputError(
+            tr(
+                "pin {pin}: expected 3 weights and a target of 2 coordinates, got {actual}",
+                pin=pin.id,
+                actual=actual,
+            )
+        )
     low, high = -WEIGHT_TOLERANCE, 1 + WEIGHT_TOLERANCE
     inside = all(low <= weight <= high for weight in pin.weights)
     if not inside or abs(pin.weights.sum() - 1) > WEIGHT_TOLERANCE:
         actual = str(pin.weights.tolist())
-        raise InputError(f"pin {pin.id}: expected weights from 0 to 1 that sum to 1, got {actual}")
+        raise InputError(
+            tr(
+                "pin {pin}: expected weights from 0 to 1 that sum to 1, got {actual}",
+                pin=pin.id,
+                actual=actual,
+            )
+        )
     if abs(pin.depth) > MAX_DEPTH:
-        expected = f"a depth from -{MAX_DEPTH} to {MAX_DEPTH}"
-        raise InputError(f"pin {pin.id}: expected {expected}, got {_short(pin.depth)}")
+        expected = tr("a depth from -{most} to {most}", most=MAX_DEPTH)
+        raise InputError(
+            tr(
+                "pin {pin}: expected {expected}, got {depth}",
+                pin=pin.id,
+                expected=expected,
+                depth=_short(pin.depth),
+            )
+        )
     if pin.angle is not None and not abs(pin.angle) <= MAX_PIN_ANGLE:
-        expected = f"an angle from -{MAX_PIN_ANGLE:.5g} to {MAX_PIN_ANGLE:.5g} radians"
-        raise InputError(f"pin {pin.id}: expected {expected}, got {pin.angle}")
+        expected = tr("an angle from -{most:.5g} to {most:.5g} radians", most=MAX_PIN_ANGLE)
+        raise InputError(
+            tr("pin {pin}: expected {expected}, got {angle}", pin=pin.id, expected=expected, angle=pin.angle)
+        )
     if len(pin.name) > MAX_PIN_NAME:
         raise InputError(
-            f"pin {pin.id}: expected a name of up to {MAX_PIN_NAME} characters, got {len(pin.name)}"
+            tr(
+                "pin {pin}: expected a name of up to {most} characters, got {count}",
+                pin=pin.id,
+                most=MAX_PIN_NAME,
+                count=len(pin.name),
+            )
         )
     if not np.isfinite(pin.target).all():
-        raise InputError(f"pin {pin.id}: expected a finite target, got {pin.target.tolist()}")
+        raise InputError(
+            tr("pin {pin}: expected a finite target, got {target}", pin=pin.id, target=pin.target.tolist())
+        )
     if (np.abs(pin.target) > MAX_COORDINATE).any():
-        expected = f"a target with coordinates up to {MAX_COORDINATE:g} pixels"
-        raise InputError(f"pin {pin.id}: expected {expected}, got {pin.target.tolist()}")
+        expected = tr("a target with coordinates up to {most:g} pixels", most=MAX_COORDINATE)
+        raise InputError(
+            tr(
+                "pin {pin}: expected {expected}, got {target}",
+                pin=pin.id,
+                expected=expected,
+                target=pin.target.tolist(),
+            )
+        )
 
 
 def _short(value: int) -> str:
     """An integer for a message, however large it is."""
-    return str(value) if value.bit_length() < 100 else f"one of {value.bit_length()} bits"
+    return str(value) if value.bit_length() < 100 else tr("one of {bits} bits", bits=value.bit_length())

@@ -14,6 +14,7 @@ from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints
 from ...overlap.overlaps import transferred_overlaps
 from ...progress import announce
+from ...words import tr
 from .crossings import overlaps_of
 from .document import EditState
 from .drawing import (
@@ -74,8 +75,12 @@ def check_lies_on_picture(drawing: Drawing) -> None:
     offset = np.abs(places - drawing.mesh.vertices).max()
     if offset > _MAX_UV_OFFSET:
         raise InputError(
-            f"the mesh of {drawing.name} cannot be made anew: expected one that lies on its picture, "
-            f"but a vertex is {offset:.1f} pixels away from its place there"
+            tr(
+                "the mesh of {name} cannot be made anew: expected one that lies on its picture, "
+                "but a vertex is {offset:.1f} pixels away from its place there",
+                name=drawing.name,
+                offset=offset,
+            )
         )
 
 
@@ -91,7 +96,7 @@ def transfer_state(
     removed. Each face gets the stiffness of the nearest old one. Raises InputError if faces flip that cannot
     be unflipped.
     """
-    announce(0.0, "Transferring pins and poses")
+    announce(0.0, tr("Transferring pins and poses"))
     new_mesh = drawing.mesh
     is_at_rest = np.array_equal(state.positions, mesh.vertices)
     positions = new_mesh.vertices if is_at_rest else _map_vertices(new_mesh, mesh, state.positions, origins)
@@ -99,8 +104,11 @@ def transfer_state(
         positions = _unflip_faces(positions, new_mesh)
         if _has_flipped(positions, new_mesh):
             raise InputError(
-                f"the drawing is bent too sharply for a mesh of {len(new_mesh.vertices)} vertices: "
-                "expected a pose that it can follow; bend it less first"
+                tr(
+                    "the drawing is bent too sharply for a mesh of {vertices} vertices: "
+                    "expected a pose that it can follow; bend it less first",
+                    vertices=len(new_mesh.vertices),
+                )
             )
     centers = new_mesh.vertices[new_mesh.faces].mean(axis=1)
     faces = _nearest_on_mesh(*_origin_of(centers, new_mesh.face_layers, mesh, origins))[0]
@@ -114,7 +122,10 @@ def transfer_state(
 
     def map_crossings(old: EditState | NamedPose | Keyframe, pose: Floats) -> Ints:
         number = next(mapped_poses)
-        announce(number / (poses_to_map + 1), f"Transferring pose {number} of {poses_to_map}")
+        announce(
+            number / (poses_to_map + 1),
+            tr("Transferring pose {number} of {poses_to_map}", number=number, poses_to_map=poses_to_map),
+        )
         overlaps = overlaps_of(mesh, state.pins, old.positions, old.crossings)
         return transferred_overlaps(new_mesh, pose, overlaps, mesh, faces.astype(np.int32)).crossings
 

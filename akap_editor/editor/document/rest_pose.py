@@ -5,6 +5,7 @@ from dataclasses import replace
 from ...errors import InputError
 from ...geometry.mesh import signed_areas
 from ...geometry.validation import as_instance
+from ...words import tr
 from .document import Document, EditState
 from .drawing import Drawing
 from .pin_angles import pins_fixed_at_pose
@@ -19,8 +20,12 @@ def with_pose_as_rest(state: EditState, drawing: Drawing) -> EditState:
     flipped = int((signed_areas(state.positions, drawing.mesh.faces) <= 0).sum())
     if flipped:
         raise InputError(
-            "the pose cannot become the rest pose: expected all faces the right way up, but "
-            f"{flipped} of {len(drawing.mesh.faces)} are flipped or flat"
+            tr(
+                "the pose cannot become the rest pose: expected all faces the right way up, but "
+                "{flipped} of {faces} are flipped or flat",
+                flipped=flipped,
+                faces=len(drawing.mesh.faces),
+            )
         )
     mesh = replace(drawing.mesh, vertices=state.positions)
     pins = pins_fixed_at_pose(mesh, state.pins, mesh.vertices)

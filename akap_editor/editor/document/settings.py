@@ -10,6 +10,7 @@ from typing import Any
 from ...deform.methods import DEFAULT_METHOD, get_method, parse_method
 from ...errors import InputError
 from ...geometry.json_numbers import MAX_INTEGER
+from ...words import tr
 
 
 def _document_defaults(method: str) -> tuple[tuple[str, Any], ...]:
@@ -57,7 +58,11 @@ class Settings:
         for name, count in Counter(name for name, _ in self.parameters).items():
             if count > 1:
                 raise InputError(
-                    f"expected each parameter once, got parameter {reprlib.repr(name)} {count} times"
+                    tr(
+                        "expected each parameter once, got parameter {name} {count} times",
+                        name=reprlib.repr(name),
+                        count=count,
+                    )
                 )
 
     def to_json(self) -> dict[str, Any]:
@@ -73,9 +78,30 @@ class Settings:
 def _check_parameter(name: str, value: object) -> None:
     if not isinstance(name, str) or not isinstance(value, bool | int | float | str | None):
         actual = f"{type(value).__name__} for {reprlib.repr(name)}"
-        raise InputError(f"parameters: expected names and numbers, texts, true, false or null, got {actual}")
+        raise InputError(
+            tr(
+                "parameters: expected names and numbers, texts, true, false or null, got {actual}",
+                actual=actual,
+            )
+        )
     if isinstance(value, float) and not math.isfinite(value):
-        raise InputError(f"parameter {reprlib.repr(name)}: expected a finite number, got {value}")
+        raise InputError(
+            tr(
+                "parameter {name}: expected a finite number, got {value}",
+                name=reprlib.repr(name),
+                value=value,
+            )
+        )
     if isinstance(value, int) and abs(value) > MAX_INTEGER:
-        expected, actual = f"an integer up to {MAX_INTEGER}", f"one of {value.bit_length()} bits"
-        raise InputError(f"parameter {reprlib.repr(name)}: expected {expected}, got {actual}")
+        expected, actual = (
+            tr("an integer up to {most}", most=MAX_INTEGER),
+            tr("one of {bits} bits", bits=value.bit_length()),
+        )
+        raise InputError(
+            tr(
+                "parameter {name}: expected {expected}, got {actual}",
+                name=reprlib.repr(name),
+                expected=expected,
+                actual=actual,
+            )
+        )

@@ -17,6 +17,7 @@ from ...layers.layered_picture import Layer, LayeredPicture
 from ...layers.merging import movable_layers
 from ...meshing.layer_mesh import mesh_layers
 from ...meshing.meshers import nearest_mesher
+from ...words import tr
 from ..document.document import EditState
 from ..document.drawing import Drawing, Meshing, artwork_in, remove_background_and_mesh, texture_shifts
 from ..document.remesh import LayerOrigins, check_lies_on_picture, transfer_state
@@ -32,7 +33,7 @@ def reload_layers(drawing: Drawing, layered: LayeredPicture) -> tuple[Drawing, L
     """
     movable = movable_layers(layered)
     if not movable:
-        raise InputError("the layers are fully transparent: expected a drawing")
+        raise InputError(tr("the layers are fully transparent: expected a drawing"))
     check_lies_on_picture(drawing)
     assert drawing.mesh.layers is not None
     meshing = drawing.meshing or Meshing()

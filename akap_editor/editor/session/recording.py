@@ -12,6 +12,7 @@ import numpy as np
 from ...errors import InputError
 from ...geometry.json_numbers import bounded_integer, finite_float, refuse_constant
 from ...geometry.mesh import TriMesh
+from ...words import tr
 from ..document.document import Document
 from ..document.drawing import Drawing
 from ..document.keyframes import Animation
@@ -128,18 +129,30 @@ def parse_recording(text: str) -> Recording:
         try:
             value = _parse_line(line)
         except InputError as error:
-            raise InputError(f"recording line {number}: {error}") from error
+            raise InputError(tr("recording line {number}: {error}", number=number, error=error)) from error
         except (ValueError, RecursionError) as error:
             if number == 1:
                 actual = repr(line[:40]) if line else "nothing"
                 raise InputError(
-                    f"recording line 1: expected the header of a recording, got {actual}"
+                    tr("recording line 1: expected the header of a recording, got {actual}", actual=actual)
                 ) from error
             if number == len(lines) and not text.endswith("\n"):
                 break  # the writer was stopped in the middle of a line
-            raise InputError(f"recording line {number}: expected a JSON object, got {line[:40]!r}") from error
+            raise InputError(
+                tr(
+                    "recording line {number}: expected a JSON object, got {line!r}",
+                    number=number,
+                    line=line[:40],
+                )
+            ) from error
         if not isinstance(value, dict):
-            raise InputError(f"recording line {number}: expected a JSON object, got {line[:40]!r}")
+            raise InputError(
+                tr(
+                    "recording line {number}: expected a JSON object, got {line!r}",
+                    number=number,
+                    line=line[:40],
+                )
+            )
         if parsed:
             _check_event(value, number, parsed[-1]["t"] if len(parsed) > 1 else 0.0)
         else:
@@ -157,27 +170,44 @@ def _parse_line(line: str) -> Any:
 
 def _check_first_line(value: dict[str, Any]) -> None:
     if value.get("format") != "akap-recording" or not isinstance(value.get("drawing"), dict):
-        raise InputError("recording line 1: expected the header of a recording, got something else")
+        raise InputError(tr("recording line 1: expected the header of a recording, got something else"))
     version = value.get("version")
     if version != VERSION:
-        raise InputError(f"recording line 1: expected version {VERSION}, got {reprlib.repr(version)}")
+        raise InputError(
+            tr(
+                "recording line 1: expected version {version}, got {value}",
+                version=VERSION,
+                value=reprlib.repr(version),
+            )
+        )
 
 
 def _check_event(event: dict[str, Any], number: int, previous_time: float) -> None:
     """Raise InputError if line ``number`` is not an event, or earlier than the one before."""
 
     def bad(expected: str, actual: str) -> InputError:
-        return InputError(f"recording line {number}: expected {expected}, got {actual}")
+        return InputError(
+            tr(
+                "recording line {number}: expected {expected}, got {actual}",
+                number=number,
+                expected=expected,
+                actual=actual,
+            )
+        )
 
     name, time = event.get("do"), event.get("t")
     if not isinstance(name, str) or name not in _EVENT_FIELDS:
-        raise bad(f"one of {', '.join(_EVENT_FIELDS)}", reprlib.repr(name))
+        raise bad(tr("one of {names}", names=", ".join(_EVENT_FIELDS)), reprlib.repr(name))
     if isinstance(time, bool) or not isinstance(time, int | float) or not previous_time <= time <= MAX_TIME:
         is_late = isinstance(time, int | float) and time > MAX_TIME
-        expected = f"a time up to {MAX_TIME:g} s" if is_late else f"a time of {previous_time:g} s or later"
+        expected = (
+            tr("a time up to {most:g} s", most=MAX_TIME)
+            if is_late
+            else tr("a time of {time:g} s or later", time=previous_time)
+        )
         raise bad(expected, reprlib.repr(time))
     for field_name in _EVENT_FIELDS[name]:
         if field_name not in event:
-            raise bad(f"a value {field_name!r} in {name!r}", "none")
+            raise bad(tr("a value {field_name!r} in {name!r}", field_name=field_name, name=name), "none")
     if name == "return" and not (type(event["line"]) is int and 2 <= event["line"] < number):
-        raise bad("an earlier line to return to", reprlib.repr(event["line"]))
+        raise bad(tr("an earlier line to return to"), reprlib.repr(event["line"]))

@@ -9,6 +9,7 @@ from ...deform.deformer import StepResult
 from ...display_text import shortened
 from ...errors import InputError, SolverError
 from ...meshing.meshers import TRIANGLE
+from ...words import tr
 from ..document.document import EditState, new_document
 from ..document.drawing import Drawing
 from ..document.settings import Settings
@@ -80,10 +81,14 @@ class Replay:
                 step = self._replay_event(event)
             except (*_BAD_EVENT, InputError) as error:
                 raise InputError(
-                    f"recording line {line}: cannot be replayed, {shortened(str(error), _MAX_REASON)}"
+                    tr(
+                        "recording line {line}: cannot be replayed, {error}",
+                        line=line,
+                        error=shortened(str(error), _MAX_REASON),
+                    )
                 ) from error
             except SolverError as error:
-                raise SolverError(f"recording line {line}: {error}") from error
+                raise SolverError(tr("recording line {line}: {error}", line=line, error=error)) from error
             assert self.session is not None
             if line in returned_to:
                 self._earlier[line] = self.session.state, len(self.session.recording.events) + 1
@@ -155,11 +160,21 @@ def replay_target(recording: Recording, drawing: Drawing) -> ReplayTarget:
         scale = width / recorded_width
         fits = abs(height / (scale * recorded_height) - 1) < _MAX_ASPECT_ERROR
     except (TypeError, ValueError, ZeroDivisionError) as error:
-        raise InputError(f"recording line 1: expected a size in pixels, got {header['size']!r}") from error
+        raise InputError(
+            tr("recording line 1: expected a size in pixels, got {value!r}", value=header["size"])
+        ) from error
     if not fits:
         raise InputError(
-            f"recording line 1: it was made on {header.get('name')!r}, {recorded_width:g} x "
-            f"{recorded_height:g} pixels, and fits drawings of these proportions only, but {drawing.name!r} "
-            f"has {width} x {height}"
+            tr(
+                "recording line 1: it was made on {value!r}, {recorded_width:g} x "
+                "{recorded_height:g} pixels, and fits drawings of these proportions only, but {name!r} "
+                "has {width} x {height}",
+                value=header.get("name"),
+                recorded_width=recorded_width,
+                recorded_height=recorded_height,
+                name=drawing.name,
+                width=width,
+                height=height,
+            )
         )
     return ReplayTarget(drawing.mesh, same_mesh, scale)

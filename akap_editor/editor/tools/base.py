@@ -7,6 +7,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from ...geometry.validation import Floats
+from ...words import tr
 from ..camera import Camera, Point
 from ..events import BUTTONS, KeyEvent, PointerEvent, ScrollEvent
 from ..gestures import EditContext
@@ -216,7 +217,7 @@ class IdleTool(Tool):
     @property
     def hint(self) -> str:
         if self.context.session is None:
-            return "Open a picture or a drawing to begin"
+            return tr("Open a picture or a drawing to begin")
         return self.press_hint
 
     @property
@@ -227,7 +228,7 @@ class IdleTool(Tool):
     @property
     def keyboard_hint(self) -> str:
         """What Enter does where the pointer is, while keys move it."""
-        return "Arrows move the crosshair, Shift moves it farther, Esc ends"
+        return tr("Arrows move the crosshair, Shift moves it farther, Esc ends")
 
     @property
     def hovered_pin(self) -> int | None:

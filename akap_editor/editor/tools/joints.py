@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...words import mark, tr
 from .. import gestures
 from ..camera import Point
 from ..document.drawing import visible_point
@@ -51,12 +52,12 @@ class JointsIdle(IdleTool):
     def press_hint(self) -> str:
         pointer, session = self.context.pointer, self.context.session
         if session is not None and not session.drawing.layers:
-            return "Joints hold layers together; this drawing has none"
+            return tr("Joints hold layers together; this drawing has none")
         if pointer is not None and joint_at(self.context, pointer) is not None:
-            return "Drag the joint, or Alt-click to remove it"
-        return "Click where two layers overlap to hold them together there"
+            return tr("Drag the joint, or Alt-click to remove it")
+        return tr("Click where two layers overlap to hold them together there")
 
-    keyboard_hint = "Enter adds a joint, Alt+Enter removes one, arrows move, Esc ends"
+    keyboard_hint = mark("Enter adds a joint, Alt+Enter removes one, arrows move, Esc ends")
 
     @property
     def markers(self) -> Markers:
@@ -71,7 +72,7 @@ class JointsIdle(IdleTool):
 class PointingJoint(Pointing):
     """The canvas is pressed and not dragged yet."""
 
-    hint = "Release to add or remove a joint, or drag one"
+    hint = mark("Release to add or remove a joint, or drag one")
 
     def __init__(self, context: ToolContext, event: PointerEvent) -> None:
         super().__init__(context, event)
@@ -102,7 +103,7 @@ class PointingJoint(Pointing):
 class DraggingJoint(Tool):
     """A joint follows the pointer; it is moved when the button is released."""
 
-    hint = "Release to move the joint here, Esc to cancel"
+    hint = mark("Release to move the joint here, Esc to cancel")
     cursor = "grab"
 
     def __init__(self, context: ToolContext, joint: int) -> None:

@@ -1,5 +1,6 @@
 """The hand, which pans the canvas; the middle button does so with every tool."""
 
+from ...words import mark
 from ..events import PointerEvent
 from .base import IdleTool, Markers, Tool, ToolContext
 from .pins import OpeningMenu
@@ -8,7 +9,7 @@ from .pins import OpeningMenu
 class HandIdle(IdleTool):
     """The hand waits for a press: the left button pans, the right one opens a menu."""
 
-    press_hint = "Drag to move the canvas, scroll to zoom"
+    press_hint = mark("Drag to move the canvas, scroll to zoom")
     cursor = "pan"
 
     @property
@@ -27,7 +28,7 @@ class HandIdle(IdleTool):
 class Panning(Tool):
     """The canvas follows the pointer. This edits nothing, so the history gets no entry."""
 
-    hint = "Release to stop moving the canvas, Esc to cancel"
+    hint = mark("Release to stop moving the canvas, Esc to cancel")
     cursor = "panning"
 
     def __init__(self, context: ToolContext, event: PointerEvent) -> None:

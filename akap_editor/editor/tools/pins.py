@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...words import mark, tr
 from ..camera import Point
 from ..events import PointerEvent, ScrollEvent
 from ..gestures import remove_pins
@@ -20,38 +21,44 @@ class PinsIdle(IdleTool):
     def press_hint(self) -> str:
         context = self.context
         if self._hovered_ring is not None:
-            return "Drag the ring to rotate the drawing around this pin, Shift snaps to 15°"
+            return tr("Drag the ring to rotate the drawing around this pin, Shift snaps to 15°")
         hovered_pin = self.hovered_pin
         if hovered_pin is not None:
             if "alt" in context.held:
-                return "Click to remove this pin, drag its ring to rotate the drawing around it"
+                return tr("Click to remove this pin, drag its ring to rotate the drawing around it")
             if "shift" in context.held:
-                return "Click to add this pin to the selection, or to remove it from there"
+                return tr("Click to add this pin to the selection, or to remove it from there")
             if self.session.state.pin(hovered_pin).is_locked:
-                return "This pin is locked: a click selects it, the padlock in the list of pins unlocks it"
-            return "Drag to bend the drawing, Shift-click to select several pins, double-click to edit values"
+                return tr(
+                    "This pin is locked: a click selects it, the padlock in the list of pins unlocks it"
+                )
+            return tr(
+                "Drag to bend the drawing, Shift-click to select several pins, double-click to edit values"
+            )
         if self._new_pin is not None:
-            return "Click to add a pin, or drag to add one and bend the drawing"
+            return tr("Click to add a pin, or drag to add one and bend the drawing")
         if not self.session.state.pins:
-            return "Click on the drawing to add a pin"
+            return tr("Click on the drawing to add a pin")
         if len(self.session.state.pins) == 1:
-            return "One pin moves the whole drawing: click to add another one that holds it in place"
-        return "Drag a pin to bend the drawing, click on the drawing to add one"
+            return tr("One pin moves the whole drawing: click to add another one that holds it in place")
+        return tr("Drag a pin to bend the drawing, click on the drawing to add one")
 
     @property
     def keyboard_hint(self) -> str:
         if self.hovered_pin is not None:
             if "alt" in self.context.held:
-                return "Enter removes this pin"
+                return tr("Enter removes this pin")
             if "shift" in self.context.held:
-                return "Enter adds this pin to the selection, or removes it from there"
-            return (
+                return tr("Enter adds this pin to the selection, or removes it from there")
+            return tr(
                 "Enter selects this pin, Shift+Enter adds it to the selection, Alt+Enter removes it, "
                 "arrows move on, Esc ends"
             )
         if self._new_pin is not None:
-            return "Enter adds a pin, arrows move on, Esc ends"
-        return "Arrows move the crosshair, Shift moves it farther, Enter adds a pin on the drawing, Esc ends"
+            return tr("Enter adds a pin, arrows move on, Esc ends")
+        return tr(
+            "Arrows move the crosshair, Shift moves it farther, Enter adds a pin on the drawing, Esc ends"
+        )
 
     @property
     def cursor(self) -> Cursor:
@@ -111,7 +118,7 @@ class PinsIdle(IdleTool):
         if event.shift or event.alt:
             context.set_tool(PointingCanvas(context, event))
             return
-        self.session.begin("Add Pin")
+        self.session.begin(mark("Add Pin"))
         pin = add_pin(self.session, context.camera.to_drawing(event.position))
         if pin is None:
             self.session.abort()
@@ -123,7 +130,7 @@ class PinsIdle(IdleTool):
 class PointingPin(Pointing):
     """A pin is pressed and not dragged yet; ``is_new`` if the press added it."""
 
-    hint = "Drag to bend the drawing"
+    hint = mark("Drag to bend the drawing")
     cursor = "hand"
 
     def __init__(
@@ -176,10 +183,10 @@ class DraggingPin(PinGesture):
         session = self.session
         self._start = context.camera.to_drawing(start)
         if is_new:
-            session.rename("Add and Drag Pin")
+            session.rename(mark("Add and Drag Pin"))
         else:
             count = len(context.selection)
-            session.begin("Drag Pin" if count == 1 else f"Drag {count} Pins")
+            session.begin(mark("Drag Pin") if count == 1 else f"Drag {count} Pins")
         hold_stopped_pins(session)
         positions = zip(session.state.pins, session.pin_positions(), strict=True)
         self._positions_before = {
@@ -190,10 +197,10 @@ class DraggingPin(PinGesture):
     def hint(self) -> str:
         """What a release does; or that nothing bends because no pin stays where it is."""
         if len(self._positions_before) == len(self.session.state.pins):
-            return "No other pin holds the drawing, so all of it moves; Esc to cancel"
+            return tr("No other pin holds the drawing, so all of it moves; Esc to cancel")
         if len(self.session.state.crossings):
-            return "Release to keep this pose, wheel to bring it to the front or back, Esc to cancel"
-        return "Release to keep this pose, Esc to cancel"
+            return tr("Release to keep this pose, wheel to bring it to the front or back, Esc to cancel")
+        return tr("Release to keep this pose, Esc to cancel")
 
     def scroll(self, event: ScrollEvent) -> bool:
         """Bring what is dragged to the front, or send it to the back."""
@@ -220,7 +227,7 @@ class DraggingPin(PinGesture):
 class RemovingPin(Pointing):
     """A pin is pressed with Alt; a click removes it."""
 
-    hint = "Release to remove this pin, Esc to cancel"
+    hint = mark("Release to remove this pin, Esc to cancel")
     cursor = "hand"
 
     def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
@@ -235,7 +242,7 @@ class RemovingPin(Pointing):
 class OpeningMenu(Pointing):
     """The right button is pressed; a click opens the menu of a pin, or of the canvas if it is None."""
 
-    hint = "Release to open the menu"
+    hint = mark("Release to open the menu")
     cursor = "hand"
 
     def __init__(self, context: ToolContext, event: PointerEvent, pin: int | None) -> None:
@@ -253,7 +260,7 @@ class OpeningMenu(Pointing):
 class PointingCanvas(Pointing):
     """The canvas is pressed outside the drawing, or with Shift or Alt, and not dragged yet."""
 
-    hint = "Drag to select pins with a box"
+    hint = mark("Drag to select pins with a box")
 
     def __init__(self, context: ToolContext, event: PointerEvent) -> None:
         super().__init__(context, event)
@@ -273,7 +280,7 @@ class PointingCanvas(Pointing):
 class RubberBand(Tool):
     """A box from the press to the pointer selects the pins inside it."""
 
-    hint = "Release to select the pins in the box, Esc to cancel"
+    hint = mark("Release to select the pins in the box, Esc to cancel")
 
     def __init__(self, context: ToolContext, start: Point, extends_selection: bool) -> None:
         super().__init__(context)

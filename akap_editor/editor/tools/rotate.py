@@ -2,6 +2,7 @@
 
 import math
 
+from ...words import mark, tr
 from ..camera import Point
 from ..events import PointerEvent
 from ..gestures import add_pin
@@ -56,7 +57,7 @@ def rotation_ring(context: ToolContext, pin: int, is_dragged: bool = False) -> R
 class PointingRotationRing(Pointing):
     """The ring of a pin is pressed and not dragged yet. A click without Alt does what it does elsewhere."""
 
-    hint = "Drag to rotate the drawing around this pin"
+    hint = mark("Drag to rotate the drawing around this pin")
     cursor = "rotate"
 
     def __init__(self, context: ToolContext, event: PointerEvent, pin: int) -> None:
@@ -88,14 +89,14 @@ class RotatingPin(PinGesture):
         self._angle = self.session.pin_angle(pin) if held_angle is None else held_angle
         self._direction = self._direction_to(start)
         context.select({pin})
-        self.session.begin("Rotate Pin")
+        self.session.begin(mark("Rotate Pin"))
         hold_stopped_pins(self.session)
 
     @property
     def hint(self) -> str:
         """The angle, and how to end."""
         angle = math.degrees(self.session.state.pin(self.pin).angle or 0.0)
-        return f"{angle:+.1f}°: release to hold this angle, Shift snaps to 15°, Esc to cancel"
+        return tr("{angle:+.1f}°: release to hold this angle, Shift snaps to 15°, Esc to cancel", angle=angle)
 
     @property
     def markers(self) -> Markers:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...geometry.mesh import MeshPoints
 from ...geometry.validation import Floats
+from ...words import mark, tr
 from ..camera import Point
 from ..document.drawing import visible_point
 from ..document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS, apply_stroke, stroke_coverage
@@ -55,15 +56,19 @@ class BrushIdle(IdleTool):
     @property
     def press_hint(self) -> str:
         if self.brush.erasing:
-            return "Drag over areas to erase their stiffness, E to paint"
-        return (
-            f"Paint areas to stiffen ({self.brush.factor:.3g}×), Shift-click for a line, right-drag to erase"
+            return tr("Drag over areas to erase their stiffness, E to paint")
+        return tr(
+            "Paint areas to stiffen ({factor:.3g}×), Shift-click for a line, right-drag to erase",
+            factor=self.brush.factor,
         )
 
     @property
     def keyboard_hint(self) -> str:
-        action = "erases stiffness" if self.brush.erasing else "stiffens"
-        return f"Enter {action} in the circle, [ and ] change its size, arrows move it, Esc ends"
+        if self.brush.erasing:
+            return tr(
+                "Enter erases stiffness in the circle, [ and ] change its size, arrows move it, Esc ends"
+            )
+        return tr("Enter stiffens in the circle, [ and ] change its size, arrows move it, Esc ends")
 
     @property
     def cursor(self) -> Cursor:
@@ -115,14 +120,14 @@ class Painting(Tool):
         self._layer: int | None = None
         self._coverage = np.zeros(len(session.drawing.mesh.faces))
         self._stiffness = session.state.stiffness
-        session.begin("Erase Stiffness" if erases else "Paint Stiffness")
+        session.begin(mark("Erase Stiffness") if erases else mark("Paint Stiffness"))
         self.move(event)
 
     @property
     def hint(self) -> str:
         """What the stroke does."""
-        action = "erase" if self._factor == MIN_STIFFNESS else "paint"
-        return f"Release to {action}, Esc to cancel"
+        erases = self._factor == MIN_STIFFNESS
+        return tr("Release to erase, Esc to cancel") if erases else tr("Release to paint, Esc to cancel")
 
     @property
     def markers(self) -> Markers:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...geometry.limbs import find_limbs
+from ...words import mark, tr
 from ..camera import Point
 from ..document.document import EditState
 from ..events import KeyEvent, PointerEvent
@@ -58,8 +59,8 @@ class SuggestedPins(IdleTool):
     @property
     def press_hint(self) -> str:
         if self.hovered is not None and "alt" in self.context.held:
-            return "Click to remove this suggestion"
-        return "Drag suggestions to move them, Alt-click to remove one; Enter adds the pins, Esc cancels"
+            return tr("Click to remove this suggestion")
+        return tr("Drag suggestions to move them, Alt-click to remove one; Enter adds the pins, Esc cancels")
 
     @property
     def cursor(self) -> Cursor:
@@ -120,7 +121,7 @@ class SuggestedPins(IdleTool):
 class MovingSuggestion(Tool):
     """A ghost follows the pointer over the drawing."""
 
-    hint = "Release to keep this place, Esc to cancel"
+    hint = mark("Release to keep this place, Esc to cancel")
     cursor: Cursor = "grab"
 
     def __init__(self, context: ToolContext, suggestions: SuggestedPins, ghost: int) -> None:

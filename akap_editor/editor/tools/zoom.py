@@ -1,5 +1,6 @@
 """The zoom tool: a click zooms in, with Alt out, and a drag to the right or left zooms continuously."""
 
+from ...words import mark
 from ..events import PointerEvent
 from .base import IdleTool, Pointing, Tool, ToolContext
 
@@ -10,8 +11,8 @@ _DOUBLE_DISTANCE = 120.0  # points of the design: a drag that far doubles the zo
 class ZoomIdle(IdleTool):
     """The zoom tool waits for a press."""
 
-    press_hint = "Click to zoom in, Alt-click to zoom out, or drag to the right or left"
-    keyboard_hint = "Enter zooms in, Alt+Enter zooms out, arrows move, Esc ends"
+    press_hint = mark("Click to zoom in, Alt-click to zoom out, or drag to the right or left")
+    keyboard_hint = mark("Enter zooms in, Alt+Enter zooms out, arrows move, Esc ends")
     cursor = "zoom"
 
     def press(self, event: PointerEvent) -> None:
@@ -22,7 +23,7 @@ class ZoomIdle(IdleTool):
 class PointingZoom(Pointing):
     """The canvas is pressed and not dragged yet; a click zooms at this place."""
 
-    hint = "Release to zoom, or drag to the right or left"
+    hint = mark("Release to zoom, or drag to the right or left")
     cursor = "zoom"
 
     def drag(self, event: PointerEvent) -> None:
@@ -40,7 +41,7 @@ class PointingZoom(Pointing):
 class Zooming(Tool):
     """The zoom follows the pointer, about the place of the press. This edits nothing."""
 
-    hint = "Release to keep this zoom, Esc to cancel"
+    hint = mark("Release to keep this zoom, Esc to cancel")
     cursor = "zoom"
 
     def __init__(self, context: ToolContext, event: PointerEvent, start: tuple[float, float]) -> None:

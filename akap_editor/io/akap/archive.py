@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
+from ...words import mark, tr
 
 MAX_EXPANDED_BYTES = 2**30  # of all entries that are read, and of the pixels of all pictures
 
@@ -33,7 +34,9 @@ def pack(entries: Iterable[ArchiveEntry]) -> bytes:
 def check_expanded(size: int) -> None:
     """Raise InputError if a document would expand to more than `MAX_EXPANDED_BYTES`."""
     if size > MAX_EXPANDED_BYTES:
-        raise InputError(f"expected at most {MAX_EXPANDED_BYTES} bytes in all, got {size} or more")
+        raise InputError(
+            tr("expected at most {most} bytes in all, got {size} or more", most=MAX_EXPANDED_BYTES, size=size)
+        )
 
 
 class Archive:
@@ -43,17 +46,19 @@ class Archive:
     nothing else.
     """
 
-    def __init__(self, data: bytes, kind: str = "an .akap file") -> None:
+    def __init__(self, data: bytes, kind: str = mark("an .akap file")) -> None:
         try:
             self._archive = zipfile.ZipFile(BytesIO(data))
         except Exception as error:  # zipfile reports damage with exceptions of many kinds
-            raise InputError(f"the file is damaged or not {kind}") from error
+            raise InputError(tr("the file is damaged or not {kind}", kind=tr(kind))) from error
         entries = self._archive.infolist()
         self._entries = {entry.filename: entry for entry in entries}
         self._expanded = 0
         if len(self._entries) < len(entries):
             name, count = Counter(entry.filename for entry in entries).most_common(1)[0]
-            raise InputError(f"expected each entry once, got {reprlib.repr(name)} {count} times")
+            raise InputError(
+                tr("expected each entry once, got {name} {count} times", name=reprlib.repr(name), count=count)
+            )
 
     def __contains__(self, name: str) -> bool:
         return name in self._entries
@@ -61,20 +66,40 @@ class Archive:
     def read(self, name: str, most: int) -> bytes:
         """The content of an entry that has at most ``most`` bytes."""
         if name not in self:
-            raise InputError(f"expected the entry {name}, which is missing")
+            raise InputError(tr("expected the entry {name}, which is missing", name=name))
         entry = self._entries[name]
         if entry.file_size > most:
-            raise InputError(f"{name}: expected at most {most} bytes, got {entry.file_size}")
+            raise InputError(
+                tr(
+                    "{name}: expected at most {most} bytes, got {size}",
+                    name=name,
+                    most=most,
+                    size=entry.file_size,
+                )
+            )
         self.count_expanded(entry.file_size)
         if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-            raise InputError(f"{name}: expected no compression or deflate, got method {entry.compress_type}")
+            raise InputError(
+                tr(
+                    "{name}: expected no compression or deflate, got method {method}",
+                    name=name,
+                    method=entry.compress_type,
+                )
+            )
         try:
             with self._archive.open(entry) as file:
                 content = file.read(entry.file_size)  # the bound stops an entry whose size is a lie
         except Exception as error:
-            raise InputError(f"{name}: the entry is damaged") from error
+            raise InputError(tr("{name}: the entry is damaged", name=name)) from error
         if len(content) != entry.file_size:
-            raise InputError(f"{name}: expected {entry.file_size} bytes, got {len(content)}")
+            raise InputError(
+                tr(
+                    "{name}: expected {size} bytes, got {got}",
+                    name=name,
+                    size=entry.file_size,
+                    got=len(content),
+                )
+            )
         return content
 
     def count_expanded(self, size: int) -> None:
@@ -88,7 +113,14 @@ class Archive:
         content = self.read(name, size)
         if len(content) != size:
             raise InputError(
-                f"{name}: expected {size} bytes for shape ({rows}, {columns}), got {len(content)}"
+                tr(
+                    "{name}: expected {size} bytes for shape ({rows}, {columns}), got {got}",
+                    name=name,
+                    size=size,
+                    rows=rows,
+                    columns=columns,
+                    got=len(content),
+                )
             )
         array = np.frombuffer(content, dtype).reshape(rows, columns)
         return array.astype(array.dtype.newbyteorder("="))

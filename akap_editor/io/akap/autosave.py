@@ -15,6 +15,7 @@ from filelock import FileLock, Timeout
 
 from ...editor.document.document import Document, EditState
 from ...errors import InputError, file_errors
+from ...words import mark, tr
 from ..atomic import TEMPORARY_PREFIX, TEMPORARY_SUFFIX, read_file, write_atomic
 from .archive import Archive
 from .json_records import optional, parse_record, require
@@ -64,7 +65,7 @@ class RecoveryCopy:
 
     def read(self) -> Document:
         """The document, with ``path`` and ``digest`` of its own file, if it has one. Raises InputError."""
-        data = read_file(self.path, "a copy of a drawing")
+        data = read_file(self.path, mark("a copy of a drawing"))
         with file_errors("recover", self.path):
             document = decode_document(data)
             origin = parse_record(Archive(data).read(ORIGIN_ENTRY, MAX_ORIGIN_BYTES))
@@ -167,7 +168,9 @@ class Autosave:
         except Exception as error:  # a bug in what it writes must not end the program
             self._copied_state, self._has_failed = None, True
             reason = str(error) or type(error).__name__
-            raise InputError(f"Unsaved work is not protected against a crash. {reason}") from error
+            raise InputError(
+                tr("Unsaved work is not protected against a crash. {reason}", reason=reason)
+            ) from error
         self._has_failed = False
 
     def _discard_copy(self) -> None:

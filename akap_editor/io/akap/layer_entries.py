@@ -13,6 +13,7 @@ from ...errors import InputError, error_context
 from ...geometry.validation import MAX_COORDINATE, Ints, freeze
 from ...layers.drawing_layer import Artwork, DrawingLayer
 from ...layers.layer_view import LayerView
+from ...words import tr
 from ..images import decode_image, encode_png
 from .archive import Archive, ArchiveEntry
 from .json_records import Json, numbers, optional, require
@@ -32,9 +33,11 @@ def describe_layers(drawing: Drawing) -> Json:
         return {}
     assert drawing.mesh.layers is not None
     if (np.diff(drawing.mesh.layers) < 0).any():
-        raise InputError("layers: expected vertices that are sorted by layer")
+        raise InputError(tr("layers: expected vertices that are sorted by layer"))
     if len(drawing.layers) > MAX_LAYERS:
-        raise InputError(f"expected at most {MAX_LAYERS} layers, got {len(drawing.layers)}")
+        raise InputError(
+            tr("expected at most {most} layers, got {count}", most=MAX_LAYERS, count=len(drawing.layers))
+        )
     counts = np.bincount(drawing.mesh.layers, minlength=len(drawing.layers)).tolist()
     height, width = drawing.image.shape[:2]
     return {
@@ -89,14 +92,31 @@ def read_layers(
         size = require(record, "texture", dict)
         width, height = require(size, "width", int), require(size, "height", int)
         if not 1 <= len(records) <= MAX_LAYERS:
-            raise InputError(f"expected 1 to {MAX_LAYERS} layers, got {len(records)}")
+            raise InputError(
+                tr("expected 1 to {most} layers, got {count}", most=MAX_LAYERS, count=len(records))
+            )
         if not (width >= 1 and height >= 1 and width * height <= MAX_TEXTURE_PIXELS):
-            raise InputError(f"texture: expected 1 to {MAX_TEXTURE_PIXELS} pixels, got {width} x {height}")
+            raise InputError(
+                tr(
+                    "texture: expected 1 to {most} pixels, got {width} x {height}",
+                    most=MAX_TEXTURE_PIXELS,
+                    width=width,
+                    height=height,
+                )
+            )
         if any(type(number) is not int for number in order) or sorted(order) != list(range(len(records))):
-            raise InputError(f"layerOrder: expected each layer once, got {reprlib.repr(order)}")
+            raise InputError(
+                tr("layerOrder: expected each layer once, got {value}", value=reprlib.repr(order))
+            )
         counts = [require(_as_record(each), "vertices", int) for each in records]
         if min(counts) < 1 or sum(counts) != vertices:
-            raise InputError(f"layers: expected {vertices} vertices in all, got {sum(counts)}")
+            raise InputError(
+                tr(
+                    "layers: expected {vertices} vertices in all, got {count}",
+                    vertices=vertices,
+                    count=sum(counts),
+                )
+            )
     archive.count_expanded(4 * width * height)
     texture = np.zeros((height, width, 4), np.uint8)
     boxes = []
@@ -108,7 +128,7 @@ def read_layers(
         with error_context(name):
             picture = decode_image(content, ("PNG",), (w, h))
             if picture.shape[:2] != (h, w):
-                raise InputError("expected an upright picture, got one rotated by its EXIF data")
+                raise InputError(tr("expected an upright picture, got one rotated by its EXIF data"))
         texture[y : y + h, x : x + w] = picture
     freeze(texture)
     layers = []
@@ -121,7 +141,13 @@ def read_layers(
 def _read_layer(record: Json, artwork: Artwork) -> DrawingLayer:
     groups = optional(record, "groups", list, [])
     if len(groups) > MAX_GROUPS or any(type(group) is not str for group in groups):
-        raise InputError(f"expected at most {MAX_GROUPS} names of groups, got {reprlib.repr(groups)}")
+        raise InputError(
+            tr(
+                "expected at most {most} names of groups, got {value}",
+                most=MAX_GROUPS,
+                value=reprlib.repr(groups),
+            )
+        )
     return DrawingLayer(
         artwork,
         require(record, "name", str),
@@ -142,14 +168,22 @@ def _read_box(
     """Offset, corner in the texture, and size of a layer's picture; the texture has a width and a height."""
     offset, (x, y), (w, h) = (_pair(record, name) for name in ("offset", "corner", "size"))
     if not (x >= 0 and y >= 0 and w >= 1 and h >= 1 and x + w <= width and y + h <= height):
-        raise InputError(f"expected a picture inside the texture, got {w} x {h} pixels at {x}, {y}")
+        raise InputError(
+            tr("expected a picture inside the texture, got {w} x {h} pixels at {x}, {y}", w=w, h=h, x=x, y=y)
+        )
     return offset, (x, y), (w, h)
 
 
 def _pair(record: Json, name: str) -> tuple[int, int]:
     values = require(record, name, list)
     if len(values) != 2 or any(type(v) is not int or abs(v) > MAX_COORDINATE for v in values):
-        raise InputError(f"{name}: expected two whole numbers of pixels, got {reprlib.repr(values)}")
+        raise InputError(
+            tr(
+                "{name}: expected two whole numbers of pixels, got {value}",
+                name=name,
+                value=reprlib.repr(values),
+            )
+        )
     return values[0], values[1]
 
 
@@ -180,19 +214,21 @@ def read_joints(record: Json) -> tuple[Joint, ...]:
     """The joints of a record, none if absent. Raises InputError on values of other kinds."""
     records = optional(record, "joints", list, [])
     if len(records) > MAX_JOINTS:
-        raise InputError(f"expected at most {MAX_JOINTS} joints, got {len(records)}")
+        raise InputError(
+            tr("expected at most {most} joints, got {count}", most=MAX_JOINTS, count=len(records))
+        )
     return tuple(map(_read_joint, records))
 
 
 def _read_joint(value: Any) -> Joint:
     if type(value) is not dict:
-        raise InputError(f"expected joints to be objects, got {reprlib.repr(value)}")
+        raise InputError(tr("expected joints to be objects, got {value}", value=reprlib.repr(value)))
     faces, rows = require(value, "faces", list), require(value, "weights", list)
     if len(faces) != 2 or any(type(face) is not int for face in faces):
-        raise InputError(f"expected two faces of a joint, got {reprlib.repr(faces)}")
+        raise InputError(tr("expected two faces of a joint, got {value}", value=reprlib.repr(faces)))
     weights = [numbers(row, "weights") for row in rows]
     if len(weights) != 2 or any(len(row) != 3 for row in weights):
-        raise InputError(f"expected two times 3 weights of a joint, got {reprlib.repr(rows)}")
+        raise InputError(tr("expected two times 3 weights of a joint, got {value}", value=reprlib.repr(rows)))
     return Joint(
         require(value, "id", int),
         (faces[0], faces[1]),
@@ -204,5 +240,5 @@ def _read_joint(value: Any) -> Joint:
 
 def _as_record(value: Any) -> Json:
     if type(value) is not dict:
-        raise InputError(f"expected layers to be objects, got {reprlib.repr(value)}")
+        raise InputError(tr("expected layers to be objects, got {value}", value=reprlib.repr(value)))
     return value

@@ -11,6 +11,7 @@ from ...editor.document.pin import Pin
 from ...editor.session.recording import drawing_header
 from ...errors import InputError, file_errors
 from ...geometry.validation import Floats, Ints
+from ...words import mark, tr
 from ..atomic import read_file, write_atomic
 from .json_records import file_version, pairs, parse_record, program_name, refuse_newer, require
 from .state_records import check_state, read_crossings, read_pins, write_crossings
@@ -49,7 +50,7 @@ def load_pose(path: str | Path, drawing: Drawing) -> SavedPose:
     Raises FileError, and nothing else, if the file is missing, damaged, malicious, of a newer version, or
     belongs to another mesh than that of ``drawing``.
     """
-    data = read_file(path, "a pose")
+    data = read_file(path, mark("a pose"))
     with file_errors("open", path):
         return decode_pose(data, drawing)
 
@@ -81,8 +82,13 @@ def decode_pose(data: bytes, drawing: Drawing) -> SavedPose:
     if require(header, "mesh", str) != wanted["mesh"]:
         name, count = require(header, "name", str), require(header, "vertices", int)
         raise InputError(
-            f"expected a pose of this very mesh, with {wanted['vertices']} vertices, got one of the drawing "
-            f"{reprlib.repr(name)} with {count}"
+            tr(
+                "expected a pose of this very mesh, with {vertices} vertices, got one of the drawing "
+                "{name} with {count}",
+                vertices=wanted["vertices"],
+                name=reprlib.repr(name),
+                count=count,
+            )
         )
     vertices, faces = len(drawing.mesh.vertices), len(drawing.mesh.faces)
     positions = pairs(require(record, "positions", list), "positions")
@@ -94,4 +100,6 @@ def decode_pose(data: bytes, drawing: Drawing) -> SavedPose:
 
 def _check_size(data: bytes) -> None:
     if len(data) > MAX_POSE_BYTES:
-        raise InputError(f"expected a pose of at most {MAX_POSE_BYTES} bytes, got {len(data)}")
+        raise InputError(
+            tr("expected a pose of at most {most} bytes, got {count}", most=MAX_POSE_BYTES, count=len(data))
+        )

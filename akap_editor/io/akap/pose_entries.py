@@ -7,6 +7,7 @@ from ...editor.document.keyframes import NO_ANIMATION, Animation, Keyframe
 from ...editor.document.named_poses import NamedPose
 from ...errors import InputError, error_context
 from ...geometry.validation import Floats, freeze
+from ...words import tr
 from .archive import Archive, ArchiveEntry
 from .json_records import Json, numbers, optional, parse_record, require
 from .layer_entries import read_layer_view, write_layer_view
@@ -51,13 +52,17 @@ def read_named_poses(archive: Archive, vertices: int) -> tuple[NamedPose, ...]:
         record = parse_record(text)
         names = require(record, "poses", list)
         if len(names) > MAX_POSES:
-            raise InputError(f"expected at most {MAX_POSES} poses, got {len(names)}")
+            raise InputError(
+                tr("expected at most {most} poses, got {count}", most=MAX_POSES, count=len(names))
+            )
         if not all(type(name) is str for name in names) or len(set(names)) < len(names):
-            raise InputError("expected names of poses, each once, got something else")
+            raise InputError(tr("expected names of poses, each once, got something else"))
         _check_points(len(names) * vertices)
         rows = optional(record, "crossings", list, [[]] * len(names))
         if len(rows) != len(names):
-            raise InputError(f"expected crossings of {len(names)} poses, got {len(rows)}")
+            raise InputError(
+                tr("expected crossings of {count} poses, got {rows}", count=len(names), rows=len(rows))
+            )
         crossings = [read_crossings({"crossings": each}) for each in rows]
     arrays = [_read_pose(archive, f"poses/{number}", vertices) for number in range(len(names))]
     with error_context("poses"):
@@ -66,7 +71,9 @@ def read_named_poses(archive: Archive, vertices: int) -> tuple[NamedPose, ...]:
 
 def _check_points(count: int) -> None:
     if count > MAX_POINTS:
-        raise InputError(f"expected at most {MAX_POINTS} vertices in all poses, got {count}")
+        raise InputError(
+            tr("expected at most {most} vertices in all poses, got {count}", most=MAX_POINTS, count=count)
+        )
 
 
 # -- keyframes -----------------------------------------------------------------------------------------------
@@ -86,8 +93,14 @@ def keyframe_entries(animation: Animation) -> list[ArchiveEntry]:
     points = sum(len(pose) for _, pose in poses.values())
     if len(animation.keyframes) > MAX_KEYFRAMES or points > MAX_POINTS:
         raise InputError(
-            f"expected at most {MAX_KEYFRAMES} keyframes with {MAX_POINTS} vertices in all, got "
-            f"{len(animation.keyframes)} with {points}"
+            tr(
+                "expected at most {most} keyframes with {points_limit} vertices in all, "
+                "got {count} with {points}",
+                most=MAX_KEYFRAMES,
+                points_limit=MAX_POINTS,
+                count=len(animation.keyframes),
+                points=points,
+            )
         )
     keys: list[Json] = [
         {
@@ -119,10 +132,14 @@ def read_keyframes(archive: Archive, vertices: int) -> Animation:
         record = parse_record(text)
         keys, count = require(record, "keyframes", list), require(record, "poses", int)
         if len(keys) > MAX_KEYFRAMES:
-            raise InputError(f"expected at most {MAX_KEYFRAMES} keyframes, got {len(keys)}")
+            raise InputError(
+                tr("expected at most {most} keyframes, got {count}", most=MAX_KEYFRAMES, count=len(keys))
+            )
         if not 0 <= count <= len(keys) or count * vertices > MAX_POINTS:
             most = min(len(keys), MAX_POINTS // vertices)
-            raise InputError(f"expected poses to be a number from 0 to {most}, got {count}")
+            raise InputError(
+                tr("expected poses to be a number from 0 to {most}, got {count}", most=most, count=count)
+            )
     poses = [_read_pose(archive, f"animation/{number}", vertices) for number in range(count)]
     with error_context(KEYFRAMES_INDEX):
         ease = optional(record, "ease", str, Animation.ease)
@@ -132,10 +149,10 @@ def read_keyframes(archive: Archive, vertices: int) -> Animation:
 
 def _read_keyframe(record: Json, poses: list[Floats]) -> Keyframe:
     if type(record) is not dict:
-        raise InputError(f"expected keyframes to be objects, got {record!r:.40}")
+        raise InputError(tr("expected keyframes to be objects, got {record!r:.40}", record=record))
     time, number = numbers([record.get("time")], "time")[0], require(record, "pose", int)
     if not 0 <= number < len(poses):
-        raise InputError(f"expected a pose below {len(poses)}, got {number}")
+        raise InputError(tr("expected a pose below {count}, got {number}", count=len(poses), number=number))
     ease = require(record, "ease", str) if "ease" in record else None
     return Keyframe(float(time), poses[number], ease, read_crossings(record), read_layer_view(record))
 

@@ -19,6 +19,7 @@ from ...geometry.mesh import TriMesh
 from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
 from ...layers.drawing_layer import flat_picture
 from ...meshing.meshers import TRIANGLE, check_known
+from ...words import mark, tr
 from ..atomic import as_path, read_file, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
 from .archive import Archive, ArchiveEntry, check_expanded, pack
@@ -83,7 +84,7 @@ def load(path: str | Path) -> Document:
 
     Raises FileError, and nothing else, if the file is missing, damaged, malicious or of a newer version.
     """
-    data = read_file(path, "an .akap file")
+    data = read_file(path, mark("an .akap file"))
     with file_errors("open", path):
         document = decode_document(data)
     return replace(document, path=Path(path), digest=_digest(data))
@@ -97,7 +98,7 @@ def has_changed_on_disk(document: Document) -> bool:
     if document.path is None or not document.digest:
         return False
     try:
-        return _digest(read_file(document.path, "an .akap file")) != document.digest
+        return _digest(read_file(document.path, mark("an .akap file"))) != document.digest
     except FileError:
         return False
 
@@ -115,7 +116,13 @@ def encode_document(document: Document, more: Sequence[ArchiveEntry] = ()) -> by
     drawing = document.drawing
     text = json.dumps(_describe(document), allow_nan=False).encode()
     if len(text) > MAX_DOCUMENT_BYTES:
-        raise InputError(f"expected a description of at most {MAX_DOCUMENT_BYTES} bytes, got {len(text)}")
+        raise InputError(
+            tr(
+                "expected a description of at most {most} bytes, got {count}",
+                most=MAX_DOCUMENT_BYTES,
+                count=len(text),
+            )
+        )
     entries = [
         ("mimetype", MIMETYPE, False),
         ("document.json", text, True),
@@ -172,7 +179,13 @@ def _check_meshing(meshing: Meshing) -> None:
 def _check_sizes(width: int, height: int, vertices: int, faces: int) -> None:
     if min(width, height, vertices, faces) < 1:
         raise InputError(
-            f"expected sizes above 0, got {width} x {height}, {vertices} vertices, {faces} faces"
+            tr(
+                "expected sizes above 0, got {width} x {height}, {vertices} vertices, {faces} faces",
+                width=width,
+                height=height,
+                vertices=vertices,
+                faces=faces,
+            )
         )
     limits = (
         (width * height, MAX_PIXELS, "pixels"),
@@ -181,13 +194,21 @@ def _check_sizes(width: int, height: int, vertices: int, faces: int) -> None:
     )
     for count, most, name in limits:
         if count > most:
-            raise InputError(f"expected at most {most} {name}, got {count}")
+            raise InputError(
+                tr("expected at most {most} {name}, got {count}", most=most, name=name, count=count)
+            )
 
 
 def _check_vertices(vertices: Floats) -> None:
     largest = np.abs(vertices).max()
     if not largest <= MAX_COORDINATE:  # also for NaN; areas of larger coordinates could overflow
-        raise InputError(f"vertices: expected coordinates up to {MAX_COORDINATE:g} pixels, got {largest:g}")
+        raise InputError(
+            tr(
+                "vertices: expected coordinates up to {most:g} pixels, got {largest:g}",
+                most=MAX_COORDINATE,
+                largest=largest,
+            )
+        )
 
 
 # -- writing -------------------------------------------------------------------------------------------------
@@ -278,7 +299,7 @@ def _thumbnail_step(size: tuple[int, ...]) -> int:
 
 def _decode(archive: Archive) -> Document:
     if "mimetype" not in archive or archive.read("mimetype", 256) != MIMETYPE:
-        raise InputError("expected an .akap file, got a zip archive of another kind")
+        raise InputError(tr("expected an .akap file, got a zip archive of another kind"))
     text = archive.read("document.json", MAX_DOCUMENT_BYTES)
     with error_context("document.json"):
         record = parse_record(text)
@@ -343,5 +364,5 @@ def _picture(archive: Archive, name: str, width: int, height: int) -> NDArray[np
     with error_context(name):
         image = decode_image(content, ("PNG",), (width, height))
         if image.shape[:2] != (height, width):
-            raise InputError("expected an upright picture, got one rotated by its EXIF data")
+            raise InputError(tr("expected an upright picture, got one rotated by its EXIF data"))
     return freeze(image)

@@ -10,6 +10,7 @@ from ...editor.session.recording import Recording, mesh_digest, parse_recording
 from ...errors import InputError, file_errors
 from ...meshing.meshers import TRIANGLE, nearest_mesher
 from ...resources import bundled_drawings
+from ...words import mark, tr
 from ..atomic import read_file, write_atomic
 from ..images import read_image
 from .project import decode_document, encode_document
@@ -19,7 +20,7 @@ RECORDING_SUFFIX = ".akaprec"
 
 def read_recording(path: str | Path) -> Recording:
     """The recording in a file. Raises FileError with the number of the bad line."""
-    data = read_file(path, "a recording")
+    data = read_file(path, mark("a recording"))
     with file_errors("open", path):
         return decode_recording(data)
 
@@ -29,7 +30,7 @@ def decode_recording(data: bytes) -> Recording:
     try:
         return parse_recording(_decode_text(data))
     except UnicodeDecodeError as error:
-        raise InputError("expected a recording, which is text, got other bytes") from error
+        raise InputError(tr("expected a recording, which is text, got other bytes")) from error
 
 
 def _decode_text(data: bytes) -> str:
@@ -64,7 +65,9 @@ def recorded_drawing(recording: Recording) -> Drawing:
         try:
             return decode_document(drawing_inside(header)).drawing
         except InputError as error:
-            raise InputError(f"recording line 1: the drawing inside is damaged, {error}") from error
+            raise InputError(
+                tr("recording line 1: the drawing inside is damaged, {error}", error=error)
+            ) from error
     path = bundled_drawing(header)
     image, name = read_image(path), path.stem
     mesher = nearest_mesher(header.get("mesher", TRIANGLE))
@@ -89,7 +92,11 @@ def bundled_drawing(header: dict[str, Any]) -> Path:
     name = header.get("name")
     if name not in list(bundled):
         raise InputError(
-            f"recording line 1: expected a drawing inside, or the name of a bundled one "
-            f"({', '.join(bundled)}), got {name!r}; name its file with --drawing"
+            tr(
+                "recording line 1: expected a drawing inside, or the name of a bundled one "
+                "({names}), got {name!r}; name its file with --drawing",
+                names=", ".join(bundled),
+                name=name,
+            )
         )
     return bundled[str(name)]

@@ -14,6 +14,7 @@ from ...editor.document.settings import Settings
 from ...editor.document.stiffness import as_stiffness
 from ...errors import InputError
 from ...geometry.validation import Ints
+from ...words import tr
 from .json_records import Json, numbers, optional, require
 
 MAX_CROSSINGS = 100_000
@@ -22,13 +23,13 @@ MAX_CROSSINGS = 100_000
 def read_pins(records: list[Any]) -> tuple[Pin, ...]:
     """The pins that `Pin.to_json` wrote. Raises InputError on values of other types."""
     if len(records) > MAX_PINS:
-        raise InputError(f"expected at most {MAX_PINS} pins, got {len(records)}")
+        raise InputError(tr("expected at most {most} pins, got {count}", most=MAX_PINS, count=len(records)))
     return tuple(map(_read_pin, records))
 
 
 def _read_pin(record: Any) -> Pin:
     if not isinstance(record, dict):
-        raise InputError(f"expected pins to be objects, got {reprlib.repr(record)}")
+        raise InputError(tr("expected pins to be objects, got {value}", value=reprlib.repr(record)))
     weights, target = (numbers(require(record, name, list), name) for name in ("weights", "target"))
     depth = optional(record, "depth", int, 0)
     angle = float(numbers([record["angle"]], "angle")[0]) if "angle" in record else None
@@ -49,12 +50,18 @@ def read_crossings(record: Json) -> Ints:
     """The crossings (s, 2) of a record, none if absent. Raises InputError on values of other kinds."""
     rows = optional(record, "crossings", list, [])
     if len(rows) > MAX_CROSSINGS:
-        raise InputError(f"expected at most {MAX_CROSSINGS} crossings, got {len(rows)}")
+        raise InputError(
+            tr(
+                "expected at most {most} crossings, got {count}",
+                most=MAX_CROSSINGS,
+                count=len(rows),
+            )
+        )
     for row in rows:
         if type(row) is not list or len(row) != 2 or any(type(face) is not int for face in row):
-            raise InputError(f"crossings: expected pairs of faces, got {reprlib.repr(row)}")
+            raise InputError(tr("crossings: expected pairs of faces, got {value}", value=reprlib.repr(row)))
         if not 0 <= min(row) <= max(row) <= np.iinfo(np.int32).max:
-            raise InputError(f"crossings: expected indices of faces, got {row}")
+            raise InputError(tr("crossings: expected indices of faces, got {row}", row=row))
     return as_crossings(rows)
 
 
@@ -85,4 +92,10 @@ def check_crossings(crossings: Ints, faces: int) -> None:
     """Check that crossings (s, 2) are of a mesh with ``faces`` faces, and not too many. Raises InputError."""
     as_crossings(crossings, faces)
     if len(crossings) > MAX_CROSSINGS:
-        raise InputError(f"expected at most {MAX_CROSSINGS} crossings, got {len(crossings)}")
+        raise InputError(
+            tr(
+                "expected at most {most} crossings, got {count}",
+                most=MAX_CROSSINGS,
+                count=len(crossings),
+            )
+        )

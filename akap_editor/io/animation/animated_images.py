@@ -15,6 +15,7 @@ from PIL import Image
 
 from ...errors import FileError
 from ...progress import announce
+from ...words import tr
 from ..atomic import Write
 from ..images import Picture
 from .frames import ENCODING, collect_frames, frame_durations
@@ -70,9 +71,9 @@ def _write(
     try:
         data = encode(images)
     except (OSError, OverflowError, RuntimeError, ValueError) as error:
-        raise FileError("export", path, f"the encoder says {str(error)!r}") from error
+        raise FileError("export", path, tr("the encoder says {error!r}", error=str(error))) from error
     write(path, data)
-    return f"at {fps:g} frames per second"
+    return tr("at {fps:g} frames per second", fps=fps)
 
 
 def _save_all(

@@ -9,6 +9,7 @@ from ...display_text import display_name
 from ...editor.animation.frames import Frame
 from ...editor.framing import Color
 from ...errors import FileError, InputError, join_with_or
+from ...words import mark, tr
 from ..atomic import Write, write_atomic
 from ..images import Picture, write_png
 from ..outputs import existing, refuse_replacing
@@ -54,25 +55,30 @@ class AnimationFormat:
 
 
 def _write_pictures(path: Path, frames: Iterable[Picture], *_: object) -> str:
-    return f"{write_frames(path, frames)} pictures"
+    return tr("{count} pictures", count=write_frames(path, frames))
 
 
 def _write_sheet(path: Path, frames: Iterable[Picture], fps: float, _: int, write: Write) -> str:
     columns, rows = write_sheet(path, frames, fps, write)
-    return f"a sheet of {columns} x {rows} sprites, and its index {display_name(index_path(path))}"
+    return tr(
+        "a sheet of {columns} x {rows} sprites, and its index {file}",
+        columns=columns,
+        rows=rows,
+        file=display_name(index_path(path)),
+    )
 
 
 def _write_last(path: Path, frames: Iterable[Picture], *_: object) -> str:
     last = deque(frames, maxlen=1)[0]
     write_png(path, last)
-    return f"{last.shape[1]} x {last.shape[0]} pixels"
+    return tr("{width} x {height} pixels", width=last.shape[1], height=last.shape[0])
 
 
 ANIMATION_FORMATS = (
     AnimationFormat(
         "WebP",
         ".webp",
-        "An animation for the web: all colors, soft edges, small.",
+        mark("An animation for the web: all colors, soft edges, small."),
         write_webp,
         repeats=True,
         has_quality=True,
@@ -81,7 +87,7 @@ ANIMATION_FORMATS = (
     AnimationFormat(
         "GIF",
         ".gif",
-        "An animation that plays everywhere: 255 colors, hard edges.",
+        mark("An animation that plays everywhere: 255 colors, hard edges."),
         write_gif,
         repeats=True,
         max_fps=MAX_GIF_FPS,
@@ -90,7 +96,7 @@ ANIMATION_FORMATS = (
     AnimationFormat(
         "APNG",
         ".apng",
-        "An animation: all colors, soft edges, large.",
+        mark("An animation: all colors, soft edges, large."),
         write_apng,
         repeats=True,
         encoding_share=0.4,
@@ -98,31 +104,31 @@ ANIMATION_FORMATS = (
     AnimationFormat(
         "MP4",
         ".mp4",
-        "A video (H.264) without transparency.",
+        mark("A video (H.264) without transparency."),
         write_mp4,
         has_transparency=False,
         is_video=True,
     ),
-    AnimationFormat("WebM", ".webm", "A video (VP9) with transparency.", write_webm, is_video=True),
+    AnimationFormat("WebM", ".webm", mark("A video (VP9) with transparency."), write_webm, is_video=True),
     AnimationFormat(
-        "Web page",
+        mark("Web page"),
         ".html",
-        "A page that plays in browsers, sharp at any size.",
+        mark("A page that plays in browsers, sharp at any size."),
         write_player,
         repeats=True,
         is_page=True,
         encoding_share=0.9,
     ),
-    AnimationFormat("Pictures", "", "A folder with one PNG per frame.", _write_pictures),
+    AnimationFormat(mark("Pictures"), "", mark("A folder with one PNG per frame."), _write_pictures),
     AnimationFormat(
-        "Sprite sheet",
+        mark("Sprite sheet"),
         ".png",
-        "One PNG with all frames, and a JSON index, for games.",
+        mark("One PNG with all frames, and a JSON index, for games."),
         _write_sheet,
         is_sheet=True,
         encoding_share=0.2,
     ),
-    AnimationFormat("Picture", ".png", "The last frame as a PNG.", _write_last, is_still=True),
+    AnimationFormat(mark("Picture"), ".png", mark("The last frame as a PNG."), _write_last, is_still=True),
 )
 
 
@@ -134,7 +140,11 @@ def animation_format(path: str | Path, sheet: bool = False) -> AnimationFormat:
     path = Path(path)
     suffix = path.suffix.lower()
     if sheet and suffix != ".png":
-        raise FileError("export", path, f"expected a sheet's name to end in .png, got {suffix or 'none'}")
+        raise FileError(
+            "export",
+            path,
+            tr("expected a sheet's name to end in .png, got {suffix}", suffix=suffix or "none"),
+        )
     if path.is_dir() and not sheet:
         suffix = ""
     for each in ANIMATION_FORMATS:
@@ -143,7 +153,11 @@ def animation_format(path: str | Path, sheet: bool = False) -> AnimationFormat:
                 require_av()
             return each
     endings = join_with_or(sorted({each.suffix for each in ANIMATION_FORMATS if each.suffix}))
-    raise FileError("export", path, f"expected a name that ends in {endings}, got {suffix or 'none'}")
+    raise FileError(
+        "export",
+        path,
+        tr("expected a name that ends in {endings}, got {suffix}", endings=endings, suffix=suffix or "none"),
+    )
 
 
 def animation_shots(
@@ -187,9 +201,11 @@ def write_animation(
     path = Path(path)
     chosen = animation_format(path, sheet)
     if not 0.1 <= fps <= 1000:
-        raise InputError(f"fps: expected a number from 0.1 to 1000, got {fps}")
+        raise InputError(tr("fps: expected a number from 0.1 to 1000, got {fps}", fps=fps))
     if not 0 <= plays <= MAX_PLAYS:
-        raise InputError(f"plays: expected a number from 0 to {MAX_PLAYS}, got {plays}")
+        raise InputError(
+            tr("plays: expected a number from 0 to {most}, got {plays}", most=MAX_PLAYS, plays=plays)
+        )
     refuse_replacing(path, replaced_files(path, sheet), overwrite)
     options = _own_options(chosen, quality, hover)
     return chosen.writer(path, shots, fps, plays, write, **options)
@@ -200,13 +216,17 @@ def _own_options(chosen: AnimationFormat, quality: int | None, hover: bool) -> d
     options: dict[str, object] = {}
     if quality is not None:
         if not chosen.has_quality:
-            raise InputError(f"quality: expected a WebP, got {chosen.label}, which has no such choice")
+            raise InputError(
+                tr("quality: expected a WebP, got {format}, which has no such choice", format=chosen.label)
+            )
         if not 1 <= quality <= 100:
-            raise InputError(f"quality: expected a number from 1 to 100, got {quality}")
+            raise InputError(tr("quality: expected a number from 1 to 100, got {quality}", quality=quality))
         options["quality"] = quality
     if hover:
         if not chosen.is_page:
-            raise InputError(f"hover: expected a web page, got {chosen.label}, which has no such choice")
+            raise InputError(
+                tr("hover: expected a web page, got {format}, which has no such choice", format=chosen.label)
+            )
         options["hover"] = True
     return options
 

@@ -5,9 +5,10 @@ from itertools import pairwise
 
 from ...errors import InputError
 from ...geometry.validation import as_picture
+from ...words import mark, tr
 from ..images import Picture
 
-ENCODING = "Encoding"  # what is announced while a file is made of all frames
+ENCODING = mark("Encoding")  # what is announced while a file is made of all frames
 MAX_ANIMATION_PIXELS = 1_000_000_000  # of all frames together
 
 
@@ -22,10 +23,17 @@ def checked_frames(frames: Iterable[Picture]) -> Iterator[Picture]:
         first = image.shape if first is None else first
         if image.shape != first:
             expected, came = (f"{width} x {height}" for height, width, _ in (first, image.shape))
-            raise InputError(f"frame {number}: expected {expected} pixels as in frame 0, got {came}")
+            raise InputError(
+                tr(
+                    "frame {number}: expected {expected} pixels as in frame 0, got {came}",
+                    number=number,
+                    expected=expected,
+                    came=came,
+                )
+            )
         yield image
     if first is None:
-        raise InputError("frames: expected at least one frame, got none")
+        raise InputError(tr("frames: expected at least one frame, got none"))
 
 
 def collect_frames(frames: Iterable[Picture], max_side: int, suffix: str) -> list[Picture]:
@@ -39,11 +47,26 @@ def collect_frames(frames: Iterable[Picture], max_side: int, suffix: str) -> lis
     for image in checked_frames(frames):
         height, width = image.shape[:2]
         if max(width, height) > max_side:
-            raise InputError(f"{suffix}: expected at most {max_side} pixels a side, got {width} x {height}")
+            raise InputError(
+                tr(
+                    "{suffix}: expected at most {most} pixels a side, got {width} x {height}",
+                    suffix=suffix,
+                    most=max_side,
+                    width=width,
+                    height=height,
+                )
+            )
         pixels += width * height
         if pixels > MAX_ANIMATION_PIXELS:
             most = MAX_ANIMATION_PIXELS // (width * height)
-            raise InputError(f"frames: expected at most {most} frames of {width} x {height} pixels, got more")
+            raise InputError(
+                tr(
+                    "frames: expected at most {most} frames of {width} x {height} pixels, got more",
+                    most=most,
+                    width=width,
+                    height=height,
+                )
+            )
         images.append(image.copy())  # the caller may draw the next frame into the same array
     return images
 

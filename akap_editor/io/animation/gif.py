@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from PIL import GifImagePlugin, Image
 
 from ...progress import announce, announced, part
+from ...words import tr
 from ..atomic import Write
 from ..images import Picture
 from .coverage import opaque_pixels
@@ -42,7 +43,7 @@ def write_gif(path: Path, frames: Iterable[Picture], fps: float, plays: int, wri
     images = [image for image, shows in zip(images, is_shown, strict=True) if shows]
     fps = min(fps, MAX_GIF_FPS)
     write(path, encode_gif(images, frame_durations(len(images), fps, unit=10), plays))
-    return f"at {fps:g} frames per second"
+    return tr("at {fps:g} frames per second", fps=fps)
 
 
 def encode_gif(images: Sequence[Picture], durations: Sequence[int], plays: int) -> bytes:

@@ -23,6 +23,7 @@ from ...layers.drawing_layer import faded_texture
 from ...overlap.seams import CutMesh
 from ...progress import announced
 from ...resources import resource
+from ...words import tr
 from ..atomic import Write
 from ..images import Picture
 from ..painter import FramedPose
@@ -51,7 +52,7 @@ def write_player(
     """
     framed = list(frames)
     if not framed:
-        raise InputError("frames: expected at least one frame, got none")
+        raise InputError(tr("frames: expected at least one frame, got none"))
     text = encode_player(framed, fps, plays, hover)
     write(path, text.encode())
     return f"at {fps:g} frames per second, for browsers"

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...display_text import display_name, display_text
 from ...errors import FileError, InputError
+from ...words import tr
 from ..atomic import Write, os_error_reason, write_atomic
 from ..images import Picture, encode_png, write_png
 from .frames import checked_frames
@@ -73,8 +74,14 @@ def write_sheet(
     sheet_width, sheet_height = columns * (w + GUTTER) + GUTTER, rows * (h + GUTTER) + GUTTER
     if max(sheet_width, sheet_height) > MAX_SHEET_SIDE:
         raise InputError(
-            f"sheet: expected at most {MAX_SHEET_SIDE} pixels a side, got {sheet_width} x {sheet_height} for "
-            f"{len(images)} frames; choose a smaller size or rate"
+            tr(
+                "sheet: expected at most {most} pixels a side, got {sheet_width} x {sheet_height} for "
+                "{count} frames; choose a smaller size or rate",
+                most=MAX_SHEET_SIDE,
+                sheet_width=sheet_width,
+                sheet_height=sheet_height,
+                count=len(images),
+            )
         )
     sheet = np.zeros((sheet_height, sheet_width, 4), dtype=np.uint8)
     index = []

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import FileError, InputError
+from ...words import tr
 from ..atomic import Write
 from ..images import Picture
 from .frames import checked_frames
@@ -58,7 +59,7 @@ def require_av() -> Any:
         import av
     except ImportError as error:
         raise InputError(
-            "videos need the package av, which is not installed: pip install 'akap-editor[video]'"
+            tr("videos need the package av, which is not installed: pip install 'akap-editor[video]'")
         ) from error
     return av
 
@@ -68,9 +69,9 @@ def _write(path: Path, frames: Iterable[Picture], fps: float, write: Write, code
     try:
         data = _encode(av, codec, frames, fps)
     except (av.error.FFmpegError, OSError) as error:
-        raise FileError("export", path, f"the encoder says {str(error)!r}") from error
+        raise FileError("export", path, tr("the encoder says {error!r}", error=str(error))) from error
     write(path, data)
-    return f"at {fps:g} frames per second"
+    return tr("at {fps:g} frames per second", fps=fps)
 
 
 def _encode(av: Any, codec: _Codec, frames: Iterable[Picture], fps: float) -> bytes:

@@ -9,6 +9,7 @@ from ...editor.framing import Color, crop_box
 from ...errors import FileError, InputError, file_errors, join_with_or
 from ...geometry.validation import as_instance
 from ...overlap.overlaps import NO_CROSSINGS
+from ...words import mark, tr
 from ..atomic import as_path, write_atomic
 from ..images import encode_png
 from ..outputs import existing, refuse_replacing, refuse_source
@@ -63,7 +64,7 @@ class ExportFormat:
 
 def _require_painter(painter: Painter | None) -> Painter:
     if painter is None:
-        raise InputError("expected a painter for a picture, e.g. an OffscreenRenderer, got None")
+        raise InputError(tr("expected a painter for a picture, e.g. an OffscreenRenderer, got None"))
     return painter
 
 
@@ -103,19 +104,23 @@ def _encode_obj(document: Document, stem: str, options: ExportOptions, _: Painte
 
 
 EXPORT_FORMATS = (
-    ExportFormat("PNG picture", ".png", "The pose as a picture with transparency.", True, _encode_png),
+    ExportFormat(
+        mark("PNG picture"), ".png", mark("The pose as a picture with transparency."), True, _encode_png
+    ),
     ExportFormat(
         "SVG",
         ".svg",
-        "The outline of the pose as paths, for cutting and tracing, or a picture of each part.",
+        mark("The outline of the pose as paths, for cutting and tracing, or a picture of each part."),
         True,
         _encode_svg,
         can_be_textured=True,
     ),
     ExportFormat(
-        "glTF binary",
+        mark("glTF binary"),
         ".glb",
-        "Mesh and texture in one file, pose and keyframes as morph targets, for Blender and game engines.",
+        mark(
+            "Mesh and texture in one file, pose and keyframes as morph targets, for Blender and game engines."
+        ),
         False,
         _encode_glb,
         z_order=False,
@@ -123,24 +128,26 @@ EXPORT_FORMATS = (
     ExportFormat(
         "Wavefront OBJ",
         ".obj",
-        "The posed mesh with its material and texture, as three files, for almost any 3D program.",
+        mark("The posed mesh with its material and texture, as three files, for almost any 3D program."),
         False,
         _encode_obj,
         companion_names,
         z_order=True,
     ),
     ExportFormat(
-        "Spine skeleton",
+        mark("Spine skeleton"),
         ".spine.json",
-        "Mesh attachments, pose and keyframes as deform keys, and an atlas, for Spine and its runtimes.",
+        mark(
+            "Mesh attachments, pose and keyframes as deform keys, and an atlas, for Spine and its runtimes."
+        ),
         False,
         _encode_spine,
         lambda stem: [texture_name(stem), atlas_name(stem)],
     ),
     ExportFormat(
-        "Mesh and pins",
+        mark("Mesh and pins"),
         ".json",
-        "All numbers as documented JSON, for your own programs.",
+        mark("All numbers as documented JSON, for your own programs."),
         False,
         lambda document, stem, *_: {f"{stem}.json": encode_json(document)},
     ),
@@ -155,7 +162,9 @@ def format_of(path: str | Path) -> ExportFormat:
             return each
     endings = join_with_or([each.suffix for each in EXPORT_FORMATS])
     came = Path(path).suffix or "none"
-    raise FileError("export", path, f"expected a name that ends in {endings}, got {came}")
+    raise FileError(
+        "export", path, tr("expected a name that ends in {endings}, got {came}", endings=endings, came=came)
+    )
 
 
 def export(

@@ -11,6 +11,7 @@ from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
 from ...overlap.seams import CutMesh
+from ...words import tr
 from .baked_animation import BakedAnimation, DrawingOrder
 from .component_runs import component_runs
 from .drawn_faces import DrawnFaces, drawn_faces
@@ -274,8 +275,11 @@ def _attachment(
     """The mesh attachment of some drawn faces of a component."""
     if len(part.order) > MAX_ATTACHMENT_VERTICES:
         raise InputError(
-            f"expected parts of at most {MAX_ATTACHMENT_VERTICES} vertices for Spine, got {len(part.order)}; "
-            "choose a coarser mesh"
+            tr(
+                "expected parts of at most {most} vertices for Spine, got {count}; choose a coarser mesh",
+                most=MAX_ATTACHMENT_VERTICES,
+                count=len(part.order),
+            )
         )
     height, width = drawing.image.shape[:2]
     return {

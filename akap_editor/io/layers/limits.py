@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from ...display_text import display_text
 from ...errors import InputError
+from ...words import tr
 from ..images import MAX_PIXELS
 
 MAX_LAYERS = 1000
@@ -15,10 +16,24 @@ MAX_SHOWN_NAME = 40  # characters
 def check_size(width: int, height: int, name: str) -> None:
     """Raise InputError unless a canvas or a layer has pixels, and at most `MAX_PIXELS`."""
     if width < 1 or height < 1:
-        raise InputError(f"{name}: expected at least 1 x 1 pixels, got {width} x {height}")
+        raise InputError(
+            tr(
+                "{name}: expected at least 1 x 1 pixels, got {width} x {height}",
+                name=name,
+                width=width,
+                height=height,
+            )
+        )
     if width * height > MAX_PIXELS:
-        came = f"{width} x {height} pixels"
-        raise InputError(f"{name}: expected at most {MAX_PIXELS / 1e6:g} megapixels, got {came}")
+        came = tr("{width} x {height} pixels", width=width, height=height)
+        raise InputError(
+            tr(
+                "{name}: expected at most {megapixels:g} megapixels, got {came}",
+                name=name,
+                megapixels=MAX_PIXELS / 1e6,
+                came=came,
+            )
+        )
 
 
 def quoted(name: str) -> str:
@@ -38,11 +53,11 @@ class LayerBudget:
         """Count a layer or group."""
         self.layers += 1
         if self.layers > MAX_LAYERS:
-            raise InputError(f"expected at most {MAX_LAYERS} layers and groups, got more")
+            raise InputError(tr("expected at most {most} layers and groups, got more", most=MAX_LAYERS))
 
     def add_pixels(self, count: int) -> None:
         """Count pixels that are kept in memory."""
         self.pixels += count
         if self.pixels > MAX_LAYERS_PIXELS:
             most = f"{MAX_LAYERS_PIXELS / 1e6:.0f} megapixels"
-            raise InputError(f"expected layers of at most {most} in all, got more")
+            raise InputError(tr("expected layers of at most {most} in all, got more", most=most))

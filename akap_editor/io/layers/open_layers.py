@@ -10,6 +10,7 @@ from ...errors import FileError, InputError, file_errors
 from ...layers.composite import hidden_layers
 from ...layers.layered_picture import Layer, LayeredPicture, trimmed
 from ...progress import announce
+from ...words import mark, tr, tr_plural
 from ..atomic import as_path, os_error_reason, read_file
 from ..images import read_image
 from .limits import LayerBudget, quoted
@@ -57,10 +58,11 @@ def open_layers(path: str | Path) -> LayeredPicture:
     decode = _DECODERS.get(path.suffix.lower())
     if decode is None:
         endings = ", ".join(LAYER_SUFFIXES)
-        reason = f"expected a folder or a file that ends in {endings}, got {path.suffix or 'no ending'}"
+        got = path.suffix or tr("no ending")
+        reason = tr("expected a folder or a file that ends in {endings}, got {got}", endings=endings, got=got)
         raise FileError("open", path, reason)
     with file_errors("open", path):
-        return decode(BytesIO(read_file(path, "a picture in layers")))
+        return decode(BytesIO(read_file(path, mark("a picture in layers"))))
 
 
 def decode_layers(data: bytes) -> LayeredPicture:
@@ -77,16 +79,29 @@ def merging_notes(layered: LayeredPicture) -> list[str]:
     """Sentences without period about what a flat drawing of a picture in layers shows and leaves out."""
     hidden = hidden_layers(layered)
     shown = len(layered.layers) - len(hidden)
-    notes = [f"{shown} {'layer was' if shown == 1 else 'layers were'} merged into one drawing"]
+    notes = [
+        tr_plural(
+            "{count} layer was merged into one drawing", "{count} layers were merged into one drawing", shown
+        )
+    ]
     if hidden:
         names, count = _listed([quoted(layer.name) for layer in hidden]), len(hidden)
-        notes.append(f"{count} hidden {'layer was' if count == 1 else 'layers were'} left out: {names}")
+        notes.append(
+            tr_plural(
+                "{count} hidden layer was left out: {names}",
+                "{count} hidden layers were left out: {names}",
+                count,
+                names=names,
+            )
+        )
     return notes + left_out_notes(layered)
 
 
 def left_out_notes(layered: LayeredPicture) -> list[str]:
     """A sentence without period about what a file contains and the layers do not; none if that is nothing."""
-    return [f"Not drawn: {_listed(list(layered.left_out))}"] if layered.left_out else []
+    if not layered.left_out:
+        return []
+    return [tr("Not drawn: {names}", names=_listed(list(layered.left_out)))]
 
 
 def _listed(names: list[str]) -> str:
@@ -94,7 +109,7 @@ def _listed(names: list[str]) -> str:
     others = len(names) - _MAX_NAMED
     if others < 2:
         return ", ".join(names)
-    return f"{', '.join(names[:_MAX_NAMED])} and {others} more"
+    return tr("{names} and {count} more", names=", ".join(names[:_MAX_NAMED]), count=others)
 
 
 def _open_folder(folder: Path) -> LayeredPicture:
@@ -108,26 +123,28 @@ def _open_folder(folder: Path) -> LayeredPicture:
     except OSError as error:
         raise FileError("open", folder, os_error_reason(error)) from error
     if not paths:
-        raise FileError("open", folder, "the folder contains no PNG pictures, which would be its layers")
+        raise FileError("open", folder, tr("the folder contains no PNG pictures, which would be its layers"))
     size: tuple[int, int] | None = None
     layers, budget = [], LayerBudget()
     for number, path in enumerate(sorted(paths, key=_natural_key)):
-        announce(number / (len(paths) + 1), f"Reading the layer {quoted(path.stem)}")
+        announce(number / (len(paths) + 1), tr("Reading the layer {name}", name=quoted(path.stem)))
         picture = read_image(path)
         with file_errors("open", folder):
             came = picture.shape[1], picture.shape[0]
             size = size or came
             if came != size:
-                expected = f"pictures of one size, {size[0]} x {size[1]} pixels like the first one"
-                got = f"{display_name(path)} with {came[0]} x {came[1]}"
-                raise InputError(f"expected {expected}, got {got}")
+                text = mark(
+                    "expected pictures of one size, {size} pixels like the first one, got {file} with {other}"
+                )
+                size_text, other = (f"{width} x {height}" for width, height in (size, came))
+                raise InputError(tr(text, size=size_text, file=display_name(path), other=other))
             budget.add_layer()
             cut = trimmed(picture, (0, 0))
             if cut is not None:
                 budget.add_pixels(cut[0].size // 4)
                 layers.append(Layer(path.stem, *cut))
     if not layers or size is None:
-        raise FileError("open", folder, "its pictures are fully transparent")
+        raise FileError("open", folder, tr("its pictures are fully transparent"))
     return LayeredPicture(size, tuple(layers))
 
 

@@ -12,6 +12,7 @@ from xml.parsers import expat
 from ...errors import InputError, error_context
 from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
 from ...progress import announce
+from ...words import mark, tr
 from ..akap.archive import Archive
 from ..images import decode_image
 from .limits import MAX_DEPTH, LayerBudget, check_size, quoted
@@ -42,24 +43,30 @@ class _OraReader:
     budget: LayerBudget = field(default_factory=LayerBudget)
 
     def __post_init__(self) -> None:
-        self._archive = Archive(self.data, "an OpenRaster file")
+        self._archive = Archive(self.data, mark("an OpenRaster file"))
         self._count = 1  # of the layers in the file, for the progress
 
     def read(self) -> LayeredPicture:
         mimetype = self._archive.read("mimetype", 100).strip()
         if mimetype != ORA_MIMETYPE:
-            raise InputError(f"expected the type {ORA_MIMETYPE.decode()}, got {mimetype!r}")
+            raise InputError(
+                tr(
+                    "expected the type {type}, got {mimetype!r}",
+                    type=ORA_MIMETYPE.decode(),
+                    mimetype=mimetype,
+                )
+            )
         with error_context("stack.xml"):
             root = _parse_xml(self._archive.read("stack.xml", MAX_STACK_BYTES))
             stack = root.find("stack")
             if root.tag != "image" or stack is None:
-                raise InputError("expected an image with a stack of layers")
+                raise InputError(tr("expected an image with a stack of layers"))
             size = _integer(root, "w", None), _integer(root, "h", None)
         check_size(*size, "canvas")
         self._count = max(1, sum(1 for _ in root.iter("layer")))
         self._read_stack(stack, (), (0, 0))
         if not self.layers:
-            raise InputError("the file contains no layer with visible pixels")
+            raise InputError(tr("the file contains no layer with visible pixels"))
         return LayeredPicture(size, tuple(self.layers), tuple(self.left_out))
 
     def _read_stack(self, stack: Element, groups: tuple[LayerGroup, ...], offset: tuple[int, int]) -> None:
@@ -82,19 +89,28 @@ class _OraReader:
                 self._read_layer(item, common, groups, at)
             else:
                 self.left_out.append(
-                    f"{quoted(name)}, which is no picture but of the kind {quoted(item.tag)}"
+                    tr(
+                        "{name}, which is no picture but of the kind {kind}",
+                        name=quoted(name),
+                        kind=quoted(item.tag),
+                    )
                 )
 
     def _read_layer(
         self, item: Element, common: dict[str, Any], groups: tuple[LayerGroup, ...], at: tuple[int, int]
     ) -> None:
-        announce(self.budget.layers / (self._count + 1), f"Reading the layer {quoted(common['name'])}")
-        with error_context(f"layer {quoted(common['name'])}"):
+        announce(
+            self.budget.layers / (self._count + 1),
+            tr("Reading the layer {name}", name=quoted(common["name"])),
+        )
+        with error_context(tr("layer {name}", name=quoted(common["name"]))):
             source = item.get("src")
             if source is None:
-                raise InputError("expected the name of its picture, got none")
+                raise InputError(tr("expected the name of its picture, got none"))
             if not source.lower().endswith(".png"):
-                self.left_out.append(f"the layer {quoted(common['name'])}, which is no PNG picture")
+                self.left_out.append(
+                    tr("the layer {name}, which is no PNG picture", name=quoted(common["name"]))
+                )
                 return
             cut = trimmed(decode_image(self._archive.read(source, MAX_LAYER_BYTES), ("PNG",)), at)
             if cut is not None:
@@ -105,7 +121,9 @@ class _OraReader:
         """The blend mode; one that is not known is named as left out, and drawn as normal."""
         operation = item.get("composite-op", "svg:src-over")
         if operation not in _BLEND_MODES:
-            self.left_out.append(f"the blend mode {quoted(operation)} of {quoted(name)}")
+            self.left_out.append(
+                tr("the blend mode {mode} of {name}", mode=quoted(operation), name=quoted(name))
+            )
         return _BLEND_MODES.get(operation, "normal")
 
 
@@ -123,7 +141,7 @@ def _parse_xml(data: bytes) -> Element:
         nonlocal depth
         depth += 1
         if depth > MAX_DEPTH:
-            raise InputError(f"expected groups in groups at most {MAX_DEPTH} deep, got more")
+            raise InputError(tr("expected groups in groups at most {most} deep, got more", most=MAX_DEPTH))
         builder.start(tag, attributes)
 
     def end(tag: str) -> None:
@@ -132,7 +150,7 @@ def _parse_xml(data: bytes) -> Element:
         builder.end(tag)
 
     def refuse(*_: object) -> None:
-        raise InputError("expected no document type and no entities, got some")
+        raise InputError(tr("expected no document type and no entities, got some"))
 
     parser = expat.ParserCreate()
     parser.StartElementHandler, parser.EndElementHandler = start, end
@@ -143,7 +161,7 @@ def _parse_xml(data: bytes) -> Element:
     except InputError:
         raise
     except Exception as error:  # expat and the builder report damage with exceptions of many kinds
-        raise InputError("the list of layers is damaged") from error
+        raise InputError(tr("the list of layers is damaged")) from error
 
 
 def _integer(item: Element, name: str, default: int | None) -> int:
@@ -153,14 +171,21 @@ def _integer(item: Element, name: str, default: int | None) -> int:
         return default
     value = _number(item, name, text)
     if abs(value) > MAX_OFFSET:
-        raise InputError(f"{name}: expected at most {MAX_OFFSET} pixels, got {value:g}")
+        raise InputError(
+            tr(
+                "{name}: expected at most {most} pixels, got {value:g}",
+                name=name,
+                most=MAX_OFFSET,
+                value=value,
+            )
+        )
     return round(value)
 
 
 def _opacity(item: Element) -> float:
     value = _number(item, "opacity", item.get("opacity", "1"))
     if not 0 <= value <= 1:
-        raise InputError(f"opacity: expected a number from 0 to 1, got {value:g}")
+        raise InputError(tr("opacity: expected a number from 0 to 1, got {value:g}", value=value))
     return value
 
 
@@ -170,5 +195,7 @@ def _number(item: Element, name: str, text: str | None) -> float:
     except ValueError:
         value = float("nan")
     if not abs(value) < float("inf"):
-        raise InputError(f"{name}: expected a number, got {(text or 'nothing')[:20]!r}")
+        raise InputError(
+            tr("{name}: expected a number, got {text!r}", name=name, text=(text or "nothing")[:20])
+        )
     return value

@@ -18,6 +18,7 @@ from psd_tools.psd.descriptor import Descriptor
 from ...errors import AkapError, InputError, error_context
 from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
 from ...progress import announce
+from ...words import tr
 from ..images import MAX_PIXELS, Picture
 from .limits import MAX_DEPTH, LayerBudget, check_size, quoted
 
@@ -54,7 +55,7 @@ def decode_psd(file: BytesIO) -> LayeredPicture:
         try:
             psd = PSDImage.open(file, MAX_ALLOCATED_BYTES, _LIMITS)
         except Exception as error:  # psd-tools reports damage with exceptions of many kinds
-            raise InputError("the file is damaged or not a Photoshop file") from error
+            raise InputError(tr("the file is damaged or not a Photoshop file")) from error
         file.close()
         return _PsdReader(psd).read()
 
@@ -71,9 +72,11 @@ class _PsdReader:
         check_size(*size, "canvas")
         if self.psd.color_mode not in _COLOR_MODES:
             mode = self.psd.color_mode.name.capitalize()
-            raise InputError(f"expected RGB, CMYK or gray colors, got {mode}; convert the file to RGB")
+            raise InputError(
+                tr("expected RGB, CMYK or gray colors, got {mode}; convert the file to RGB", mode=mode)
+            )
         if self.psd.depth == 32:
-            raise InputError("expected samples of 8 or 16 bits, got 32; convert the file to 16 bits")
+            raise InputError(tr("expected samples of 8 or 16 bits, got 32; convert the file to 16 bits"))
         try:
             self._count = max(1, sum(1 for _ in self.psd.descendants()))
             if len(self.psd):
@@ -83,9 +86,9 @@ class _PsdReader:
         except AkapError:
             raise
         except Exception as error:  # psd-tools reports damage with exceptions of many kinds
-            raise InputError("the Photoshop file is damaged or incomplete") from error
+            raise InputError(tr("the Photoshop file is damaged or incomplete")) from error
         if not self.layers:
-            raise InputError("the file contains no layer with visible pixels")
+            raise InputError(tr("the file contains no layer with visible pixels"))
         return LayeredPicture(size, tuple(self.layers), tuple(self.left_out))
 
     def _read_merged(self) -> None:
@@ -99,13 +102,15 @@ class _PsdReader:
         masks: the groups around it that have a mask.
         """
         if len(groups) > MAX_DEPTH:
-            raise InputError(f"expected groups in groups at most {MAX_DEPTH} deep, got more")
+            raise InputError(tr("expected groups in groups at most {most} deep, got more", most=MAX_DEPTH))
         base_is_drawn = True  # whether the layer to which others are clipped has pixels
         for layer in group:
             self.budget.add_layer()
             clipping = bool(layer.clipping)
             if clipping and not base_is_drawn:
-                self.left_out.append(f"{quoted(layer.name)}, which is clipped to a layer that is not drawn")
+                self.left_out.append(
+                    tr("{name}, which is clipped to a layer that is not drawn", name=quoted(layer.name))
+                )
                 continue
             before = len(self.layers)
             if isinstance(layer, Group):
@@ -119,17 +124,17 @@ class _PsdReader:
 
     def _read_layer(self, layer: PsdLayer, place: dict[str, Any], masks: tuple[PsdLayer, ...]) -> None:
         name = quoted(layer.name)
-        announce(self.budget.layers / (self._count + 1), f"Reading the layer {name}")
+        announce(self.budget.layers / (self._count + 1), tr("Reading the layer {name}", name=name))
         if not layer.has_pixels():
             if isinstance(layer, AdjustmentLayer):
-                self.left_out.append(f"the adjustment layer {name}")
+                self.left_out.append(tr("the adjustment layer {name}", name=name))
             elif layer.kind != "pixel":
-                self.left_out.append(f"{name}, of which the file contains no picture")
+                self.left_out.append(tr("{name}, of which the file contains no picture", name=name))
             return
         if layer.width < 1 or layer.height < 1:
             return
         self._name_what_is_left_out(layer)
-        with error_context(f"layer {name}"):
+        with error_context(tr("layer {name}", name=name)):
             check_size(layer.width, layer.height, "size")
             try:
                 picture = _rgba(layer)
@@ -138,7 +143,7 @@ class _PsdReader:
             except InputError:
                 raise
             except Exception as error:  # psd-tools reports damage with exceptions of many kinds
-                raise InputError("the layer is damaged or incomplete") from error
+                raise InputError(tr("the layer is damaged or incomplete")) from error
             self._add(layer.name, picture, layer.offset, self._common(layer) | place)
 
     def _add(self, name: str, picture: Picture, offset: tuple[int, int], values: dict[str, Any]) -> None:
@@ -160,16 +165,16 @@ class _PsdReader:
         name = quoted(layer.name)
         if layer.blend_mode not in _BLEND_MODES:
             mode = layer.blend_mode.name.lower().replace("_", " ")
-            self.left_out.append(f"the blend mode “{mode}” of {name}")
+            self.left_out.append(tr("the blend mode “{mode}” of {name}", mode=mode, name=name))
         if layer.has_effects() or _has_older_effects(layer):
-            self.left_out.append(f"the effects of {name}")
+            self.left_out.append(tr("the effects of {name}", name=name))
         if _has_background(layer):
-            self.left_out.append(f"the background of the artboard {name}")
+            self.left_out.append(tr("the background of the artboard {name}", name=name))
         has_rendered_mask = layer.mask is not None and layer.mask.has_real()
         if layer.has_vector_mask() and layer.kind != "shape" and not has_rendered_mask:
-            self.left_out.append(f"the vector mask of {name}")
+            self.left_out.append(tr("the vector mask of {name}", name=name))
         if _is_masked(layer) and _feather(layer):
-            self.left_out.append(f"the soft edge of the mask of {name}")
+            self.left_out.append(tr("the soft edge of the mask of {name}", name=name))
 
 
 def _fill_opacity(layer: PsdLayer) -> float:
@@ -209,7 +214,7 @@ def _rgba(layer: PsdLayer) -> Picture:
     """The picture of a layer, (h, w, 4) uint8, without its mask."""
     image = layer.topil()
     if image is None:
-        raise InputError("the layer is damaged or incomplete")
+        raise InputError(tr("the layer is damaged or incomplete"))
     if image.mode in ("RGBA", "LA"):
         return np.array(image.convert("RGBA"))
     picture = np.array(image.convert("RGB").convert("RGBA"))
@@ -224,7 +229,7 @@ def _apply_mask(picture: Picture, offset: tuple[int, int], masked: PsdLayer) -> 
     mask = masked.mask
     assert mask is not None
     if mask.width * mask.height > MAX_PIXELS:
-        raise InputError(f"mask: expected at most {MAX_PIXELS / 1e6:g} megapixels")
+        raise InputError(tr("mask: expected at most {megapixels:g} megapixels", megapixels=MAX_PIXELS / 1e6))
     height, width = picture.shape[:2]
     full = Image.new("L", (width, height), mask.background_color)
     image = mask.topil()

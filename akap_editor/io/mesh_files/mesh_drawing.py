@@ -9,6 +9,7 @@ from ...editor.document.drawing import Drawing
 from ...errors import InputError, file_errors
 from ...geometry.mesh import TriMesh, signed_areas
 from ...geometry.validation import Floats
+from ...words import mark, tr
 from ..akap.project import MAX_DOCUMENT_VERTICES
 from ..atomic import read_file, resolved
 from ..images import read_image
@@ -35,7 +36,7 @@ def read_mesh(path: str | Path) -> Drawing:
     Raises InputError if the file is not readable, the mesh not flat, or refused by `TriMesh`.
     """
     path = Path(path)
-    data = read_file(path, "a mesh")
+    data = read_file(path, mark("a mesh"))
     with file_errors("open", path):
         return _drawing(PARSERS[path.suffix.lower()](decode_text(data)), path)
 
@@ -44,7 +45,7 @@ def _drawing(mesh: PolygonMesh, path: Path) -> Drawing:
     points = _flat_points(mesh.vertices)
     faces = triangulate_polygons(points, mesh.faces)
     if not len(faces):
-        raise InputError("expected a mesh with faces, got none")
+        raise InputError(tr("expected a mesh with faces, got none"))
     flipped = signed_areas(points, faces) < 0
     faces[flipped] = faces[flipped][:, ::-1]
     uv = _texture_coordinates(mesh, len(points))
@@ -59,7 +60,7 @@ def _drawing(mesh: PolygonMesh, path: Path) -> Drawing:
         if (pixels >= 0).all() and (pixels <= size).all():
             return Drawing(texture, TriMesh(pixels, faces, True), _float32(pixels / size), path.stem)
         if is_named:
-            raise InputError("expected texture coordinates, as the material has a texture, got none")
+            raise InputError(tr("expected texture coordinates, as the material has a texture, got none"))
     trimesh = TriMesh(_to_pixels(points), faces, True)
     image = _grid_picture(trimesh.vertices.max(axis=0) + _MARGIN)
     return Drawing(image, trimesh, _float32(trimesh.vertices / [image.shape[1], image.shape[0]]), path.stem)
@@ -68,15 +69,27 @@ def _drawing(mesh: PolygonMesh, path: Path) -> Drawing:
 def _flat_points(vertices: list[list[float]]) -> Floats:
     """The vertices (n, 2) with y down. Raises InputError if they are not flat, finite and few enough."""
     if not vertices:
-        raise InputError("expected a mesh with vertices, got none")
+        raise InputError(tr("expected a mesh with vertices, got none"))
     if len(vertices) > MAX_DOCUMENT_VERTICES:
-        raise InputError(f"expected at most {MAX_DOCUMENT_VERTICES} vertices, got {len(vertices)}")
+        raise InputError(
+            tr(
+                "expected at most {most} vertices, got {count}",
+                most=MAX_DOCUMENT_VERTICES,
+                count=len(vertices),
+            )
+        )
     points = np.array(vertices)
     if not np.isfinite(points).all() or np.abs(points).max() > 1e9:
-        raise InputError("expected finite coordinates up to 1e9, got others")
+        raise InputError(tr("expected finite coordinates up to 1e9, got others"))
     low, high = points.min(axis=0), points.max(axis=0)
     if high[2] - low[2] > _MAX_THICKNESS * max(high[:2] - low[:2]):
-        raise InputError(f"expected a flat mesh, got one in 3D, with z from {low[2]:g} to {high[2]:g}")
+        raise InputError(
+            tr(
+                "expected a flat mesh, got one in 3D, with z from {low:g} to {high:g}",
+                low=low[2],
+                high=high[2],
+            )
+        )
     return points[:, :2] * [1.0, -1.0]
 
 
@@ -87,17 +100,22 @@ def _texture_coordinates(mesh: PolygonMesh, count: int) -> Floats | None:
     vertex = np.concatenate([np.array(face) for face in mesh.faces])
     corner = np.concatenate([np.array(face) for face in mesh.texture_corners])
     if len(corner) != len(vertex):
-        raise InputError("expected texture coordinates at every corner of every face or at none, got some")
+        raise InputError(
+            tr("expected texture coordinates at every corner of every face or at none, got some")
+        )
     coordinates = np.array(mesh.texture_points)[corner]
     if not np.isfinite(coordinates).all() or np.abs(coordinates).max() > 1e6:
-        raise InputError("expected finite texture coordinates up to 1e6, got others")
+        raise InputError(tr("expected finite texture coordinates up to 1e6, got others"))
     uv = np.zeros((count, 2))
     uv[vertex] = coordinates
     several = (uv[vertex] != coordinates).any(axis=1)
     if several.any():
         number = int(vertex[np.argmax(several)]) + 1
         raise InputError(
-            f"expected one place in the texture for each vertex, but vertex {number} has several"
+            tr(
+                "expected one place in the texture for each vertex, but vertex {number} has several",
+                number=number,
+            )
         )
     return np.array([0.0, 1.0]) + uv * [1.0, -1.0]
 
@@ -110,7 +128,7 @@ def _texture(mesh: PolygonMesh, path: Path) -> tuple[NDArray[np.uint8] | None, b
         for name in whole_names[:1] or library.split():
             file = _find(path.parent, name)
             if file is not None:
-                textures = {**parse_textures(decode_text(read_file(file, "a material"))), **textures}
+                textures = {**parse_textures(decode_text(read_file(file, mark("a material")))), **textures}
     used = [textures[name] for name in mesh.materials if name in textures] or list(textures.values())
     if used:
         folder_and_name = used[0].replace("\\", "/")
@@ -163,7 +181,7 @@ def _fit(points: Floats, goals: Floats) -> Floats:
     centered, centered_goals = points - points.mean(axis=0), goals - goals.mean(axis=0)
     scale = float((centered * centered_goals).sum() / (centered**2).sum()) if centered.any() else 0.0
     if scale <= 0:
-        raise InputError("expected a texture that is the right way round, got a mirrored or rotated one")
+        raise InputError(tr("expected a texture that is the right way round, got a mirrored or rotated one"))
     return goals.mean(axis=0) + scale * centered
 
 

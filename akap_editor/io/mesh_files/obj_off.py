@@ -13,6 +13,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
+from ...words import tr
 from ..akap.project import MAX_DOCUMENT_VERTICES
 from ..atomic import write_atomic
 
@@ -80,14 +81,24 @@ def parse_obj(text: str) -> PolygonMesh:
         match kind.lower():
             case "v":
                 if len(words) < 2:
-                    raise InputError(f"line {number}: expected x and y of a vertex, got {len(words)} numbers")
+                    raise InputError(
+                        tr(
+                            "line {number}: expected x and y of a vertex, got {count} numbers",
+                            number=number,
+                            count=len(words),
+                        )
+                    )
                 mesh.vertices.append(_numbers(words, 3, number))
             case "vt":
                 mesh.texture_points.append(_numbers(words, 2, number))
             case "f":
                 if len(words) < 3:
                     raise InputError(
-                        f"line {number}: expected a face with 3 corners or more, got {len(words)}"
+                        tr(
+                            "line {number}: expected a face with 3 corners or more, got {count}",
+                            number=number,
+                            count=len(words),
+                        )
                     )
                 corners = [word.split("/") for word in words]
                 corner_lines.append((number, corners, len(mesh.vertices), len(mesh.texture_points)))
@@ -121,27 +132,54 @@ def parse_off(text: str) -> PolygonMesh:
     number, words = next(lines, (1, [""]))
     if OFF_HEADER.fullmatch(words[0]):
         if len(words) > 1 and words[1].lower() == "binary":
-            raise InputError(f"line {number}: expected an OFF file of text, got a binary one")
+            raise InputError(
+                tr("line {number}: expected an OFF file of text, got a binary one", number=number)
+            )
         number, words = (number, words[1:]) if len(words) > 1 else next(lines, (number + 1, []))
     elif not _INTEGER.fullmatch(words[0]):  # the header may be absent
-        raise InputError(f"line {number}: expected OFF, got {words[0][:20]!r}")
+        raise InputError(tr("line {number}: expected OFF, got {word!r}", number=number, word=words[0][:20]))
     counts = [_count(word) for word in words[:2]]
     if len(counts) < 2 or not (0 <= counts[0] <= MAX_DOCUMENT_VERTICES and 0 <= counts[1] <= _MAX_CORNERS):
         actual = " ".join(words)[:60]
-        raise InputError(f"line {number}: expected the numbers of vertices and faces, got {actual!r}")
+        raise InputError(
+            tr(
+                "line {number}: expected the numbers of vertices and faces, got {actual!r}",
+                number=number,
+                actual=actual,
+            )
+        )
     mesh = PolygonMesh()
     rows = [row for _, row in zip(range(sum(counts)), lines, strict=False)]
     if len(rows) < sum(counts):
-        raise InputError(f"expected {counts[0]} vertices and {counts[1]} faces, but the file ends before")
+        raise InputError(
+            tr(
+                "expected {vertices} vertices and {faces} faces, but the file ends before",
+                vertices=counts[0],
+                faces=counts[1],
+            )
+        )
     mesh.vertices = [_numbers(words, 3, number) for number, words in rows[: counts[0]]]
     for number, words in rows[counts[0] :]:
         size = _count(words[0])
         if not 3 <= size < len(words):
-            raise InputError(f"line {number}: expected a face with 3 corners or more, got {words[0][:20]!r}")
+            raise InputError(
+                tr(
+                    "line {number}: expected a face with 3 corners or more, got {word!r}",
+                    number=number,
+                    word=words[0][:20],
+                )
+            )
         indices = [_count(word) for word in words[1 : size + 1]]
         if not all(0 <= index < counts[0] for index in indices):
             actual = " ".join(words[1 : size + 1])[:60]
-            raise InputError(f"line {number}: expected vertices from 0 to {counts[0] - 1}, got {actual}")
+            raise InputError(
+                tr(
+                    "line {number}: expected vertices from 0 to {last}, got {actual}",
+                    number=number,
+                    last=counts[0] - 1,
+                    actual=actual,
+                )
+            )
         mesh.faces.append(indices)
     return mesh
 
@@ -175,7 +213,9 @@ def _lines(text: str, name_kinds: tuple[str, ...] = ()) -> Iterator[tuple[int, l
 def _numbers(words: list[str], count: int, number: int) -> list[float]:
     """The first ``count`` words of a line as numbers; missing ones are 0."""
     if not all(_NUMBER.fullmatch(word) for word in words[:count]):
-        raise InputError(f"line {number}: expected numbers, got {' '.join(words)[:60]!r}")
+        raise InputError(
+            tr("line {number}: expected numbers, got {words!r}", number=number, words=" ".join(words)[:60])
+        )
     return [float(word) for word in words[:count]] + [0.0] * (count - len(words))
 
 
@@ -190,8 +230,16 @@ def _index(word: str, before: int, count: int, number: int, kind: str) -> int:
     before: number of elements before the line, from which negative indices count back; count: in the file.
     """
     if not _INTEGER.fullmatch(word):
-        raise InputError(f"line {number}: expected an index, got {word[:60]!r}")
+        raise InputError(tr("line {number}: expected an index, got {word!r}", number=number, word=word[:60]))
     index = int(word) if len(word) <= _MAX_DIGITS else 0
     if not (1 <= index <= count or 1 <= -index <= before):
-        raise InputError(f"line {number}: expected a {kind} from 1 to {count}, got {word[:60]}")
+        raise InputError(
+            tr(
+                "line {number}: expected a {kind} from 1 to {count}, got {word}",
+                number=number,
+                kind=kind,
+                count=count,
+                word=word[:60],
+            )
+        )
     return index - 1 if index > 0 else before + index

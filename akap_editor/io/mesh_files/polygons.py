@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...geometry.validation import Floats, Ints
+from ...words import tr
 
 MAX_POLYGON_CORNERS = 5000  # of a polygon that is not convex: the time grows with the square
 
@@ -80,7 +81,11 @@ def _clip_ears(corners: Floats) -> list[tuple[int, int, int]]:
     """
     if len(corners) > MAX_POLYGON_CORNERS:
         raise InputError(
-            f"expected at most {MAX_POLYGON_CORNERS} corners of a face that is not convex, got {len(corners)}"
+            tr(
+                "expected at most {most} corners of a face that is not convex, got {count}",
+                most=MAX_POLYGON_CORNERS,
+                count=len(corners),
+            )
         )
     ring = np.arange(len(corners))
     quality = np.array([_ear_quality(corners, ring, place) for place in range(len(ring))])

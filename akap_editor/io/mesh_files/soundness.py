@@ -15,6 +15,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...errors import InputError
 from ...geometry.validation import MAX_COORDINATE, Floats, Ints, as_indices, as_points
+from ...words import tr
 from ..akap.json_records import numbers, parse_record
 from .obj_off import OFF_HEADER, PARSERS, decode_text
 from .polygons import triangulate_polygons
@@ -53,12 +54,16 @@ def decode_mesh(data: bytes) -> TriangleSoup:
         raise
     except _MALFORMED_ERRORS as error:
         reason = reprlib.repr(str(error))
-        raise InputError(f"expected a whole {kind} file, got a damaged one ({reason})") from error
+        raise InputError(
+            tr("expected a whole {kind} file, got a damaged one ({reason})", kind=kind, reason=reason)
+        ) from error
     if len(shape) != 2 or shape[1] not in (2, 3) or not shape[0]:
-        raise InputError(f"expected vertices in the {kind} file, got none")
+        raise InputError(tr("expected vertices in the {kind} file, got none", kind=kind))
     points = as_points(vertices, "vertices", columns=shape[1])
     if np.abs(points).max() > MAX_COORDINATE:
-        raise InputError(f"vertices: expected coordinates up to {MAX_COORDINATE:g}, got greater ones")
+        raise InputError(
+            tr("vertices: expected coordinates up to {most:g}, got greater ones", most=MAX_COORDINATE)
+        )
     return TriangleSoup(kind, points, as_indices(faces, "faces", 3, len(points)))
 
 
@@ -148,7 +153,9 @@ def _accessor(record: dict[str, Any], binary: bytes, number: int) -> NDArray[Any
     kind = np.dtype(_COMPONENTS[accessor["componentType"]])
     count = _natural(accessor, "count") * columns
     if start + count * kind.itemsize > size or begin + size > len(binary):
-        raise InputError(f"accessor {number}: expected it to fit into its buffer view, got a longer one")
+        raise InputError(
+            tr("accessor {number}: expected it to fit into its buffer view, got a longer one", number=number)
+        )
     return np.frombuffer(binary, kind, count, begin + start).reshape(-1, columns)
 
 
@@ -156,5 +163,7 @@ def _natural(record: dict[str, Any], name: str, default: int | None = None) -> i
     """The integer from 0 of a key. Raises InputError."""
     value = record.get(name, default)
     if type(value) is not int or value < 0:
-        raise InputError(f"expected {name} to be an integer from 0, got {reprlib.repr(value)}")
+        raise InputError(
+            tr("expected {name} to be an integer from 0, got {value}", name=name, value=reprlib.repr(value))
+        )
     return value

@@ -6,6 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ....editor import gestures
 from ....editor.document.rig.joint import KINDS, Joint
 from ....editor.document.rig.suggestion import suggest_joints
+from ....words import mark, tr
 from ... import widgets
 from ...app_state import AppState
 from ...commands.command import Command
@@ -13,7 +14,7 @@ from ...theme import SECONDARY
 
 _ROWS = 5  # joints that are visible at once
 _LABEL_WIDTH = 4.6  # times the font size
-_KIND_LABELS = {"hinge": "Hinge", "weld": "Weld"}
+_KIND_LABELS = {"hinge": mark("Hinge"), "weld": mark("Weld")}
 
 
 def joint_count(state: AppState) -> str:
@@ -27,7 +28,7 @@ def draw(state: AppState, scale: float) -> None:
     joints = state.document.state.joints
     widgets.begin_list("##joints", _ROWS)
     if not joints:
-        widgets.secondary_text("None. With the joint tool, click where two layers overlap.")
+        widgets.secondary_text(tr("None. With the joint tool, click where two layers overlap."))
     for index, joint in enumerate(joints):
         _draw_row(state, joint, index)
     imgui.end_child()
@@ -56,8 +57,14 @@ def _draw_row(state: AppState, joint: Joint, index: int) -> None:
         state.view.selected_joint = joint.id
     if joint.is_proposed:
         imgui.pop_style_color()
-    proposed = " Proposed: it holds already; accept, move or remove it." if joint.is_proposed else ""
-    widgets.show_tooltip(f"“{limb}” hangs on “{carrier}” by a {joint.kind}.{proposed}")
+    is_weld = joint.kind == "weld"
+    hangs = (
+        mark("“{limb}” hangs on “{carrier}” by a weld.")
+        if is_weld
+        else mark("“{limb}” hangs on “{carrier}” by a hinge.")
+    )
+    proposed = tr("Proposed: it holds already; accept, move or remove it.") if joint.is_proposed else ""
+    widgets.show_tooltip(f"{tr(hangs, limb=limb, carrier=carrier)} {proposed}".strip())
     if is_selected:
         widgets.scroll_to_row(index, _ROWS)
 
@@ -67,13 +74,13 @@ def _draw_values(state: AppState, joint: Joint | None) -> None:
     assert state.document is not None
     drawing = state.document.drawing
     width = _LABEL_WIDTH * imgui.get_font_size()
-    widgets.label("Kind", width)
+    widgets.label(tr("Kind"), width)
     imgui.set_next_item_width(widgets.FULL)
     kind = 0 if joint is None else KINDS.index(joint.kind)
-    is_changed, kind = imgui.combo("##joint kind", kind, [_KIND_LABELS[each] for each in KINDS])
+    is_changed, kind = imgui.combo("##joint kind", kind, [tr(_KIND_LABELS[each]) for each in KINDS])
     if is_changed and joint is not None:
         state.run_reporting_errors(lambda: gestures.set_joint_kind(state.editor, joint.id, KINDS[kind]))
-    widgets.label("Parent", width)
+    widgets.label(tr("Parent"), width)
     imgui.set_next_item_width(widgets.FULL)
     limb, carrier = (-1, -1) if joint is None else joint.layers(drawing.mesh)
     others = [number for number in reversed(drawing.layer_order) if number != limb]
@@ -93,11 +100,11 @@ def _draw_buttons(state: AppState, selected: Joint | None) -> None:
     if imgui.button("Accept Proposed", half):
         widgets.run(state, ACCEPT_JOINTS)
     imgui.same_line()
-    if imgui.button("Clear Proposed", half):
+    if imgui.button(tr("Clear Proposed"), half):
         state.run_reporting_errors(lambda: gestures.clear_proposed_joints(editor))
     imgui.end_disabled()
     imgui.begin_disabled(selected is None)
-    if imgui.button("Remove Joint", half) and selected is not None:
+    if imgui.button(tr("Remove Joint"), half) and selected is not None:
         state.run_reporting_errors(lambda: gestures.remove_joints(editor, {selected.id}))
     imgui.end_disabled()
     imgui.same_line()

@@ -11,6 +11,7 @@ from ....geometry.joints import MeshJoints
 from ....geometry.json_numbers import MAX_INTEGER
 from ....geometry.mesh import MeshPoints, TriMesh
 from ....geometry.validation import Floats, as_choice, as_floats, as_switch
+from ....words import tr
 
 MAX_JOINTS = 10_000
 KINDS = ("hinge", "weld")
@@ -89,7 +90,7 @@ def make_joint(
     for layer in (limb, carrier):
         own = np.flatnonzero(mesh.face_layers == layer)
         if not len(own):
-            raise InputError(f"joint: expected a layer of the drawing, got {layer}")
+            raise InputError(tr("joint: expected a layer of the drawing, got {layer}", layer=layer))
         point = _nearest_point(mesh, own, pose, np.asarray(place, dtype=np.float64))
         faces.append(int(point.faces[0]))
         weights.append(point.weights[0])
@@ -110,28 +111,46 @@ def _nearest_point(mesh: TriMesh, own: Any, pose: Floats, place: Floats) -> Mesh
 def check_joints(joints: Sequence[Joint], mesh: TriMesh) -> None:
     """Check that joints can be those of a mesh. Raises InputError."""
     if len(joints) > MAX_JOINTS:
-        raise InputError(f"expected at most {MAX_JOINTS} joints, got {len(joints)}")
+        raise InputError(
+            tr("expected at most {most} joints, got {count}", most=MAX_JOINTS, count=len(joints))
+        )
     if joints and mesh.layers is None:
-        raise InputError("joints: expected a drawing in layers")
+        raise InputError(tr("joints: expected a drawing in layers"))
     count = len(mesh.faces)
     if len({joint.id for joint in joints}) < len(joints):
-        raise InputError("expected each joint once, got one id twice")
+        raise InputError(tr("expected each joint once, got one id twice"))
     for joint in joints:
         if abs(joint.id) > MAX_INTEGER:
-            raise InputError(f"joints: expected ids up to {MAX_INTEGER}, got a larger one")
+            raise InputError(tr("joints: expected ids up to {most}, got a larger one", most=MAX_INTEGER))
         if not all(0 <= face < count for face in joint.faces):
-            raise InputError(f"joint {joint.id}: expected faces from 0 to {count - 1}, got {joint.faces}")
+            raise InputError(
+                tr(
+                    "joint {joint}: expected faces from 0 to {last}, got {faces}",
+                    joint=joint.id,
+                    last=count - 1,
+                    faces=joint.faces,
+                )
+            )
         weights = joint.weights
         low, high = -WEIGHT_TOLERANCE, 1 + WEIGHT_TOLERANCE
         is_sound = weights.shape == (2, 3) and bool(((weights >= low) & (weights <= high)).all())
         if not is_sound or np.abs(weights.sum(axis=1) - 1).max() > WEIGHT_TOLERANCE:
             raise InputError(
-                f"joint {joint.id}: expected two times 3 weights from 0 to 1 that sum to 1, "
-                f"got {weights.tolist()}"
+                tr(
+                    "joint {joint}: expected two times 3 weights from 0 to 1 that sum to 1, got {weights}",
+                    joint=joint.id,
+                    weights=weights.tolist(),
+                )
             )
         limb, carrier = joint.layers(mesh)
         if limb == carrier:
-            raise InputError(f"joint {joint.id}: expected points on two layers, got both on layer {limb}")
+            raise InputError(
+                tr(
+                    "joint {joint}: expected points on two layers, got both on layer {limb}",
+                    joint=joint.id,
+                    limb=limb,
+                )
+            )
 
 
 def changed_joint(joints: Sequence[Joint], joint_id: int, **values: Any) -> tuple[Joint, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....errors import InputError
+from ....words import tr
 from ...document.crossings import as_crossings, crossings_with_limb
 from ...document.document import EditState
 from ...document.drawing import Drawing
@@ -30,7 +31,13 @@ class OrderLimb(Edit):
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         unknown = set(self.pins) - {pin.id for pin in state.pins}
         if unknown or type(self.front) is not bool:
-            raise InputError(f"limb: expected ids of pins, got {sorted(self.pins)}; front {self.front!r}")
+            raise InputError(
+                tr(
+                    "limb: expected ids of pins, got {pins}; front {front!r}",
+                    pins=sorted(self.pins),
+                    front=self.front,
+                )
+            )
         if not self.pins:
             return state
         mesh, pose = drawing.mesh, state.positions
@@ -66,5 +73,5 @@ class SetCrossings(Edit):
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         if not target.same_mesh:
-            raise InputError("crossings fit only the mesh that they were made on")
+            raise InputError(tr("crossings fit only the mesh that they were made on"))
         return cls(event["crossings"])

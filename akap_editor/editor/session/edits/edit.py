@@ -11,6 +11,7 @@ from ....errors import InputError
 from ....geometry.mesh import TriMesh
 from ....geometry.validation import Floats, Ints, as_points
 from ....layers.layer_view import LayerView
+from ....words import tr
 from ...document.crossings import as_crossings, crossings_in_pose
 from ...document.document import EditState
 from ...document.drawing import Drawing
@@ -51,7 +52,7 @@ class ReplayTarget:
     def pose(self, values: Any, vertices: int) -> Floats:
         """A recorded pose (vertices, 2) of this drawing. Raises InputError if it is one of another mesh."""
         if not self.same_mesh:
-            raise InputError("a pose fits only the mesh that it was made on")
+            raise InputError(tr("a pose fits only the mesh that it was made on"))
         return as_points(values, "positions", vertices)
 
 

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ....errors import InputError
 from ....layers.layer_view import LayerView
+from ....words import tr
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.keyframes import Animation, Keyframe, as_keyframe_time
@@ -148,5 +149,5 @@ class SetLoop(KeyframeEdit):
 
     def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
         if type(self.loop) is not bool:
-            raise InputError(f"loop: expected true or false, got {self.loop!r}")
+            raise InputError(tr("loop: expected true or false, got {loop!r}", loop=self.loop))
         return replace(animation, loop=self.loop)

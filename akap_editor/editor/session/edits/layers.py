@@ -10,6 +10,7 @@ from ....geometry.validation import as_number, as_points, as_switch
 from ....layers.drawing_layer import DrawingLayer
 from ....layers.layer_view import LayerView, view_with_one_shown, with_one_shown
 from ....layers.layered_picture import MAX_NAME
+from ....words import tr
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.rig.joint import Joint, check_joints, make_joint
@@ -43,7 +44,13 @@ class SetLayers(Edit):
         count = len(drawing.layers)
         unknown = [number for number in self.layers if type(number) is not int or not 0 <= number < count]
         if unknown:
-            raise InputError(f"layers: expected numbers from 0 to {count - 1}, got {unknown[0]!r}")
+            raise InputError(
+                tr(
+                    "layers: expected numbers from 0 to {last}, got {unknown!r}",
+                    last=count - 1,
+                    unknown=unknown[0],
+                )
+            )
         chosen = set(self.layers)
         layers = tuple(
             self._changed(layer) if number in chosen else layer for number, layer in enumerate(drawing.layers)
@@ -83,7 +90,13 @@ class SetLayers(Edit):
 
 def _as_title(value: object) -> str:
     if not isinstance(value, str) or not 0 < len(value.strip()) <= MAX_NAME:
-        raise InputError(f"name: expected a name of 1 to {MAX_NAME} characters, got {value!r:.60}")
+        raise InputError(
+            tr(
+                "name: expected a name of 1 to {most} characters, got {value!r:.60}",
+                most=MAX_NAME,
+                value=value,
+            )
+        )
     return display_text(value.strip())
 
 
@@ -185,7 +198,13 @@ class OrderLayers(Edit):
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         order, count = tuple(self.order), len(drawing.layers)
         if any(type(number) is not int for number in order) or sorted(order) != list(range(count)):
-            raise InputError(f"order: expected each of {count} layers once, got {list(order)!r:.60}")
+            raise InputError(
+                tr(
+                    "order: expected each of {count} layers once, got {order!r:.60}",
+                    count=count,
+                    order=list(order),
+                )
+            )
         if order == drawing.layer_order:
             return state
         return replace(state, drawing=replace(drawing, layer_order=order))

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from ....errors import InputError
 from ....geometry.validation import as_points
+from ....words import tr
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.settings import Settings
@@ -58,7 +59,7 @@ class SetStiffness(Edit):
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         if event["factors"] is not None and not target.same_mesh:
-            raise InputError("stiffness fits only the mesh that it was made on")
+            raise InputError(tr("stiffness fits only the mesh that it was made on"))
         return cls(event["factors"])
 
 

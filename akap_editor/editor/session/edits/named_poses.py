@@ -7,6 +7,7 @@ from typing import Self
 from numpy.typing import ArrayLike
 
 from ....errors import InputError
+from ....words import tr
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.named_poses import NamedPose, with_pose
@@ -83,9 +84,11 @@ class RenamePose(Edit):
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         names = {pose.name for pose in state.poses}
         if self.pose_name not in names:
-            raise InputError(f"pose: expected one of {sorted(names)}, got {self.pose_name!r}")
+            raise InputError(
+                tr("pose: expected one of {poses}, got {name!r}", poses=sorted(names), name=self.pose_name)
+            )
         if self.new_name != self.pose_name and self.new_name in names:
-            raise InputError(f"pose: expected a name that is not taken, got {self.new_name!r}")
+            raise InputError(tr("pose: expected a name that is not taken, got {name!r}", name=self.new_name))
         poses = (
             replace(pose, name=self.new_name) if pose.name == self.pose_name else pose for pose in state.poses
         )
@@ -111,7 +114,9 @@ class ReorderPoses(Edit):
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         by_name, names = {pose.name: pose for pose in state.poses}, list(self.names)
         if sorted(names) != sorted(by_name):
-            raise InputError(f"poses: expected each of {sorted(by_name)} once, got {names}")
+            raise InputError(
+                tr("poses: expected each of {poses} once, got {names}", poses=sorted(by_name), names=names)
+            )
         return replace(state, poses=tuple(by_name[name] for name in names))
 
     def to_json(self, drawing: Drawing) -> Json:

@@ -10,6 +10,7 @@ from ....display_text import display_text
 from ....errors import InputError
 from ....geometry.mesh import MeshPoints, TriMesh
 from ....geometry.validation import as_number, as_points
+from ....words import tr
 from ...document.crossings import crossings_by_depth
 from ...document.document import EditState
 from ...document.drawing import Drawing
@@ -62,7 +63,7 @@ class SetPins(Edit):
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         pins, mesh = event["pins"], drawing.mesh
         if len({int(pin["id"]) for pin in pins}) < len(pins):
-            raise InputError("expected pins with ids of their own, got one id twice")
+            raise InputError(tr("expected pins with ids of their own, got one id twice"))
         if target.same_mesh and (mesh is target.mesh or _lie_on(mesh, pins)):
             points = [(int(pin["face"]), pin["weights"]) for pin in pins]
         else:
@@ -122,8 +123,12 @@ class SetTargets(Edit):
         limit = MAX_TARGET_DISTANCE * drawing.mesh.length
         if np.abs(points).max(initial=0.0) > limit:
             raise InputError(
-                f"targets: expected points within {limit:,.0f} pixels of the picture's corner, "
-                f"got {points[np.abs(points).max(axis=1).argmax()].tolist()}"
+                tr(
+                    "targets: expected points within {limit:,.0f} pixels of the picture's corner, "
+                    "got {point}",
+                    limit=limit,
+                    point=points[np.abs(points).max(axis=1).argmax()].tolist(),
+                )
             )
         targets = dict(zip(self.targets, points, strict=True))
         pins = (replace(pin, target=targets.get(pin.id, pin.target)) for pin in state.pins)
@@ -172,4 +177,11 @@ def _check_ids(name: str, ids: Iterable[int], pins: Sequence[Pin]) -> None:
     known_ids = [pin.id for pin in pins]
     for pin_id in ids:
         if pin_id not in known_ids:
-            raise InputError(f"{name}: expected ids of pins {sorted(known_ids)}, got {pin_id}")
+            raise InputError(
+                tr(
+                    "{name}: expected ids of pins {ids}, got {pin_id}",
+                    name=name,
+                    ids=sorted(known_ids),
+                    pin_id=pin_id,
+                )
+            )

@@ -13,6 +13,7 @@ from ....errors import InputError
 from ....geometry.validation import MAX_COORDINATE, Floats, as_number
 from ....layers.layered_picture import Layer, LayeredPicture, LayerGroup
 from ....meshing.meshers import TRIANGLE, check_known, nearest_mesher
+from ....words import tr
 from ...document.crossings import as_crossings, crossings_in_pose
 from ...document.document import EditState
 from ...document.drawing import Drawing, Meshing
@@ -192,11 +193,17 @@ def _layer_from_json(record: Json) -> Layer:
     try:
         data = zlib.decompressobj().decompress(base64.b64decode(record["pixels"], validate=True), size)
     except zlib.error as error:
-        raise InputError("expected the pixels of a layer, got damaged ones") from error
+        raise InputError(tr("expected the pixels of a layer, got damaged ones")) from error
     if len(data) != size:
-        raise InputError(f"expected {size} bytes of pixels, got {len(data)}")
+        raise InputError(tr("expected {size} bytes of pixels, got {count}", size=size, count=len(data)))
     if len(record["groups"]) > MAX_GROUPS:
-        raise InputError(f"expected at most {MAX_GROUPS} groups around a layer, got {len(record['groups'])}")
+        raise InputError(
+            tr(
+                "expected at most {most} groups around a layer, got {count}",
+                most=MAX_GROUPS,
+                count=len(record["groups"]),
+            )
+        )
     x, y = (int(as_number(value, "offset", -MAX_COORDINATE, MAX_COORDINATE)) for value in record["offset"])
     return Layer(
         str(record["name"]),
