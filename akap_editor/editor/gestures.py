@@ -351,7 +351,10 @@ def delete_pose(editor: EditContext, name: str) -> None:
 
 
 def set_pose(
-    editor: EditContext, positions: Floats, label: str = mark("Apply Pose"), crossings: Ints | None = None
+    editor: EditContext,
+    positions: Floats,
+    label: str = mark("Apply Pose"),
+    crossings: Ints | None = None,
 ) -> None:
     """Set the pose (n, 2); the pins stay on the drawing and move with it. Raises InputError.
 

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from ..words import mark
 from .document.pin import Pin, pin_points
 from .document.stiffness import MIN_STIFFNESS
 from .gestures import EditContext
@@ -72,7 +73,7 @@ def _move(editor: EditContext, label: str, axis: int, values: dict[int, float]) 
 def set_depths(editor: EditContext, pins: Iterable[int], depth: int) -> None:
     """Set the depth of pins, by id. Raises InputError on a depth out of range."""
     depths = dict.fromkeys(pins, depth)
-    editor.edit("Set Depth", lambda session: pin_edits.set_depths(session, depths))
+    editor.edit(mark("Set Depth"), lambda session: pin_edits.set_depths(session, depths))
 
 
 def stiffness_at(session: Session, pin: Pin) -> float:
@@ -101,7 +102,7 @@ def stiffen_pins(editor: EditContext, pins: Iterable[int], factor: float) -> Non
         for reach, value in strokes[: 1 if factor == MIN_STIFFNESS else 2]
         for pin, place in zip(chosen, places, strict=True)
     ]
-    editor.apply("Set Stiffness", *edits)
+    editor.apply(mark("Set Stiffness"), *edits)
 
 
 def _layer_of(session: Session, pin: Pin) -> int | None:

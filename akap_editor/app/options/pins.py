@@ -70,7 +70,7 @@ def _draw_angle(pin: Pin, state: AppState) -> None:
     imgui.begin_disabled(not session.supports_rotation)
     new = _drag_number(
         state,
-        "Rotate",
+        mark("Rotate"),
         (pin.id,),
         degrees,
         lambda value: imgui.drag_float("##angle", value, 0.5, 0, 0, "%.1f°"),

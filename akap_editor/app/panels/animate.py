@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ...editor.document.easing import EASING_LABELS, KEYFRAME_EASINGS
 from ...editor.document.keyframes import Keyframe
-from ...words import tr
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..commands.command import Command
@@ -88,6 +88,9 @@ def draw_playback(state: AppState, scale: float) -> None:
     _switch(state, SHOW_MOTION_PATHS, tr("The ways of the selected pins, with their keyframes."))
     _button(state, PLAY)
     _button(state, EXPORT_ANIMATION)
+
+
+_SHOWN = (mark("Timeline"), mark("Motion Paths"))  # without "Show "
 
 
 def _switch(state: AppState, command: Command, tooltip: str) -> None:

@@ -1,15 +1,39 @@
-"""The History section: the list of undo steps."""
+"""The History section: the list of undo steps.
+
+Their labels are English, as recordings hold them, and are translated here.
+"""
+
+import re
+from functools import cache
 
 from imgui_bundle import ImVec4, imgui
 
-from ...words import mark
+from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
-from ..history_labels import shown_label
 from ..theme import SECONDARY
 
 _ROWS = 6  # steps that are visible at once
 _FIRST = mark("Open")  # the state before the first step
+# Labels with a number or a name in them
+_TEMPLATES = (
+    mark("Remove {count} Pins"),
+    mark("Drag {count} Pins"),
+    mark("Nudge {count} Pins"),
+    mark("Delete {count} Keyframes"),
+    mark("Duplicate {count} Keyframes"),
+    mark("Reverse {count} Keyframes"),
+    mark("Move {count} Keyframes"),
+    mark("Apply {name}"),
+    mark("Rename {name}"),
+)
+_OTHERS = (  # those that are made of a verb and a noun, and one of the session
+    mark("Go Back in Time"),
+    mark("Delete Keyframe"),
+    mark("Duplicate Keyframe"),
+    mark("Reverse Keyframe"),
+    mark("Move Keyframe"),
+)
 
 
 def step_count(state: AppState) -> str:
@@ -36,3 +60,23 @@ def draw(state: AppState, scale: float) -> None:
         if index == depth:
             widgets.scroll_to_row(index, _ROWS)
     imgui.end_child()
+
+
+def shown_label(label: str) -> str:
+    """A label of the history, which is English, as it is shown."""
+    found = tr(label)
+    if found != label:
+        return found
+    for template in _TEMPLATES:
+        match = _pattern(template).fullmatch(label)
+        if match is not None:
+            return tr(template, **match.groupdict())
+    return label
+
+
+@cache
+def _pattern(template: str) -> re.Pattern[str]:
+    """What matches the labels of a template, with a group for its field."""
+    before, name, after = re.split(r"[{}]", template)
+    values = r"\d+" if name == "count" else ".+"
+    return re.compile(f"{re.escape(before)}(?P<{name}>{values}){re.escape(after)}")

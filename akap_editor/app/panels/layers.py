@@ -187,8 +187,10 @@ class LayerList:
         if is_at and imgui.is_key_pressed(imgui.Key.f2, False):
             self._name_field.begin(number)
         widgets.show_tooltip(
-            f"{' / '.join(layer.path)}: drag to change the order, double-click or F2 to rename, "
-            "Ctrl-click to select more"
+            tr(
+                "{layer}: drag to change the order, double-click or F2 to rename, Ctrl-click to select more",
+                layer=" / ".join(layer.path),
+            )
         )
         _drag_and_drop(state, number, place)
         if imgui.is_item_focused() and context_menu_pressed():
@@ -216,7 +218,7 @@ class LayerList:
         _draw_slot_items(state, chosen)
         if state.document.state.animation.keyframes:
             imgui.separator()
-            for label, visible in (("Show in All Keyframes", True), ("Hide in All Keyframes", False)):
+            for label, visible in ((tr("Show in All Keyframes"), True), (tr("Hide in All Keyframes"), False)):
                 if imgui.menu_item(label, "", False)[0]:
                     _run(state, partial(gestures.key_layers, state.editor, chosen, visible))
 
@@ -264,12 +266,14 @@ def _rows(
 def _draw_eye(state: AppState, layer: DrawingLayer, number: int) -> None:
     """Draw the eye of a layer; to open that of one in a slot closes those of the others."""
     icon = icons.ICON_FA_EYE if layer.visible else icons.ICON_FA_EYE_SLASH
-    tooltip = f"Show it in place of the others of “{layer.slot}”" if layer.slot else "Show or hide"
+    tooltip = tr("Show or hide")
+    if layer.slot:
+        tooltip = tr("Show it in place of the others of “{slot}”", slot=layer.slot)
     if widgets.icon_switch(icon, f"eye {number}", layer.visible, tooltip, _ICON_WIDTH):
         if layer.slot and not layer.visible:
             switch_to(state, number)
         else:
-            label = "Hide Layer" if layer.visible else "Show Layer"
+            label = mark("Hide Layer") if layer.visible else mark("Show Layer")
             _set(state, label, number, visible=not layer.visible)
 
 
@@ -282,19 +286,19 @@ def _draw_slot_items(state: AppState, chosen: list[int]) -> None:
     def put(label: str, slot: str) -> None:
         _run(state, lambda: gestures.set_layers(state.editor, label, chosen, slot=slot))
 
-    if imgui.menu_item("Make Switch Layers", "", False, len(chosen) > 1)[0]:
-        put("Make Switch Layers", unused_slot_name(layers, chosen))
-    widgets.show_tooltip("One of the selected layers is shown at a time. Ctrl-click selects several.")
+    if imgui.menu_item(tr("Make Switch Layers"), "", False, len(chosen) > 1)[0]:
+        put(mark("Make Switch Layers"), unused_slot_name(layers, chosen))
+    widgets.show_tooltip(tr("One of the selected layers is shown at a time. Ctrl-click selects several."))
     for slot in slot_members(layers):
         name = widgets.as_label(slot)
         if (
             any(layers[number].slot != slot for number in chosen)
-            and imgui.menu_item(f"Add to “{name}”", "", False)[0]
+            and imgui.menu_item(tr("Add to “{slot}”", slot=name), "", False)[0]
         ):
-            put("Add to Switch Layers", slot)
+            put(mark("Add to Switch Layers"), slot)
     slots = {layers[number].slot for number in chosen} - {""}
-    if slots and imgui.menu_item("Remove from Switch Layers", "", False)[0]:
-        put("Remove from Switch Layers", "")
+    if slots and imgui.menu_item(tr("Remove from Switch Layers"), "", False)[0]:
+        put(mark("Remove from Switch Layers"), "")
 
 
 def selected_layer(state: AppState) -> int | None:
@@ -339,4 +343,4 @@ def _draw_opacity(state: AppState, layers: Sequence[DrawingLayer], selected: int
     is_moved, percent, _ = widgets.slider("##layer opacity", value, (0, 100), "%.0f %%")
     if is_moved and selected is not None:
         opacity = round(percent) / 100
-        _set(state, "Change Layer Opacity", selected, join=not begins, opacity=opacity)
+        _set(state, mark("Change Layer Opacity"), selected, join=not begins, opacity=opacity)

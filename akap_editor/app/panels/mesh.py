@@ -47,10 +47,10 @@ def draw_figures(state: AppState, scale: float) -> None:
     """Draw the Figures section. scale: points per design point."""
     assert state.document is not None
     drawing = state.document.drawing
-    widgets.row("Name", drawing.name)
-    widgets.row("Picture", f"{drawing.size[0]} × {drawing.size[1]} px")
+    widgets.row(tr("Name"), drawing.name)
+    widgets.row(tr("Picture"), f"{drawing.size[0]} × {drawing.size[1]} px")
     for label, value, tooltip in _figures(drawing.mesh):
-        widgets.row(label, value, tooltip)
+        widgets.row(tr(label), value, tr(tooltip))
 
 
 def _draw_outline(state: AppState, meshing: Meshing) -> None:

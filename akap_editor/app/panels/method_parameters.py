@@ -7,7 +7,7 @@ from imgui_bundle import ImVec4, imgui
 
 from ...deform.methods import Choice, NumberRange, Parameter, Switch, default_parameters, get_method
 from ...editor.document.settings import Settings
-from ...words import mark, tr
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..pending_values import PendingValues

@@ -127,7 +127,7 @@ def _draw_default_easings(state: AppState, playback: KeyframePlayback) -> None:
 
 def draw_onion_options(onion_skin: OnionSkin, scale: float) -> None:
     """Draw a switch for the onion skin and its options. scale: points per design point."""
-    _, onion_skin.is_shown = widgets.switch("Onion skin", onion_skin.is_shown)
+    _, onion_skin.is_shown = widgets.switch(tr("Onion skin"), onion_skin.is_shown)
     imgui.begin_disabled(not onion_skin.is_shown)
     if widgets.radio(tr("Keyframes before and after"), onion_skin.kind == "keyframes"):
         onion_skin.kind = "keyframes"

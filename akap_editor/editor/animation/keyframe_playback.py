@@ -274,7 +274,7 @@ class KeyframePlayback(Playback):
         layers = session.drawing.layer_view
         if positions is None and self.is_previewing:
             positions, crossings = session.state.positions, session.state.crossings
-        label = "Update Keyframe" if time in self.animation.times else "Add Keyframe"
+        label = mark("Update Keyframe") if time in self.animation.times else mark("Add Keyframe")
         self._edit(label, *key_edits(self.animation, time, positions, crossings, layers))
         self.selected, self.time = frozenset({time}), time
 
@@ -353,7 +353,7 @@ class KeyframePlayback(Playback):
             return
         drag, self._drag = self._drag, None
         if keep and isinstance(drag, EasingDrag):
-            self._edit("Change Easing", SetEasing([drag.time], drag.easing))
+            self._edit(mark("Change Easing"), SetEasing([drag.time], drag.easing))
         elif keep and isinstance(drag, TimesDrag) and drag.changes_times:
             self._move(drag.moves, drag.copy)
         elif self.is_previewing:

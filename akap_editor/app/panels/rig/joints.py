@@ -97,7 +97,7 @@ def _draw_buttons(state: AppState, selected: Joint | None) -> None:
     gap = imgui.get_style().item_spacing.x
     half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
     imgui.begin_disabled(not _has_proposals(state))
-    if imgui.button("Accept Proposed", half):
+    if imgui.button(tr("Accept Proposed"), half):
         widgets.run(state, ACCEPT_JOINTS)
     imgui.same_line()
     if imgui.button(tr("Clear Proposed"), half):
@@ -108,14 +108,14 @@ def _draw_buttons(state: AppState, selected: Joint | None) -> None:
         state.run_reporting_errors(lambda: gestures.remove_joints(editor, {selected.id}))
     imgui.end_disabled()
     imgui.same_line()
-    if imgui.button("Propose Joints", half):
+    if imgui.button(tr("Propose Joints"), half):
         widgets.run(state, PROPOSE_JOINTS)
-    widgets.show_tooltip("Replaces all joints by proposals, from how the layers overlap and their names.")
+    widgets.show_tooltip(tr("Replaces all joints by proposals, from how the layers overlap and their names."))
 
 
 def _propose(state: AppState) -> None:
     assert state.document is not None
-    gestures.set_joints(state.editor, "Propose Joints", suggest_joints(state.document.drawing))
+    gestures.set_joints(state.editor, mark("Propose Joints"), suggest_joints(state.document.drawing))
 
 
 def _has_proposals(state: AppState) -> bool:

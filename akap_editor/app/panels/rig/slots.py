@@ -4,6 +4,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ....editor import gestures
 from ....layers.layer_view import slot_members
+from ....words import mark, tr
 from ... import widgets
 from ...app_state import AppState
 from ...pending_values import NameField
@@ -47,7 +48,7 @@ class SlotPickers:
             name = self._name_field.draw("##new slot name", slot, width)
             if name:
                 state.run_reporting_errors(
-                    lambda: gestures.set_layers(state.editor, "Rename Slot", members, slot=name)
+                    lambda: gestures.set_layers(state.editor, mark("Rename Slot"), members, slot=name)
                 )
             return
         imgui.push_style_color(imgui.Col_.text, ImVec4(*SECONDARY))
@@ -60,7 +61,9 @@ class SlotPickers:
             is_at and imgui.is_key_pressed(imgui.Key.f2, False)
         ):
             self._name_field.begin(slot)
-        widgets.show_tooltip(f"Switch layers “{slot}”: one of them is shown. Double-click or F2 to rename.")
+        widgets.show_tooltip(
+            tr("Switch layers “{slot}”: one of them is shown. Double-click or F2 to rename.", slot=slot)
+        )
 
 
 def _draw_choice(state: AppState, slot: str, number: int, side: int, scale: float) -> None:
@@ -79,5 +82,5 @@ def _draw_choice(state: AppState, slot: str, number: int, side: int, scale: floa
 def switch_to(state: AppState, number: int) -> None:
     """Show a layer of a slot in place of the others."""
     state.run_reporting_errors(
-        lambda: gestures.set_layers(state.editor, "Switch Layer", [number], visible=True)
+        lambda: gestures.set_layers(state.editor, mark("Switch Layer"), [number], visible=True)
     )
