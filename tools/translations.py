@@ -5,7 +5,10 @@ names in a few tables, adds new ones to each akap_editor/locale/*.po without a t
 are gone, and prints what is missing.
 """
 
+import ast
+from collections.abc import Container, Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract_from_dir
@@ -21,6 +24,8 @@ KEYWORDS = {
     "tr_plural": (1, 2),
     "Command": None,
     "_tool": None,
+    "_switch": None,
+    "_distortion": None,
     "Submenu": None,
     "CommandGroup": None,
     "_part": None,
@@ -30,12 +35,25 @@ KEYWORDS = {
 }
 
 
+def extract_calls(
+    file: BinaryIO, keywords: Container[str], comment_tags: object, options: object
+) -> Iterator[tuple[int, str, tuple[str | None, ...], list[str]]]:
+    """Line, function and texts of each call of a function among ``keywords``, for Babel.
+
+    Babel's own method overlooks calls inside f-strings.
+    """
+    calls = [node for node in ast.walk(ast.parse(file.read())) if isinstance(node, ast.Call)]
+    for node in sorted(calls, key=lambda node: (node.lineno, node.col_offset)):
+        name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+        if name in keywords and node.args:
+            values = [getattr(argument, "value", None) for argument in node.args]
+            yield node.lineno, name, tuple(each if isinstance(each, str) else None for each in values), []
+
+
 def template() -> Catalog:
     """All texts of the code, without translations."""
     catalog = Catalog(project="akap-editor", charset="utf-8")
-    found = extract_from_dir(
-        ROOT / "akap_editor", [("**.py", "python")], keywords=KEYWORDS, comment_tags=["For translators:"]
-    )
+    found = extract_from_dir(ROOT / "akap_editor", [("**.py", extract_calls)], keywords=KEYWORDS)
     for file, _, text, comments, context in found:
         catalog.add(text, None, [(file, None)], auto_comments=comments, context=context)
     return catalog
