@@ -10,6 +10,7 @@ from ...editor.animation.playback import Playback
 from ...words import mark
 from ..app_state import AppState
 from ..dialogs.export.animation import ExportAnimationDialog
+from ..dialogs.take import TakeDialog
 from ..timeline.timeline import snap_time
 from .command import CTRL, SHIFT, Command, Key, has_drawing
 
@@ -47,6 +48,15 @@ def has_several_keyframes(state: AppState) -> bool:
 def has_selected_keyframes(state: AppState) -> bool:
     """Whether the timeline is visible and shows selected keyframes."""
     return has_keyframes(state) and bool(state.timeline.keyframe_playback.selected)
+
+
+def _can_paste_keyframes(state: AppState) -> bool:
+    return state.timeline.shows_keyframes and state.timeline.keyframe_playback.can_paste()
+
+
+def _has_session_range(state: AppState) -> bool:
+    start, end = state.timeline.session_playback.played_range
+    return has_drawing(state) and end > start
 
 
 def _on_playback(action: Callable[[Playback], None]) -> Callable[[AppState], None]:
@@ -181,6 +191,27 @@ DUPLICATE_REVERSED = Command(
     "",
     has_several_keyframes,
 )
+COPY_KEYFRAMES = Command(
+    "Copy Keyframes", _on_keyframes(KeyframePlayback.copy_keyframes), (), "", has_keyframes
+)
+PASTE_KEYFRAMES = Command(
+    "Paste Keyframes", _on_keyframes(KeyframePlayback.paste_keyframes), (), "", _can_paste_keyframes
+)
+PASTE_REVERSED = Command(
+    "Paste Keyframes Reversed",
+    _on_keyframes(lambda playback: playback.paste_keyframes(reverse=True)),
+    (),
+    "",
+    _can_paste_keyframes,
+)
+KEYFRAMES_FROM_TAKE = Command(
+    "Keyframes from Take...",
+    lambda state: state.part(TakeDialog).open(state),
+    (),
+    icons.ICON_FA_WAND_MAGIC_SPARKLES,
+    _has_session_range,
+    missing="There is no motion yet: bend the drawing, or record a take",
+)
 SELECT_ALL_KEYFRAMES = Command("Select All Keyframes", _on_keyframes(_select_all), (), "", has_keyframes)
 PREVIOUS_KEYFRAME = Command(
     "Previous Keyframe",
@@ -243,7 +274,8 @@ ANIMATION: tuple[Command | None, ...] = (
     *(STEP_BACK, STEP_FORWARD, SECOND_BACK, SECOND_FORWARD, GO_TO_START, GO_TO_END, None),
     *(SET_RANGE_START, SET_RANGE_END, CLEAR_RANGE, None),
     *(ADD_KEYFRAME, DELETE_KEYFRAME, DUPLICATE_KEYFRAME, SELECT_ALL_KEYFRAMES),
-    *(REVERSE_KEYFRAMES, DUPLICATE_REVERSED, AUTO_KEY, None),
+    *(COPY_KEYFRAMES, PASTE_KEYFRAMES, PASTE_REVERSED, REVERSE_KEYFRAMES, DUPLICATE_REVERSED, None),
+    *(AUTO_KEY, KEYFRAMES_FROM_TAKE, None),
     *(PREVIOUS_KEYFRAME, NEXT_KEYFRAME, MOVE_EARLIER, MOVE_LATER, None),
     *(ONION_SKIN, SPEED_GRAPH, ZOOM_IN_TIMELINE, ZOOM_OUT_TIMELINE),
 )

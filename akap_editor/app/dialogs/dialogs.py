@@ -13,6 +13,7 @@ from .file_dialog import FileDialog
 from .preferences_page import PreferencesPage
 from .recovery import RecoveryDialog
 from .replace_files import ReplaceFilesDialog
+from .take import TakeDialog
 from .unsaved_changes import UnsavedChangesDialog
 
 
@@ -34,6 +35,7 @@ DIALOGS: tuple[type[Dialog], ...] = (
     FileDialog,
     ExportPoseDialog,
     ExportAnimationDialog,
+    TakeDialog,
     ShortcutsPage,
     AboutDialog,
     PreferencesPage,

@@ -5,8 +5,9 @@ from dataclasses import replace
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...editor.animation.keyframe_playback import MAX_ONION_POSES, KeyframePlayback, OnionSkin
+from ...editor.animation.keyframe_playback import KeyframePlayback
 from ...editor.animation.keyframe_times import TIME_STEP
+from ...editor.animation.keyframing.onion_skin import MAX_ONION_POSES, OnionSkin
 from ...editor.document.easing import (
     CURVE_LABEL,
     EASING_LABELS,

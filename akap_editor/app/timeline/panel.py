@@ -8,6 +8,7 @@ from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..dialogs.export.animation import ExportAnimationDialog
+from ..dialogs.take import TakeDialog
 from ..theme import ACCENT, SECONDARY, TEXT
 from . import keyframe_menus, speed_graph
 from .keyframe_track import KeyframeTrack
@@ -66,7 +67,7 @@ def _draw_content(state: AppState, scale: float) -> None:
     if shows_keyframes:
         keyframe_menus.draw_buttons(state, scale)
     else:
-        _draw_record_button(state, scale)
+        _draw_take_buttons(state, scale)
     imgui.same_line(0, 4 * scale)
     _draw_playback_buttons(state, scale)
     imgui.same_line(0, 12 * scale)
@@ -92,14 +93,21 @@ def _draw_mode_buttons(state: AppState, scale: float) -> None:
         widgets.show_tooltip(tr(tooltip))
 
 
-def _draw_record_button(state: AppState, scale: float) -> None:
-    """Draw the button that starts and ends a take."""
+def _draw_take_buttons(state: AppState, scale: float) -> None:
+    """Draw the buttons that start and end a take, and make keyframes of it."""
     playback = state.timeline.session_playback
     is_recording = playback.take_start is not None
     icon = icons.ICON_FA_STOP if is_recording else icons.ICON_FA_CIRCLE
     if _icon_button(icon, "record", scale, ACCENT if is_recording else RED):
         (playback.end_take if is_recording else playback.start_take)()
     widgets.show_tooltip(tr("Record a take: what you do until the next click becomes the range"))
+    imgui.same_line(0, 4 * scale)
+    start, end = playback.played_range
+    imgui.begin_disabled(end <= start)
+    if _icon_button(icons.ICON_FA_WAND_MAGIC_SPARKLES, "take", scale, TEXT):
+        state.run_reporting_errors(lambda: state.part(TakeDialog).open(state))
+    imgui.end_disabled()
+    widgets.show_tooltip(tr("Keyframes from the range"))
 
 
 def _draw_playback_buttons(state: AppState, scale: float) -> None:

@@ -1,9 +1,8 @@
 """Playback and editing of the keyframes: scrub, play, select, drag, ease; and the onion skin."""
 
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from time import monotonic
-from typing import Literal
 
 import numpy as np
 
@@ -11,10 +10,11 @@ from ...geometry.validation import Floats, Ints
 from ...words import mark
 from ..document.crossings import draw_order
 from ..document.drawing import Drawing
-from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, as_keyframe_time
+from ..document.easing import NEW_EASING
+from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, Keyframe, as_keyframe_time
 from ..document.pin_angles import pins_fixed_at_pose
 from ..gestures import EditContext
-from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop
+from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
 from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
 from .auto_key import AutoKey, key_edits
@@ -22,24 +22,12 @@ from .crossing_blend import CrossingBlend
 from .frames import Frame
 from .keyframe_poses import KeyframePoses, animation_crossings
 from .keyframe_times import EasingDrag, TimesDrag, mirror_easings, mirror_times
+from .keyframing.keyframe_clipboard import KeyframeClipboard
+from .keyframing.onion_skin import OnionSkin
 from .playback import Playback, VisibleRange
 
-MAX_ONION_POSES = 6  # on each side
 _DUPLICATE_GAP = 0.5  # seconds between the last keyframe and duplicates
 _MIN_TOTAL_SECONDS = 2.0  # shown by the timeline, even if the animation is shorter
-
-
-@dataclass
-class OnionSkin:
-    """The poses before and after the playhead, shown translucently.
-
-    kind: the nearest keyframes, or the poses at times that are ``step`` seconds apart; count: on each side.
-    """
-
-    is_shown: bool = False
-    kind: Literal["keyframes", "times"] = "keyframes"
-    count: int = 2
-    step: float = 0.1
 
 
 class KeyframePlayback(Playback):
@@ -59,6 +47,7 @@ class KeyframePlayback(Playback):
         self._poses = KeyframePoses()
         self._crossings = CrossingBlend()
         self._session: Session | None = None
+        self._clipboard = KeyframeClipboard()
         self._reset()
 
     def _reset(self) -> None:
@@ -159,16 +148,7 @@ class KeyframePlayback(Playback):
         animation, onion_skin = self.animation, self.onion_skin
         if self.is_playing or not onion_skin.is_shown or not animation.keyframes:
             return [], []
-        if onion_skin.kind == "keyframes":
-            time, keyframes = as_keyframe_time(self.time), animation.keyframes
-            before = [keyframe.positions for keyframe in reversed(keyframes) if keyframe.time < time]
-            after = [keyframe.positions for keyframe in keyframes if keyframe.time > time]
-            return before[: onion_skin.count], after[: onion_skin.count]
-        offsets = [onion_skin.step * (number + 1) for number in range(onion_skin.count)]
-        earlier = (self.pose(self.time - offset) for offset in offsets if self.time - offset >= -1e-9)
-        latest = self.duration + 1e-9
-        later = (self.pose(self.time + offset) for offset in offsets if self.time + offset <= latest)
-        return [pose for pose in earlier if pose is not None], [pose for pose in later if pose is not None]
+        return onion_skin.poses(animation, self.time, self.pose)
 
     # -- playhead ------------------------------------------------------------------------------------------
 
@@ -309,6 +289,35 @@ class KeyframePlayback(Playback):
         self.selected = frozenset(moves.values())
         if self.is_previewing:
             self._show()
+
+    def insert_keyframes(self, label: str, keyframes: Sequence[Keyframe]) -> None:
+        """Add keyframes in one gesture, instead of those in their time, and select them."""
+        first, last = keyframes[0].time, keyframes[-1].time
+        replaced = [time for time in self.animation.times if first <= time <= last]
+        edits: list[KeyframeEdit] = [DeleteKeyframes(replaced)] if replaced else []
+        if not self.animation.keyframes:
+            edits.append(SetEasing(None, NEW_EASING))
+        edits += [SetKeyframe(each.time, each.positions, each.ease, each.crossings) for each in keyframes]
+        self._edit(label, *edits)
+        self.selected = frozenset(each.time for each in keyframes)
+        self.scrub(first)
+
+    def copy_keyframes(self) -> None:
+        """Remember the selected keyframes, or the one at the playhead, for `paste_keyframes`."""
+        session, times = self._editor.session, self._affected_times()
+        if session is not None and times:
+            self._clipboard.copy(session.drawing.mesh, self.animation, times)
+
+    def can_paste(self) -> bool:
+        """Whether keyframes of the drawing's present mesh were copied."""
+        session = self._editor.session
+        return session is not None and self._clipboard.fits(session.drawing.mesh)
+
+    def paste_keyframes(self, reverse: bool = False) -> None:
+        """Add the copied keyframes at the playhead, instead of those in their time; reverse: backwards."""
+        if self.can_paste():
+            keyframes = self._clipboard.pasted(as_keyframe_time(self.time), reverse)
+            self.insert_keyframes(_counted("Paste", [each.time for each in keyframes]), keyframes)
 
     def shift_keyframes(self, by: float) -> None:
         """Move the selected keyframes, or the one at the playhead, by seconds; the first not before 0."""

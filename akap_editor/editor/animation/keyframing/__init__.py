@@ -1,0 +1,1 @@
+"""What makes keyframes, copies them, and shows those before and after the playhead."""
