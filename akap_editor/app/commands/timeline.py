@@ -210,7 +210,6 @@ KEYFRAMES_FROM_TAKE = Command(
     (),
     icons.ICON_FA_WAND_MAGIC_SPARKLES,
     _has_session_range,
-    missing="There is no motion yet: bend the drawing, or record a take",
 )
 SELECT_ALL_KEYFRAMES = Command("Select All Keyframes", _on_keyframes(_select_all), (), "", has_keyframes)
 PREVIOUS_KEYFRAME = Command(

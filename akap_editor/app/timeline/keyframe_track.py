@@ -28,6 +28,7 @@ from .track import (
 POSE_PAYLOAD = "pose"  # the type of what is dragged when a thumbnail of a pose is
 # Design points from the top: the ruler's end, the middle of the diamonds, the top of the marks, the bottom.
 _RULER, _DIAMONDS, _MARKS, _BOTTOM = 16, 28, 39, 48
+_GRIP_DISTANCE, _GRIP_REACH = 12, 4  # from the first and the last selected keyframe to the grips beside them
 _DRAG_DISTANCE = 3  # design points: a press that moves less is a click
 _TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0)  # seconds
 _MIN_TICK_DISTANCE = 52  # design points
@@ -37,8 +38,9 @@ class KeyframeTrack:
     """Draws the track; the mouse moves playhead, range marks and keyframes."""
 
     def __init__(self) -> None:
-        self._dragged: Literal["start", "end", "playhead", "keyframes", "nothing"] = "playhead"
-        self._pressed_time = 0.0  # of the keyframe that was pressed
+        self._dragged: Literal["start", "end", "playhead", "keyframes", "edge", "box", "nothing"] = "playhead"
+        self._pressed_time = 0.0  # of the keyframe, the edge or the place that was pressed
+        self._selected_before: frozenset[float] = frozenset()  # before the box was drawn
 
     def draw(self, state: AppState, scale: float) -> TimeScale:
         """Draw one frame and return the scale of its time. scale: points per design point."""
@@ -63,6 +65,13 @@ class KeyframeTrack:
             start, end = (time_scale.x(mark) for mark in playback.played_range)
             draw_range_marks(start, end, corner.y + (_BOTTOM - 1) * scale, scale)
         _draw_keyframes(playback, time_scale, corner.y + _DIAMONDS * scale, scale)
+        if self._dragged == "box" and imgui.is_item_active():
+            box = time_scale.x(self._pressed_time), imgui.get_mouse_pos().x
+            low, high = (
+                ImVec2(min(box), corner.y + _RULER * scale),
+                ImVec2(max(box), corner.y + _MARKS * scale),
+            )
+            draw.add_rect_filled(low, high, packed(ACCENT, 0.25))
         _draw_playhead(playback, time_scale, corner.y, scale)
         draw.pop_clip_rect()
         label_y = corner.y + (height - imgui.get_text_line_height()) / 2
@@ -111,6 +120,14 @@ class KeyframeTrack:
                 self._dragged = mark
                 return
         time, is_in_ruler = _time_at_pointer(playback, time_scale, scale), pointer.y - top < _RULER * scale
+        edge = None if is_in_ruler else _edge_at_pointer(playback, time_scale, scale)
+        if edge is not None:
+            self._dragged, self._pressed_time = "edge", edge
+            return
+        if time is None and not is_in_ruler and imgui.get_io().key_shift:
+            self._dragged, self._pressed_time = "box", time_scale.time(pointer.x)
+            self._selected_before = playback.selected
+            return
         if time is None or is_in_ruler:
             self._dragged = "playhead"
             playback.selected = frozenset()
@@ -133,16 +150,23 @@ class KeyframeTrack:
             playback.mark_range(**{self._dragged: snap_time(time)})
         elif self._dragged == "playhead" and not imgui.is_mouse_double_clicked(0):
             playback.scrub(time if moves_freely else snap_time(time))
-        elif self._dragged == "keyframes" and playback.selected:
+        elif self._dragged == "box":
+            low, high = sorted((self._pressed_time, time))
+            inside = {each for each in playback.stored_animation.times if low <= each <= high}
+            playback.selected = self._selected_before | inside
+        elif self._dragged in ("keyframes", "edge") and playback.selected:
             self._drag_keyframes(playback, time_scale, scale)
 
     def _drag_keyframes(self, playback: KeyframePlayback, time_scale: TimeScale, scale: float) -> None:
-        """Move the selected keyframes by the length of the drag; copy them with Ctrl, stretch with Alt."""
+        """Move the selected keyframes by the length of the drag; copy them with Ctrl, stretch with Alt.
+
+        An edge of the selection stretches, too.
+        """
         distance, io = imgui.get_mouse_drag_delta(0, 0.0).x, imgui.get_io()
         if abs(distance) < _DRAG_DISTANCE * scale and not playback.is_dragging:
             return
         time = max(snap_time(self._pressed_time + time_scale.seconds(distance)), 0.0)
-        if io.key_alt:
+        if io.key_alt or self._dragged == "edge":
             several = len(playback.selected) > 1
             stretched = playback.selected if several else playback.stored_animation.times
             playback.drag_keyframes(stretch_times(stretched, self._pressed_time, time))
@@ -159,6 +183,16 @@ def _time_at_pointer(playback: KeyframePlayback, time_scale: TimeScale, scale: f
     return time if time is not None and abs(time_scale.x(time) - x) <= MARK_REACH * scale else None
 
 
+def _edge_at_pointer(playback: KeyframePlayback, time_scale: TimeScale, scale: float) -> float | None:
+    """The time of the first or the last selected keyframe if the grip beside it is under the pointer."""
+    if len(playback.selected) > 1:
+        x = imgui.get_mouse_pos().x
+        for time, direction in ((min(playback.selected), -1), (max(playback.selected), 1)):
+            if abs(time_scale.x(time) + direction * _GRIP_DISTANCE * scale - x) <= _GRIP_REACH * scale:
+                return time
+    return None
+
+
 def _select_at_pointer(playback: KeyframePlayback, time_scale: TimeScale, scale: float) -> None:
     """Move the playhead to the pointer; select the keyframe there unless it is among the selected ones."""
     time = _time_at_pointer(playback, time_scale, scale)
@@ -168,6 +202,10 @@ def _select_at_pointer(playback: KeyframePlayback, time_scale: TimeScale, scale:
 
 
 def _show_tooltip(playback: KeyframePlayback, time_scale: TimeScale, scale: float) -> None:
+    if _edge_at_pointer(playback, time_scale, scale) is not None:
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+        widgets.show_tooltip(tr("Drag to make the selected keyframes faster or slower"))
+        return
     time = _time_at_pointer(playback, time_scale, scale)
     keyframe = next((each for each in playback.animation.keyframes if each.time == time), None)
     if keyframe is not None:
@@ -236,6 +274,11 @@ def _draw_keyframes(playback: KeyframePlayback, time_scale: TimeScale, middle: f
         center, radius = ImVec2(time_scale.x(keyframe.time), middle), 8 * scale
         draw.add_ngon_filled(center, radius + 1.5 * scale, packed(DARK), 4)
         draw.add_ngon_filled(center, radius, packed(ACCENT if keyframe.time in selected else TEXT), 4)
+    if len(selected) > 1:
+        for time, direction in ((min(selected), -1), (max(selected), 1)):
+            x, half = time_scale.x(time) + direction * _GRIP_DISTANCE * scale, 7 * scale
+            low, high = ImVec2(x - 2 * scale, middle - half), ImVec2(x + 2 * scale, middle + half)
+            draw.add_rect_filled(low, high, packed(ACCENT), 2 * scale)
 
 
 def _draw_playhead(playback: KeyframePlayback, time_scale: TimeScale, top: float, scale: float) -> None:

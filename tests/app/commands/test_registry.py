@@ -17,6 +17,7 @@ from akap_editor.app.dialogs.about import AboutDialog
 from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.app.dialogs.preferences_page import PreferencesPage
+from akap_editor.app.dialogs.take import TakeDialog
 from akap_editor.app.frame import layout
 from akap_editor.app.glfw_window import on_key
 from akap_editor.editor import gestures
@@ -138,6 +139,14 @@ def keyed(ui):
     ui.settle()
 
 
+def copied(ui):
+    """The keyframe at 1 second is copied; the playhead is at 2 seconds."""
+    keyed(ui)
+    playback = ui.state.timeline.keyframe_playback
+    playback.copy_keyframes()
+    playback.scrub(2.0)
+
+
 def looking_between(ui):
     keyed(ui)
     ui.state.timeline.keyframe_playback.scrub(0.5)
@@ -237,6 +246,10 @@ CASES = {
     "Move Keyframe Earlier": (keyed, lambda ui: times(ui) == (0.0, 0.95)),
     "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
     "Speed Graph": (nothing, lambda ui: ui.state.timeline.is_shown and ui.state.view.show_speed_graph),
+    "Keyframes from Take...": (lambda ui: ui.bend(), lambda ui: ui.state.part(TakeDialog).is_open),
+    "Copy Keyframes": (keyed, lambda ui: ui.state.timeline.keyframe_playback.can_paste()),
+    "Paste Keyframes": (copied, lambda ui: times(ui) == (0.0, 1.0, 2.0)),
+    "Paste Keyframes Reversed": (copied, lambda ui: times(ui) == (0.0, 1.0, 2.0)),
     "Onion Skin": (keyed, lambda ui: ui.state.timeline.keyframe_playback.onion_skin.is_shown),
     "Open...": (nothing, lambda ui: ui.file_request is not None and not ui.file_request.saving),
     "Merge Layers": (

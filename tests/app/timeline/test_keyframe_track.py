@@ -276,3 +276,47 @@ def test_without_the_timeline_the_present_is_seen(keyed):
     assert not keyed.session.is_previewing
     keyed.key(SHIFT | imgui.Key.t)
     assert not keyed.session.is_previewing
+
+
+def test_an_edge_of_the_selection_makes_it_slower_in_one_edit(keyed):
+    playback = keyed.state.timeline.keyframe_playback
+    playback.set_keyframe(0.5)
+    playback.selected, depth = frozenset({0.5, 1.0}), keyed.session.history.depth
+    x, y = on_track(keyed, 1.0)
+    scale = keyed.window.scale
+    keyed.drag((x + round(12 * scale), y), (on_track(keyed, 1.5)[0] + round(12 * scale), y))
+    assert times(keyed) == (0.0, 0.5, 1.5)
+    x, y = on_track(keyed, 0.5)
+    keyed.drag((x - round(12 * scale), y), (on_track(keyed, 0.9)[0] - round(12 * scale), y))
+    assert times(keyed) == (0.0, 0.9, 1.5)
+    assert playback.selected == {0.9, 1.5}
+    assert keyed.session.history.depth == depth + 2
+
+
+def test_a_drag_with_shift_selects_the_keyframes_in_a_box(keyed):
+    playback = keyed.state.timeline.keyframe_playback
+    for time in (0.5, 1.5):
+        playback.set_keyframe(time)
+    playback.selected, before = frozenset({0.0}), keyed.session.present
+    keyed.drag(on_track(keyed, 0.3), on_track(keyed, 1.2), held=imgui.Key.mod_shift)
+    assert playback.selected == {0.0, 0.5, 1.0}
+    assert keyed.session.present is before
+
+
+def test_copied_keyframes_are_pasted_at_the_playhead_also_backwards(keyed):
+    playback = keyed.state.timeline.keyframe_playback
+    poses = [each.positions for each in playback.animation.keyframes]
+    assert not playback.can_paste()
+    playback.selected = frozenset({0.0, 1.0})
+    playback.copy_keyframes()
+    playback.scrub(2.0)
+    playback.paste_keyframes()
+    assert times(keyed) == (0.0, 1.0, 2.0, 3.0)
+    assert playback.selected == {2.0, 3.0}
+    playback.scrub(4.0)
+    playback.paste_keyframes(reverse=True)
+    pasted = keyed.session.present.animation.keyframes[-2:]
+    for each, pose in zip(pasted, poses[::-1], strict=True):
+        np.testing.assert_array_equal(each.positions, pose)
+    keyed.editor.undo()
+    assert times(keyed) == (0.0, 1.0, 2.0, 3.0)

@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 from PIL import Image
 
 from akap_editor.app.dialogs.export.animation import AnimationExportOptions, export_animation
+from akap_editor.app.dialogs.take import TakeDialog
 from akap_editor.editor.session.replay import replay
 
 
@@ -131,3 +132,19 @@ def test_the_range_is_exported(bent, tmp_path):
     export_animation(bent.state, AnimationExportOptions(), tmp_path / "wave.avi")
     bent.settle()
     assert ".avi" in bent.state.error
+
+
+def test_a_take_becomes_keyframes(bent):
+    playback, dialog = bent.state.timeline.session_playback, bent.state.part(TakeDialog)
+    dialog.open(bent.state)
+    bent.settle()
+    assert dialog.count >= 2
+    bent.do(lambda hand: hand.item_click("//$FOCUSED/###add"))
+    assert not dialog.is_open
+    keyframes = bent.session.present.animation.keyframes
+    assert (keyframes[0].time, keyframes[-1].time) == (0.0, pytest.approx(playback.duration, abs=1e-3))
+    np.testing.assert_array_equal(keyframes[-1].positions, playback.snapshots[-1].state.positions)
+    assert bent.state.timeline.mode == "keyframes"
+    assert bent.state.timeline.keyframe_playback.selected == {each.time for each in keyframes}
+    bent.editor.undo()
+    assert not bent.session.present.animation.keyframes
