@@ -10,18 +10,18 @@ from ...geometry.validation import Floats, Ints
 from ...words import mark
 from ..document.crossings import draw_order
 from ..document.drawing import Drawing
-from ..document.easing import NEW_EASING
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, Keyframe, as_keyframe_time
 from ..document.pin_angles import pins_fixed_at_pose
 from ..gestures import EditContext
-from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
+from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop
 from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
 from .auto_key import AutoKey, key_edits
 from .crossing_blend import CrossingBlend
 from .frames import Frame
 from .keyframe_poses import KeyframePoses, animation_crossings
-from .keyframe_times import EasingDrag, TimesDrag, mirror_easings, mirror_times
+from .keyframe_times import EasingDrag, TimesDrag, mirror_times
+from .keyframing.group_edits import insert_edits, reverse_edits
 from .keyframing.keyframe_clipboard import KeyframeClipboard
 from .keyframing.onion_skin import OnionSkin
 from .playback import Playback, VisibleRange
@@ -280,27 +280,18 @@ class KeyframePlayback(Playback):
             return
         start = self.duration + _DUPLICATE_GAP if copy else times[0]
         moves = {old: _within_limits(new) for old, new in mirror_times(times, start).items()}
-        easings = mirror_easings([animation.easing_after(each) for each in animation.keyframes_at(times)])
-        edits = [
-            SetEasing([moves[time]], None if ease == animation.ease else ease)
-            for time, ease in zip(times, easings, strict=True)
-        ]
-        self._edit(_counted("Duplicate" if copy else "Reverse", times), MoveKeyframes(moves, copy), *edits)
+        self._edit(
+            _counted("Duplicate" if copy else "Reverse", times), *reverse_edits(animation, moves, copy)
+        )
         self.selected = frozenset(moves.values())
         if self.is_previewing:
             self._show()
 
     def insert_keyframes(self, label: str, keyframes: Sequence[Keyframe]) -> None:
         """Add keyframes in one gesture, instead of those in their time, and select them."""
-        first, last = keyframes[0].time, keyframes[-1].time
-        replaced = [time for time in self.animation.times if first <= time <= last]
-        edits: list[KeyframeEdit] = [DeleteKeyframes(replaced)] if replaced else []
-        if not self.animation.keyframes:
-            edits.append(SetEasing(None, NEW_EASING))
-        edits += [SetKeyframe(each.time, each.positions, each.ease, each.crossings) for each in keyframes]
-        self._edit(label, *edits)
+        self._edit(label, *insert_edits(self.animation, keyframes))
         self.selected = frozenset(each.time for each in keyframes)
-        self.scrub(first)
+        self.scrub(keyframes[0].time)
 
     def copy_keyframes(self) -> None:
         """Remember the selected keyframes, or the one at the playhead, for `paste_keyframes`."""
