@@ -1,7 +1,7 @@
 """Draws the pictures of docs/images/crossings: poses that overlap themselves, before and after.
 
 Run from the project's root: python tools/make_crossings.py [names]
-Left: faces in the fixed order of the mesh. Right: limbs cross as wholes. Scenes on drawings of ../shared/data
+Left: faces in the fixed order of the mesh. Right: limbs cross as wholes; alone if both are equal. Scenes on drawings of ../shared/data
 are skipped without that folder.
 """
 
@@ -61,11 +61,15 @@ class Drag:
 
 @dataclass(frozen=True)
 class Scene:
-    """A drawing, its pins and what is dragged."""
+    """A drawing, its pins and what is dragged.
+
+    box: left, top, right and bottom in pixels of what is shown, by default all.
+    """
 
     image: Path
     pins: Sequence[Point]
     drags: Sequence[Drag]
+    box: tuple[int, int, int, int] | None = None
 
 
 SCENES = {
@@ -76,6 +80,19 @@ SCENES = {
             Drag((143, 653), line((143, 653), (606, 502))),
             Drag((850, 456), line((850, 456), (454, 623))),
         ],
+    ),
+    "elbow": Scene(
+        BUNDLED / "alien.png",
+        [(386, 919), (675, 919), (515, 714), (485, 380), (640, 605)],
+        [
+            Drag(
+                (850, 456),
+                line((850, 456), (900, 640), 20)
+                + line((900, 640), (760, 760), 20)
+                + line((760, 760), (640, 620), 20),
+            )
+        ],
+        (590, 480, 850, 720),
     ),
     "dancer": Scene(
         SHARED / "noto" / "dancer.png",
@@ -192,12 +209,18 @@ def nearest_pin(session: Session, place: np.ndarray) -> int:
     return pin
 
 
-def pictures(session: Session, height: int = HEIGHT) -> Iterator[np.ndarray]:
-    """The pose in the order of the mesh, and with its crossings, (h, w, 3) uint8 each, on white."""
+def pictures(
+    session: Session, box: tuple[int, int, int, int] | None = None, height: int = HEIGHT
+) -> Iterator[np.ndarray]:
+    """The pose in the order of the mesh, and with its crossings, (h, w, 3) uint8 each, on white.
+
+    box: see `Scene`.
+    """
     pose, drawing = session.state.positions, session.drawing
-    low, high = pose.min(axis=0) - 8, pose.max(axis=0) + 8
-    (left, top), (right, bottom) = np.floor(low).astype(int).tolist(), np.ceil(high).astype(int).tolist()
-    box = left, top, right, bottom
+    if box is None:
+        low, high = pose.min(axis=0) - 8, pose.max(axis=0) + 8
+        (left, top), (right, bottom) = np.floor(low).astype(int).tolist(), np.ceil(high).astype(int).tolist()
+        box = left, top, right, bottom
     scale = height / (box[3] - box[1])
     with OffscreenRenderer() as renderer:
         for order in (None, session.document.draw_order):
@@ -211,9 +234,11 @@ def main() -> None:
         if name in SCENES and not SCENES[name].image.exists():
             print(f"{name}: skipped, {SCENES[name].image} is absent")
             continue
-        before, after = pictures(tie_rope() if name == "rope" else bend(SCENES[name]))
+        is_rope = name == "rope"
+        before, after = pictures(tie_rope()) if is_rope else pictures(bend(SCENES[name]), SCENES[name].box)
         gap = np.full((len(before), GAP, 3), 255, dtype=np.uint8)
-        picture = Image.fromarray(np.hstack([before, gap, after])).quantize(255, dither=Image.Dither.NONE)
+        shown = after if np.array_equal(before, after) else np.hstack([before, gap, after])
+        picture = Image.fromarray(shown).quantize(255, dither=Image.Dither.NONE)
         picture.save(OUTPUT / f"{name}.png", optimize=True)
         print(OUTPUT / f"{name}.png")
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+import shapely
 from PIL import Image, ImageDraw
-from scipy.ndimage import map_coordinates
+from scipy.ndimage import label, map_coordinates, maximum_filter
 
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
@@ -76,3 +77,32 @@ def test_a_limb_folded_shut_shows_its_sheets_and_nothing_else(elbow: float) -> N
         shown = renderer.render(drawing, pose, box, SCALE, (1.0, 1.0, 1.0), order)[..., :3].astype(float)
     expected = composed(drawing.image, drawn_faces(drawing, pose, order), box)
     assert np.abs(shown - expected).max() < 90, "a line would differ by 150 or more"
+
+
+def winding(curve: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """How often a closed curve (q, 2) goes around each of some points (p, 2)."""
+    spokes = (curve @ [1, 1j])[None] - (points @ [1, 1j])[:, None]
+    return np.rint(np.angle(np.roll(spokes, -1, axis=1) / spokes).sum(axis=1) / (2 * np.pi))
+
+
+@pytest.mark.parametrize("elbow", [40.0, 130.0])
+def test_a_gap_in_a_fold_is_one_of_the_bent_outline(elbow: float) -> None:
+    """Its crease is a loop of the outline, and it is transparent inside that loop and nowhere else."""
+    session = folded(elbow)
+    mesh, pose = session.drawing.mesh, session.state.positions
+    (left, top), (right, bottom) = np.floor(pose.min(axis=0) - 4), np.ceil(pose.max(axis=0) + 4)
+    box = int(left), int(top), int(right), int(bottom)
+    with OffscreenRenderer() as renderer:
+        shown = renderer.render(session.drawing, pose, box, SCALE, None, session.document.draw_order)
+    is_clear = shown[..., 3] < 128
+    parts, count = label(is_clear)
+    assert count > 1, "the fold encloses a gap"
+    is_gap = is_clear & (parts != parts[0, 0])
+    rounded = shapely.box(29, 29, WIDTH - 29, HEIGHT - 29).buffer(25, quad_segs=16).exterior
+    outline = mesh.evaluate(mesh.locate(shapely.get_coordinates(rounded.segmentize(2.0))[:-1]), pose)
+    y, x = np.nonzero(maximum_filter(is_gap, 25))
+    pixels = np.stack([x, y], axis=1).astype(float) / SCALE + 0.5 / SCALE + [left, top]
+    is_outside = winding(outline, pixels) == 0
+    is_inner = shapely.distance(shapely.LinearRing(outline), shapely.points(pixels)) > 0.5
+    assert (is_clear[y, x] == is_outside)[is_inner].all()
+    assert (is_gap[y, x] & is_outside).sum() > 0.9 * is_gap.sum()
