@@ -1,8 +1,8 @@
 """Draws the pictures of docs/images/crossings: poses that overlap themselves, before and after.
 
 Run from the project's root: python tools/make_crossings.py [names]
-Left: faces in the fixed order of the mesh. Right: limbs cross as wholes; alone if both are equal. Scenes on drawings of ../shared/data
-are skipped without that folder.
+Left: faces in the fixed order of the mesh. Right: limbs cross as wholes; alone if both are equal. Scenes on
+drawings of ../shared/data are skipped without that folder.
 """
 
 import sys

@@ -48,6 +48,20 @@ def cut_along_seams(mesh: TriMesh, overlaps: Overlaps, order: Ints) -> CutMesh |
 
     order: (m,) the faces from back to front in which all decisions hold.
     """
+    none = np.zeros(0, dtype=np.int32)
+    found = cut_for_motion(mesh, overlaps, order, none, none)
+    return None if found is None else found[0]
+
+
+def cut_for_motion(
+    mesh: TriMesh, overlaps: Overlaps, order: Ints, low: Ints, high: Ints
+) -> tuple[CutMesh, Ints, Ints] | None:
+    """The mesh cut along the seams of one pose of a motion, in an order that holds in all its poses.
+
+    low, high: (q,) lower and upper faces that overlap in some pose, which with the decisions in ``overlaps``
+    are in no circle. Returns the pairs of the faces of the cut mesh, too, lower and upper (p,) each; None if
+    there is no seam, or no order.
+    """
     pairs = overlaps.pairs
     signs = overlaps.signs.copy()
     candidates: dict[int, list[tuple[int, Floats]]] = defaultdict(list)  # blocks and corner values by face
@@ -64,7 +78,7 @@ def cut_along_seams(mesh: TriMesh, overlaps: Overlaps, order: Ints) -> CutMesh |
         for block, values in zip(band[is_cut].tolist(), corners[is_cut], strict=True):
             candidates[int(pairs.first[pairs.starts[block]])].append((block, values))
     cut = {face: found[0] for face, found in candidates.items() if len(found) == 1}
-    return _cut(mesh, pairs, signs, blocks, cut, order) if cut else None
+    return _cut(mesh, pairs, signs, blocks, cut, order, low, high) if cut else None
 
 
 def _block_values(
@@ -208,8 +222,13 @@ def _cut(
     blocks: Ints,
     cut: dict[int, tuple[int, Floats]],
     order: Ints,
-) -> CutMesh | None:
-    """Cut faces where the values at their corners are zero, and arrange the parts; None on a circle."""
+    other_low: Ints,
+    other_high: Ints,
+) -> tuple[CutMesh, Ints, Ints] | None:
+    """Cut faces where the values at their corners are zero, and arrange the parts; None on a circle.
+
+    other_low, other_high: (q,) pairs of other poses. Returns the lower and upper face of all pairs, too.
+    """
     n, m = len(mesh.vertices), len(mesh.faces)
     new_vertices: dict[tuple[int, int], int] = {}
     edges: list[tuple[int, int]] = []
@@ -258,6 +277,7 @@ def _cut(
                     signs[i] = sign
                 else:
                     added.append((part_f, part_g, sign))
+    added += _pairs_of_parts(mesh, pairs, cut, parts, other_low, other_high)
     total = m + len(extra_faces)
     extra = np.array(added, dtype=np.int32).reshape(-1, 3)
     first, second = np.concatenate([pairs.first, extra[:, 0]]), np.concatenate([pairs.second, extra[:, 1]])
@@ -270,10 +290,48 @@ def _cut(
     all_sources = np.concatenate([part_sources, np.array(extra_sources, dtype=np.int64)])
     sorting = np.lexsort((rank[all_sources], levels))
     all_faces = np.concatenate([part_faces, np.array(extra_faces, dtype=np.int32).reshape(-1, 3)])
-    return CutMesh(
+    sorted_rank = np.empty(total, dtype=np.int32)
+    sorted_rank[sorting] = np.arange(total)
+    result = CutMesh(
         order,
         all_faces[sorting].astype(np.int32),
         all_sources[sorting].astype(np.int32),
         np.array(edges, dtype=np.int32),
         np.array(shares),
     )
+    return result, sorted_rank[low], sorted_rank[high]
+
+
+def _pairs_of_parts(
+    mesh: TriMesh,
+    pairs: FacePairs,
+    cut: dict[int, tuple[int, Floats]],
+    parts: dict[int, list[tuple[int, int]]],
+    low: Ints,
+    high: Ints,
+) -> list[tuple[int, int, int]]:
+    """First and second part and sign of each pair of other poses that is not among the ``pairs``.
+
+    A part of a cut face is in front of faces beside those that the cut is for, or behind them, as it is of
+    these: there the seam of the other pose is replaced by that of this one.
+    """
+    m = len(mesh.faces)
+    known = pairs.first.astype(np.int64) * m + pairs.second, pairs.second.astype(np.int64) * m + pairs.first
+    codes = low.astype(np.int64) * m + high
+    is_new = ~np.isin(codes, np.concatenate(known))
+    neighbors = mesh_topology(mesh).neighbors
+    partners: dict[int, set[int]] = {}
+    for face, (block, _) in cut.items():
+        faces = pairs.second[pairs.starts[block] : pairs.starts[block + 1]]
+        partners[face] = {*faces.tolist(), *neighbors[faces].ravel().tolist()}
+    result = []
+    for lower, upper in zip(low[is_new].tolist(), high[is_new].tolist(), strict=True):
+        for part, sign in parts.get(lower, [(lower, -1)]):
+            for other, other_sign in parts.get(upper, [(upper, 1)]):
+                if upper in partners.get(lower, ()):
+                    result.append((part, other, sign))
+                elif lower in partners.get(upper, ()):
+                    result.append((part, other, -other_sign))
+                else:
+                    result.append((part, other, -1))
+    return result

@@ -13,6 +13,8 @@ from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
 from ...layers.drawing_layer import stacked_faces
 from ...overlap.circles import face_levels
+from ...overlap.overlaps import Overlaps
+from ...overlap.seams import CutMesh, cut_for_motion
 
 TOLERANCE = 0.25  # pixels by which a pose may be off between two that are kept
 _RATE = 30.0  # samples a second
@@ -26,7 +28,8 @@ class DrawingOrder:
     """An order in which faces are drawn, and when.
 
     order: (q,) the faces from back to front, without those of hidden layers; low, high: (p,) pairs of faces
-    that it keeps in order; layer_order: the layers from back to front; spans: from when until when it is
+    that it keeps in order; layer_order: the layers from back to front; cut: the mesh cut along seams, of
+    whose faces order and pairs speak, None for those of the mesh itself; spans: from when until when it is
     shown, in seconds.
     """
 
@@ -34,6 +37,7 @@ class DrawingOrder:
     low: Ints
     high: Ints
     layer_order: tuple[int, ...] = ()
+    cut: CutMesh | None = None
     spans: list[tuple[float, float]] = field(default_factory=list)
 
 
@@ -53,7 +57,8 @@ def bake_animation(document: Document) -> BakedAnimation | None:
     """The keyframes of a document; None if there are fewer than two.
 
     Poses are kept where straight lines between the others would be off by more than `TOLERANCE`, and at each
-    keyframe. One order serves as long as its pairs are in no circle and the same layers are shown.
+    keyframe. One order serves as long as its pairs are in no circle and the same layers are shown. Where
+    it has seams, faces are cut along those of its first keyframe that has some.
     """
     drawing, state = document.drawing, document.state
     mesh, animation = drawing.mesh, state.animation
@@ -65,8 +70,9 @@ def bake_animation(document: Document) -> BakedAnimation | None:
     numbers = []
     for time in times:
         pose, crossings = animation_crossings(interpolation, blend, mesh, state.pins, animation, time)
-        pairs = overlaps_of(mesh, state.pins, pose, crossings).low_and_high
-        numbers.append(collected.number_for(interpolation.drawing(drawing, animation, time), *pairs))
+        overlaps = overlaps_of(mesh, state.pins, pose, crossings)
+        shown = interpolation.drawing(drawing, animation, time)
+        numbers.append(collected.number_for(shown, overlaps, is_keyframe=time in animation.times))
         poses.append(pose)
     orders = collected.orders()
     starts = [k for k, number in enumerate(numbers) if k == 0 or number != numbers[k - 1]]
@@ -122,35 +128,48 @@ class _Orders:
         overlaps = overlaps_of(mesh, state.pins, state.positions, state.crossings)
         self._pairs = [np.unique(self._codes(*overlaps.low_and_high))]  # of each order
         self._drawings = [document.drawing]  # with the layers that each order shows
+        self._seams = [(True, overlaps)]  # where each order is cut, and whether that is a keyframe
 
-    def number_for(self, drawing: Drawing, low: Ints, high: Ints) -> int:
-        """The number of an order that keeps these pairs, too: the last one if it can, else another one.
+    def number_for(self, drawing: Drawing, overlaps: Overlaps, is_keyframe: bool) -> int:
+        """The number of an order for a pose: the last one that can keep its decisions, too, else another one.
 
-        drawing: with the layers that are to be visible.
+        Faces are cut along the seams of a keyframe if there is one with seams. drawing: with the layers that
+        are to be visible.
         """
-        codes = np.unique(self._codes(low, high))
+        codes = np.unique(self._codes(*overlaps.low_and_high))
         for number in reversed(range(len(self._pairs))):
             if self._drawings[number].layer_view != drawing.layer_view:
                 continue
+            seams = self._seams[number]
             joint = np.union1d(self._pairs[number], codes)
-            if len(joint) == len(self._pairs[number]) or self._is_possible(joint):
-                self._pairs[number] = joint
+            if overlaps.has_seam and (not seams[1].has_seam or (is_keyframe and not seams[0])):
+                seams = is_keyframe, overlaps
+            is_same = len(joint) == len(self._pairs[number]) and seams is self._seams[number]
+            if is_same or self._is_possible(joint, seams[1]):
+                self._pairs[number], self._seams[number] = joint, seams
                 return number
         self._pairs.append(codes)
         self._drawings.append(drawing)
+        self._seams.append((is_keyframe, overlaps))
         return len(self._pairs) - 1
 
     def orders(self) -> list[DrawingOrder]:
         """All orders."""
         result = []
-        for codes, drawing in zip(self._pairs, self._drawings, strict=True):
+        for codes, drawing, (_, overlaps) in zip(self._pairs, self._drawings, self._seams, strict=True):
             low, high = self._low_and_high(codes)
             levels, _ = face_levels(self._count, low, high)
             order: Ints = np.lexsort((self._rank, levels))
+            cut, face_layers = None, drawing.face_layers
+            found = self._cut(overlaps, order, low, high)
+            if found is not None:
+                cut, low, high = found
+                order = np.arange(len(cut.faces))
+                face_layers = face_layers[cut.sources] if drawing.layers else face_layers
             if drawing.layers:
-                stacked = stacked_faces(order, drawing.face_layers, drawing.layers, drawing.layer_order)
+                stacked = stacked_faces(order, face_layers, drawing.layers, drawing.layer_order)
                 order = order if stacked is None else stacked
-            result.append(DrawingOrder(order, low, high, drawing.layer_order))
+            result.append(DrawingOrder(order, low, high, drawing.layer_order, cut))
         return result
 
     def _codes(self, low: Ints, high: Ints) -> Ints:
@@ -159,7 +178,16 @@ class _Orders:
     def _low_and_high(self, codes: Ints) -> tuple[Ints, Ints]:
         return (codes // self._count).astype(np.int32), (codes % self._count).astype(np.int32)
 
-    def _is_possible(self, codes: Ints) -> bool:
-        """Whether pairs are in no circle."""
-        _, placed = face_levels(self._count, *self._low_and_high(codes))
-        return bool(placed.all())
+    def _cut(
+        self, overlaps: Overlaps, order: Ints, low: Ints, high: Ints
+    ) -> tuple[CutMesh, Ints, Ints] | None:
+        mesh = self._drawings[0].mesh
+        return cut_for_motion(mesh, overlaps, order, low, high) if overlaps.has_seam else None
+
+    def _is_possible(self, codes: Ints, seams: Overlaps) -> bool:
+        """Whether pairs are in no circle, with faces cut along the seams of a pose, too."""
+        low, high = self._low_and_high(codes)
+        _, placed = face_levels(self._count, low, high)
+        if not placed.all():
+            return False
+        return not seams.has_seam or self._cut(seams, np.arange(self._count), low, high) is not None

@@ -3,6 +3,7 @@
 import json
 import struct
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -88,7 +89,7 @@ def encode_glb(
             "weights": [1.0, *[0.0] * (len(poses) - 1)],
             "extras": {"targetNames": names},
         }
-        for number, primitives in enumerate(_primitives(buffer, drawing, layers, poses, order))
+        for number, primitives in enumerate(_primitives(buffer, drawing, layers, poses))
     ]
     nodes = [
         {"name": mesh["name"], "mesh": number, "scale": [0.0 if number else 1 / PIXELS_PER_UNIT] * 3}
@@ -123,39 +124,43 @@ def _layers(
     order: Ints | CutMesh | None,
     baked: BakedAnimation | None,
     z_order: bool,
-) -> list[DrawnFaces]:
-    """The faces in each order; the pose has one of its own if it has seams, which motion has not."""
-    layers = []
+) -> list[tuple[DrawnFaces, CutMesh | None]]:
+    """The faces in each order, and how the mesh is cut; the pose has an order of its own if it has seams."""
+    layers: list[tuple[DrawnFaces, CutMesh | None]] = []
     if baked is None or isinstance(order, CutMesh):
         drawn = drawn_faces(drawing, positions, order)
-        layers.append(stacked(drawn, *drawn.low_and_high) if z_order else drawn)
+        drawn = stacked(drawn, *drawn.low_and_high) if z_order else drawn
+        layers.append((drawn, order if isinstance(order, CutMesh) else None))
     for each in [] if baked is None else baked.orders:
-        drawn = drawn_faces(drawing, positions, each.order)
-        rank = np.full(len(drawing.mesh.faces), -1)  # faces of hidden layers are not drawn
+        drawn = drawn_faces(drawing, positions, each.cut)
+        rank = np.full(len(drawn.faces), -1)  # faces of hidden layers are not drawn
         rank[each.order] = np.arange(len(each.order))
+        drawn = replace(
+            drawn,
+            faces=drawn.faces[each.order],
+            components=drawn.components[each.order],
+            layers=drawn.layers[each.order],
+        )
         pairs = np.stack([rank[each.low], rank[each.high]])
         low, high = pairs[:, pairs.min(axis=0, initial=0) >= 0]
-        layers.append(stacked(drawn, low, high) if z_order else drawn)
+        layers.append((stacked(drawn, low, high) if z_order else drawn, each.cut))
     return layers
 
 
 def _primitives(
     buffer: _Buffer,
     drawing: Drawing,
-    layers: Sequence[DrawnFaces],
+    layers: Sequence[tuple[DrawnFaces, CutMesh | None]],
     poses: Sequence[Floats],
-    order: Ints | CutMesh | None,
 ) -> list[list[dict[str, Any]]]:
     """The primitives of each order of drawing; those with the same vertices share them and their targets.
 
     Each layer is a primitive with a material of its own; without layers there is one.
-
-    order: that of the pose.
     """
-    shared: dict[tuple[bytes, bytes], dict[str, Any]] = {}  # by vertices and levels
+    shared: dict[tuple[bytes, bytes, int], dict[str, Any]] = {}  # by vertices, levels and cuts
     primitives = []
-    for drawn in layers:
-        key = drawn.sources.tobytes(), drawn.z.tobytes()
+    for drawn, cut in layers:
+        key = drawn.sources.tobytes(), drawn.z.tobytes(), id(cut)
         if key not in shared:
             rest = _to_3d(y_up(drawing, drawn.rest), drawn.z * level_height(drawing))
             shared[key] = {
@@ -167,10 +172,9 @@ def _primitives(
         runs = drawn.layer_runs(drawing)
         indices = [buffer.add_array(drawn.faces[run, ::-1].astype("<u4"), "SCALAR") for _, run in runs]
         if "targets" not in shared[key]:
-            has_seams = drawn.sources.max() >= len(drawing.mesh.vertices)
             targets = []
             for pose in poses:
-                points = order.values(pose) if isinstance(order, CutMesh) and has_seams else pose
+                points = pose if cut is None else cut.values(pose)
                 offsets = _to_3d(y_up(drawing, points[drawn.sources]), rest[:, 2]) - rest
                 targets.append({"POSITION": buffer.add_array(offsets, "VEC3", bounds=True)})
             shared[key]["targets"] = targets

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Collection, Hashable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,35 +36,36 @@ def encode_spine(
     several slots where it passes both behind and in front of another one. Slots are named after their layers,
     and hidden layers are left out. The setup pose is the rest pose, the animation "pose" holds ``positions``
     (n, 2) as a deform key. order: see `Document.draw_order`. baked: keyframes, which are the animation
-    "keyframes"; where they need several orders, there are slots for each of these, which share what they can,
-    and no faces are cut along seams.
+    "keyframes"; where they need several orders, there are slots for each of these, which share what they can.
     """
     texture = texture_name(stem)
     region = texture.removesuffix(".png")
-    drawn = drawn_faces(drawing, positions, order if baked is None else None)
-    rest, mesh = y_up(drawing, drawn.rest), drawing.mesh
+    rest = y_up(drawing, drawing.mesh.vertices)
     if baked is None:
-        orders = [DrawingOrder(np.arange(len(drawn.faces)), *drawn.low_and_high, drawing.layer_order)]
+        cut = order if isinstance(order, CutMesh) else None
+        shape = _Shape(drawing, positions, order, cut)
+        pairs = shape.drawn.low_and_high
+        orders = [DrawingOrder(np.arange(len(shape.drawn.faces)), *pairs, drawing.layer_order, cut)]
+        shapes = {id(cut): shape}
     else:
         orders = baked.orders
-    parts = {number: _Part(mesh, drawn, number) for number in np.unique(drawn.components).tolist()}
+        shapes = {id(each.cut): _Shape(drawing, positions, each.cut, each.cut) for each in orders}
     slots: list[dict[str, str]] = []
-    attachments, slot_parts = {}, []  # by slot
-    runs_of_orders = [_layered_runs(drawing, drawn, each) for each in orders]
+    attachments: dict[str, dict[str, dict[str, Any]]] = {}
+    offsets = _Offsets(drawing)
+    runs_of_orders = [_layered_runs(drawing, shapes[id(each.cut)], each) for each in orders]
     slots_of_orders: list[list[str]] = [[] for _ in orders]
     slot_names = _SlotNames()
-    for (component, faces), numbers in _shared_runs(runs_of_orders):
-        name = slot_names.next(_title(drawing, drawn, faces))
+    for run, numbers in _shared_runs(runs_of_orders):
+        name = slot_names.next(_title(drawing, run))
         shown = {"attachment": name} if 0 in numbers else {}
         slots.append({"name": name, "bone": "root", **shown})
-        slot_parts.append(parts[component])
-        attachments[name] = {name: _attachment(drawing, drawn, parts[component], faces, region)}
+        attachments[name] = {name: _attachment(drawing, run, region)}
+        offsets.add_slot(name, run)
         for number in numbers:
             slots_of_orders[number].append(name)
-    part_of = dict(zip(attachments, slot_parts, strict=True))
-    offsets = _Offsets(drawing, rest, part_of)
     animations = {
-        "pose": {"attachments": {"default": offsets.timelines(slots_of_orders[0], [(0.0, drawn.pose)])}}
+        "pose": {"attachments": {"default": offsets.timelines(slots_of_orders[0], [(0.0, positions)])}}
     }
     if baked is not None:
         animations["keyframes"] = _animation(baked, slots_of_orders, offsets)
@@ -98,28 +100,67 @@ def _atlas(texture: str, size: tuple[int, ...]) -> str:
     return "\n".join([*lines, f"bounds: 0, 0, {width}, {height}", ""])
 
 
-def _title(drawing: Drawing, drawn: DrawnFaces, faces: Ints) -> str:
+class _Shape:
+    """The drawn faces of one way to cut the mesh, and its parts by component.
+
+    order: see `drawn_faces`; cut: the same, if it is one, else None.
+    """
+
+    def __init__(
+        self, drawing: Drawing, positions: Floats, order: Ints | CutMesh | None, cut: CutMesh | None
+    ) -> None:
+        self.drawn, self.cut = drawn_faces(drawing, positions, order), cut
+        self.rest = y_up(drawing, self.drawn.rest)
+        numbers = np.unique(self.drawn.components).tolist()
+        self.parts = {number: _Part(drawing.mesh, self.drawn, number) for number in numbers}
+
+
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """Some faces (q,) of a component, from back to front."""
+
+    shape: _Shape
+    component: int
+    faces: Ints
+
+    @property
+    def part(self) -> "_Part":
+        return self.shape.parts[self.component]
+
+    @property
+    def key(self) -> Hashable:
+        """Equal for the same faces of the same part: with other cuts, too, if it is not cut."""
+        cut = self.shape.cut
+        is_cut = cut is not None and self.part.order.max() >= len(self.shape.drawn.rest) - len(cut.edges)
+        return self.component, id(cut) if is_cut else None, self.shape.drawn.faces[self.faces].tobytes()
+
+
+def _title(drawing: Drawing, run: _Run) -> str:
     """The name of the layer of some drawn faces; without layers that of the drawing."""
-    name = drawing.layers[drawn.layers[faces[0]]].name if drawing.layers else drawing.name
+    name = drawing.layers[run.shape.drawn.layers[run.faces[0]]].name if drawing.layers else drawing.name
     return name or "drawing"
 
 
 class _Offsets:
-    """Deform keys of slots: where vertices are, relative to the rest pose.
+    """Deform keys of slots: where vertices are, relative to the rest pose."""
 
-    rest: (v, 2) vertices with y up; part_of: the part of each slot.
-    """
+    def __init__(self, drawing: Drawing) -> None:
+        self._drawing = drawing
+        self._runs: dict[str, _Run] = {}
 
-    def __init__(self, drawing: Drawing, rest: Floats, part_of: dict[str, "_Part"]) -> None:
-        self._drawing, self._rest, self._part_of = drawing, rest, part_of
+    def add_slot(self, name: str, run: _Run) -> None:
+        """Note which faces a slot has."""
+        self._runs[name] = run
 
     def timelines(self, names: Sequence[str], keys: Sequence[tuple[float, Floats]]) -> dict[str, Any]:
-        """Deform timelines of slots with poses (v, 2) at times in seconds."""
+        """Deform timelines of slots with poses (n, 2) at times in seconds."""
         return {name: {name: {"deform": [self._key(name, *key) for key in keys]}} for name in names}
 
     def _key(self, name: str, time: float, pose: Floats) -> dict[str, Any]:
-        order = self._part_of[name].order
-        offsets = _flat(y_up(self._drawing, pose)[order]) - _flat(self._rest[order])
+        run = self._runs[name]
+        shape, order = run.shape, run.part.order
+        points = pose if shape.cut is None else shape.cut.values(pose)
+        offsets = _flat(y_up(self._drawing, points)[order]) - _flat(shape.rest[order])
         vertices = {"vertices": (np.round(offsets, _DECIMALS) + 0.0).tolist()}
         return {"time": round(time, 4), **vertices} if time else vertices
 
@@ -178,18 +219,15 @@ def _keys_in_spans(baked: BakedAnimation, spans: Sequence[tuple[float, float]]) 
     return [(times[k], baked.poses[k]) for k in sorted(needed)] or [(0.0, baked.poses[0])]
 
 
-_Run = tuple[int, Ints]  # a component and some of its faces, from back to front
-
-
 def _shared_runs(runs_of_orders: Sequence[Sequence[_Run]]) -> list[tuple[_Run, list[int]]]:
     """The runs of several orders from back to front, each with the numbers of the orders that have it.
 
     Orders share runs, for example all layers that stay when others are switched, unless these follow one
     another differently.
     """
-    stacks: list[dict[tuple[int, bytes], tuple[_Run, list[int]]]] = []
+    stacks: list[dict[Hashable, tuple[_Run, list[int]]]] = []
     for number, runs in enumerate(runs_of_orders):
-        own = {(component, faces.tobytes()): (component, faces) for component, faces in runs}
+        own = {run.key: run for run in runs}
         index = next((k for k, stack in enumerate(stacks) if _follow_alike(stack, own)), len(stacks))
         stack = stacks[index] if index < len(stacks) else {}
         left, merged = list(stack), {}
@@ -224,11 +262,13 @@ class _SlotNames:
         return result
 
 
-def _layered_runs(drawing: Drawing, drawn: DrawnFaces, order: DrawingOrder) -> list[tuple[int, Ints]]:
+def _layered_runs(drawing: Drawing, shape: _Shape, order: DrawingOrder) -> list[_Run]:
     """`component_runs` of each layer, from back to front; of a drawing without layers those of all."""
+    drawn = shape.drawn
     if not drawing.layers:
-        return component_runs(drawn.components, order.order, order.low, order.high)
-    runs: list[tuple[int, Ints]] = []
+        runs = component_runs(drawn.components, order.order, order.low, order.high)
+        return [_Run(shape, *run) for run in runs]
+    result: list[_Run] = []
     layers = drawn.layers
     for layer in order.layer_order:
         faces = order.order[layers[order.order] == layer]
@@ -239,8 +279,8 @@ def _layered_runs(drawing: Drawing, drawn: DrawnFaces, order: DrawingOrder) -> l
         own = layers[order.low] == layer  # both faces of a pair are on one layer
         low, high = new[order.low[own]], new[order.high[own]]
         local = component_runs(drawn.components[faces], np.arange(len(faces)), low, high)
-        runs += [(component, faces[members]) for component, members in local]
-    return runs
+        result += [_Run(shape, component, faces[members]) for component, members in local]
+    return result
 
 
 class _Part:
@@ -269,10 +309,9 @@ class _Part:
         self.edges: Ints = np.array([*ring.tolist(), *rest])
 
 
-def _attachment(
-    drawing: Drawing, drawn: DrawnFaces, part: _Part, faces: Ints, texture: str
-) -> dict[str, Any]:
+def _attachment(drawing: Drawing, run: _Run, texture: str) -> dict[str, Any]:
     """The mesh attachment of some drawn faces of a component."""
+    part, shape = run.part, run.shape
     if len(part.order) > MAX_ATTACHMENT_VERTICES:
         raise InputError(
             tr(
@@ -285,9 +324,9 @@ def _attachment(
     return {
         "type": "mesh",
         "path": texture,
-        "uvs": np.round(_flat(drawn.uv[part.order]), 6).tolist(),
-        "triangles": part.faces[faces].ravel().tolist(),
-        "vertices": np.round(_flat(y_up(drawing, drawn.rest)[part.order]), _DECIMALS).tolist(),
+        "uvs": np.round(_flat(shape.drawn.uv[part.order]), 6).tolist(),
+        "triangles": part.faces[run.faces].ravel().tolist(),
+        "vertices": np.round(_flat(shape.rest[part.order]), _DECIMALS).tolist(),
         "hull": part.hull,
         "edges": (2 * part.edges).ravel().tolist(),  # indices into the list of coordinates
         "width": width,

@@ -12,11 +12,14 @@ import pytest
 from akap_editor.editor.animation.frames import Frame
 from akap_editor.editor.animation.keyframe_poses import KeyframePoses, animation_frame
 from akap_editor.editor.document.document import Document
-from akap_editor.editor.document.keyframes import NO_ANIMATION
+from akap_editor.editor.document.keyframes import NO_ANIMATION, Animation, Keyframe
 from akap_editor.io.export.baked_animation import TOLERANCE, BakedAnimation, bake_animation
 from akap_editor.io.export.drawn_faces import drawn_faces
 from akap_editor.io.export.texture import y_up
+from akap_editor.overlap.overlaps import NO_CROSSINGS
+from akap_editor.overlap.seams import CutMesh
 from tests.io.export.test_drawn_faces import Triangles, visible_uv
+from tests.support.bends import rope_with_seam
 from tests.support.npm import run_with_package
 
 TIMES = (0.0, 0.13, 0.3, 0.4, 0.7, 0.9, 1.0, 1.2)
@@ -201,3 +204,60 @@ def test_gltf_plays_the_keyframes(keyed: Document, exported: Callable[..., Path]
     path = exported(keyed, "a.glb")
     for time in TIMES:
         assert_shown(keyed, time, gltf_shows(path, time))
+
+
+# -- seams ---------------------------------------------------------------------------------------------------
+
+
+KNOTTED_TIMES = (0.1, 0.3, 0.41, 0.6, 0.85, 1.0, 1.1)  # the rope moves fast between others
+
+
+@pytest.fixture(scope="module")
+def knotted() -> Document:
+    """A rope is tied so that two of its parts meet along a seam, swells a little, and is untied."""
+    document = rope_with_seam()
+    mesh, state = document.drawing.mesh, document.state
+    swollen = state.positions * [1.03, 0.98]
+    keyframes = (
+        Keyframe(0.0, mesh.vertices),
+        Keyframe(0.4, state.positions, crossings=state.crossings, ease="hold"),
+        Keyframe(0.7, state.positions, crossings=state.crossings),
+        Keyframe(1.0, swollen, crossings=state.crossings),
+        Keyframe(1.2, mesh.vertices),
+    )
+    resting = replace(state, positions=mesh.vertices, crossings=NO_CROSSINGS)
+    return document.with_state(replace(resting, animation=Animation(keyframes, ease="none")))
+
+
+def corners_of(triangles: np.ndarray) -> set[tuple[float, ...]]:
+    """Triangles (q, 3, 2) as sets of rounded middles."""
+    return {tuple(middle) for middle in (triangles.mean(axis=1) / 0.5).round().tolist()}
+
+
+def test_faces_are_cut_along_the_seams_of_keyframes(knotted: Document, exported: Callable[..., Path]) -> None:
+    frame = frame_at(knotted, 0.5)
+    assert isinstance(frame.order, CutMesh)
+    expected = y_up(frame.drawing, frame.order.values(frame.pose))[frame.order.faces]
+    baked = bake_animation(knotted)
+    assert baked is not None
+    for each in baked.orders:
+        count = len(each.cut.faces if each.cut else knotted.drawing.mesh.faces)
+        rank = np.argsort(each.order)
+        assert len(rank) == count
+        assert (rank[each.low] < rank[each.high]).all()
+    path = exported(knotted, "a.glb")
+    corners, _ = gltf_shows(path, 0.5)
+    assert len(corners) == len(expected) > len(knotted.drawing.mesh.faces)
+    assert len(corners_of(corners) ^ corners_of(expected)) < 0.02 * len(corners), "rounding"
+    for time in KNOTTED_TIMES:
+        assert_shown(knotted, time, gltf_shows(path, time))
+
+
+def test_spine_s_runtime_shows_the_seams_of_keyframes(
+    knotted: Document, exported: Callable[..., Path]
+) -> None:
+    path = exported(knotted, "a.spine.json")
+    shown = spine_shows(path, "keyframes", *KNOTTED_TIMES)
+    for time, seen in zip(KNOTTED_TIMES, shown, strict=True):
+        assert_shown(knotted, time, seen)
+    assert len(shown[2][0]) > len(knotted.drawing.mesh.faces)
