@@ -1,20 +1,37 @@
 """Auto-key: each pose that a gesture leaves becomes a keyframe at the playhead."""
 
+from typing import NamedTuple
+
 from ...geometry.validation import Floats, Ints
 from ...layers.layer_view import LayerView
 from ...words import mark
 from ..document.easing import NEW_EASING
 from ..document.keyframes import Animation, as_keyframe_time
+from ..document.pin import PinDepths, pin_depths
 from ..gestures import EditContext
 from ..session.edits import SetEasing, SetKeyframe
 from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
 
-_Seen = tuple[Floats, LayerView | None]  # a pose (n, 2), and what is shown of the layers
+
+class KeyedValues(NamedTuple):
+    """What a keyframe holds: a pose (n, 2), the layers that are shown, and the depths of the pins."""
+
+    positions: Floats
+    layers: LayerView | None
+    depths: PinDepths
+
+    def differs_from(self, before: "KeyedValues") -> bool:
+        """Whether anything has changed since ``before``; pins that are new or gone do not count."""
+        depths = dict(before.depths)
+        is_shifted = any(depths.get(pin, depth) != depth for pin, depth in self.depths)
+        return self.positions is not before.positions or self.layers != before.layers or is_shifted
 
 
-def _seen(session: Session) -> _Seen:
-    return session.present.positions, session.present_document.drawing.layer_view
+def keyed_values(session: Session) -> KeyedValues:
+    """What a keyframe of the present pose would hold."""
+    present, drawing = session.present, session.present_document.drawing
+    return KeyedValues(present.positions, drawing.layer_view, pin_depths(present.pins))
 
 
 class AutoKey:
@@ -31,7 +48,7 @@ class AutoKey:
         """Disregard what has been done so far; to be called while the keyframes are not shown."""
         self._session: Session | None = None
         self._commits = 0
-        self._seen: _Seen | None = None  # at the last keyframe, or at the last time without one
+        self._seen: KeyedValues | None = None  # at the last keyframe, or at the last time without one
         self._pending: tuple[float, int] | None = None  # time of a keyframe to make, and depth of the history
 
     def update(self, editor: EditContext, time: float) -> bool:
@@ -47,7 +64,7 @@ class AutoKey:
         if not is_active or session is not self._session:
             self.forget()
             self._session, self._commits = session, session.history.commits
-            self._seen = _seen(session)
+            self._seen = keyed_values(session)
             return False
         due = self._due_time(session, time)
         self.is_armed = self.is_armed and self._pending is not None
@@ -55,7 +72,8 @@ class AutoKey:
             return False
         session.end_preview()
         session.begin(mark("Auto Key"))
-        for edit in key_edits(session.present.animation, as_keyframe_time(due)):
+        depths = pin_depths(session.present.pins)
+        for edit in key_edits(session.present.animation, as_keyframe_time(due), depths=depths):
             session.apply(edit)
         session.commit(join=True)
         self._commits = session.history.commits
@@ -71,13 +89,13 @@ class AutoKey:
         if self._pending is not None and history.depth < self._pending[1]:
             self._pending = None  # it was undone before it had settled
         if self._pending is None:
-            self._seen = _seen(session)
+            self._seen = keyed_values(session)
             return None
         if session.is_moving and not session.is_previewing:
             return None
         (due, _), self._pending = self._pending, None
-        seen = _seen(session)
-        is_changed = self._seen is None or seen[0] is not self._seen[0] or seen[1] != self._seen[1]
+        seen = keyed_values(session)
+        is_changed = self._seen is None or seen.differs_from(self._seen)
         self._seen = seen
         return due if is_changed else None
 
@@ -88,9 +106,13 @@ def key_edits(
     positions: Floats | None = None,
     crossings: Ints | None = None,
     layers: LayerView | None = None,
+    depths: PinDepths = (),
 ) -> list[KeyframeEdit]:
-    """The edits that make a keyframe of a pose (n, 2) and a layer list, by default the present ones."""
-    key = SetKeyframe(time, positions, None, crossings, layers)
+    """The edits that make a keyframe of a pose (n, 2) and a layer list, by default the present ones.
+
+    depths: of the pins.
+    """
+    key = SetKeyframe(time, positions, None, crossings, layers, depths)
     if not animation.keyframes and animation.ease != NEW_EASING:
         return [SetEasing(None, NEW_EASING), key]
     return [key]

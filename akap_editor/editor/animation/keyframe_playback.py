@@ -11,12 +11,13 @@ from ...words import mark
 from ..document.crossings import draw_order
 from ..document.drawing import Drawing
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, Keyframe, as_keyframe_time
+from ..document.pin import pin_depths
 from ..document.pin_angles import pins_fixed_at_pose
 from ..gestures import EditContext
 from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop
 from ..session.edits.keyframes import KeyframeEdit
 from ..session.session import Session
-from .auto_key import AutoKey, key_edits
+from .auto_key import AutoKey, KeyedValues, key_edits, keyed_values
 from .crossing_blend import CrossingBlend
 from .frames import Frame
 from .keyframe_poses import KeyframePoses, animation_crossings
@@ -56,8 +57,7 @@ class KeyframePlayback(Playback):
         self.selected: frozenset[float] = frozenset()
         self.visible_range = VisibleRange(_MIN_TOTAL_SECONDS)
         self._drag: TimesDrag | EasingDrag | None = None
-        self._present_pose: Floats | None = None  # while the pose at the playhead is shown instead
-        self._present_drawing: Drawing | None = None
+        self._present: KeyedValues | None = None  # while the pose at the playhead is shown instead
 
     # -- state ---------------------------------------------------------------------------------------------
 
@@ -90,7 +90,7 @@ class KeyframePlayback(Playback):
     @property
     def is_previewing(self) -> bool:
         """Whether the pose at the playhead is shown instead of the present one."""
-        return self._present_pose is not None
+        return self._present is not None
 
     @property
     def is_dragging(self) -> bool:
@@ -141,7 +141,8 @@ class KeyframePlayback(Playback):
         assert session is not None
         assert pose is not None, "expected keyframes"
         drawing = self._drawing(session, time)
-        return Frame(drawing, pose[0], draw_order(drawing, session.present.pins, *pose))
+        pins = self.animation.pins_at(session.present.pins, time)
+        return Frame(drawing, pose[0], draw_order(drawing, pins, *pose))
 
     def onion_poses(self) -> tuple[list[Floats], list[Floats]]:
         """The poses of the onion skin before and after the playhead, the nearest ones first."""
@@ -166,13 +167,12 @@ class KeyframePlayback(Playback):
         self.selected &= set(self.stored_animation.times)
         if not self.is_dragging:
             self.visible_range.fit(max(_MIN_TOTAL_SECONDS, 1.2 * self.duration, self.time))
-        if self._present_pose is None or session.is_previewing or session.history.is_open:
+        if self._present is None or session.is_previewing or session.history.is_open:
             return
-        kept_layers = session.drawing is self._present_drawing
-        if session.state.positions is self._present_pose and kept_layers:  # an edit of something else
+        if keyed_values(session).differs_from(self._present):
+            self._present = self._last_update = None
+        else:  # an edit of something else
             self._show()
-        else:
-            self._present_pose = self._last_update = None
 
     def _time_of_present(self) -> float:
         """The time of the first keyframe whose pose is the present one; 0 if there is none."""
@@ -189,7 +189,11 @@ class KeyframePlayback(Playback):
         if session is None or not self.animation.keyframes or self.is_previewing:
             return False
         pose, drawing = self.pose(self.time), session.drawing
-        if self._drawing(session, self.time) is not drawing:
+        pins = session.state.pins
+        if (
+            self._drawing(session, self.time) is not drawing
+            or self.animation.pins_at(pins, self.time) != pins
+        ):
             return True
         return pose is not None and not np.array_equal(pose, session.state.positions)
 
@@ -207,8 +211,9 @@ class KeyframePlayback(Playback):
             self.show_present()
             return
         present = session.present
-        self._present_pose, self._present_drawing = present.positions, session.present_document.drawing
-        pins = pins_fixed_at_pose(session.drawing.mesh, present.pins, pose[0])
+        self._present = keyed_values(session)
+        keyed_pins = self.animation.pins_at(present.pins, self.time)
+        pins = pins_fixed_at_pose(session.drawing.mesh, keyed_pins, pose[0])
         drawing, current = self._drawing(session, self.time), session.present_document.drawing
         shown = replace(
             present,
@@ -221,7 +226,7 @@ class KeyframePlayback(Playback):
 
     def show_present(self) -> None:
         """Show the present pose."""
-        self._present_pose = self._last_update = None
+        self._present = self._last_update = None
         session = self._editor.session
         if session is not None and not session.history.is_open:
             session.end_preview()
@@ -251,11 +256,11 @@ class KeyframePlayback(Playback):
         if session is None or self._editor.is_busy:
             return
         time = as_keyframe_time(self.time if time is None else time)
-        layers = session.drawing.layer_view
+        layers, depths = session.drawing.layer_view, pin_depths(session.state.pins)
         if positions is None and self.is_previewing:
             positions, crossings = session.state.positions, session.state.crossings
         label = mark("Update Keyframe") if time in self.animation.times else mark("Add Keyframe")
-        self._edit(label, *key_edits(self.animation, time, positions, crossings, layers))
+        self._edit(label, *key_edits(self.animation, time, positions, crossings, layers, depths))
         self.selected, self.time = frozenset({time}), time
 
     def delete_keyframes(self) -> None:

@@ -90,6 +90,7 @@ def animation_crossings(
 ) -> tuple[Floats, Ints]:
     """The pose (n, 2) of an animation at a time and its crossings (s, 2); there must be keyframes."""
     start, end, share, pose_at = poses.moment(mesh, animation, time)
+    pins = animation.pins_at(pins, time)
     return blend.crossings(mesh, pins, start, end, share, pose_at)
 
 
@@ -100,7 +101,7 @@ def animation_frame(
     mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
     pose, crossings = animation_crossings(poses, blend or CrossingBlend(), mesh, pins, animation, time)
     drawing = poses.drawing(document.drawing, animation, time)
-    return Frame(drawing, pose, draw_order(drawing, pins, pose, crossings))
+    return Frame(drawing, pose, draw_order(drawing, animation.pins_at(pins, time), pose, crossings))
 
 
 def _intervals_around(

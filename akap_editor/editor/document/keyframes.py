@@ -1,6 +1,6 @@
 """Keyframes: poses at times, with the easing between them."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -11,6 +11,7 @@ from ...words import tr
 from .crossings import as_crossings, no_crossings
 from .easing import check_keyframe_easing, keyframe_easing_function
 from .named_poses import as_pose
+from .pin import Pin, PinDepths, as_pin_depths, with_depths
 
 MAX_KEYFRAME_TIME = 3600.0  # seconds
 TIME_DECIMALS = 3  # whole milliseconds, so that a keyframe can be found by its time
@@ -22,8 +23,8 @@ class Keyframe:
 
     ease: the easing from here to the next keyframe, see `easing.check_keyframe_easing`; None for that of
     the animation. crossings: which part passes in front, (s, 2), see `EditState`. layers: which layers are
-    visible from here on, and their order; None leaves them as they are. Raises InputError on a time or easing
-    out of range.
+    visible from here on, and their order; None leaves them as they are. depths: of the pins from here on;
+    pins without one keep theirs. Raises InputError on a time, easing or depth out of range.
     """
 
     time: float
@@ -31,11 +32,13 @@ class Keyframe:
     ease: str | None = None
     crossings: Ints = field(default_factory=no_crossings)
     layers: LayerView | None = None
+    depths: PinDepths = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", as_keyframe_time(self.time))
         object.__setattr__(self, "positions", as_pose(self.positions, "keyframe"))
         object.__setattr__(self, "crossings", as_crossings(self.crossings))
+        object.__setattr__(self, "depths", as_pin_depths(self.depths))
         if self.ease is not None:
             check_keyframe_easing(self.ease)
 
@@ -99,6 +102,12 @@ class Animation:
         views = [(each.time, each.layers) for each in self.keyframes if each.layers is not None]
         past = [view for start, view in views if start <= time]
         return past[-1] if past else views[0][1] if views else None
+
+    def pins_at(self, pins: Sequence[Pin], time: float) -> tuple[Pin, ...]:
+        """Pins with the depths that they have at a time: a step at each keyframe, as for the layers."""
+        keyed = [(each.time, each.depths) for each in self.keyframes if each.depths]
+        past = [depths for start, depths in keyed if start <= time]
+        return with_depths(pins, past[-1] if past else keyed[0][1] if keyed else ())
 
     def map_layers(self, change: Callable[[LayerView], LayerView]) -> "Animation":
         """Replace the layers of each keyframe that has some by ``change(layers)``."""

@@ -2,8 +2,8 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,9 @@ MAX_DEPTH = 999  # in front of the drawing or behind it
 MAX_PIN_NAME = 100  # characters
 MAX_PIN_ANGLE = 20 * math.pi  # radians, in either direction
 WEIGHT_TOLERANCE = 1e-9
+
+
+PinDepths = tuple[tuple[int, int], ...]  # ids of pins and their depths, with ascending ids
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +76,39 @@ def pin_points(pins: Sequence[Pin]) -> MeshPoints:
         np.array([pin.face for pin in pins], dtype=np.int32),
         np.array([pin.weights for pin in pins]).reshape(-1, 3),
     )
+
+
+def pin_depths(pins: Sequence[Pin]) -> PinDepths:
+    """The depths of pins."""
+    return tuple(sorted((pin.id, pin.depth) for pin in pins))
+
+
+def with_depths(pins: Sequence[Pin], depths: PinDepths) -> tuple[Pin, ...]:
+    """Pins with other depths; those without one among them keep theirs, and ids without a pin are ignored."""
+    by_id = dict(depths)
+    return tuple(
+        pin if by_id.get(pin.id, pin.depth) == pin.depth else replace(pin, depth=by_id[pin.id])
+        for pin in pins
+    )
+
+
+def as_pin_depths(values: Mapping[int, int] | PinDepths) -> PinDepths:
+    """Depths by the ids of pins, checked. Raises InputError on values out of range."""
+    depths = dict(values)
+    for pin_id, depth in depths.items():
+        if type(pin_id) is not int or type(depth) is not int:
+            raise InputError(tr("depths: expected integers, got {value!r:.60}", value=(pin_id, depth)))
+        if abs(pin_id) > MAX_INTEGER or abs(depth) > MAX_DEPTH:
+            raise InputError(
+                tr(
+                    "depths: expected depths up to {most}, got {value!r:.60}",
+                    most=MAX_DEPTH,
+                    value=(pin_id, depth),
+                )
+            )
+    if len(depths) > MAX_PINS:
+        raise InputError(tr("expected at most {most} pins, got {count}", most=MAX_PINS, count=len(depths)))
+    return tuple(sorted(depths.items()))
 
 
 def check_pins(pins: Sequence[Pin], faces: int) -> None:

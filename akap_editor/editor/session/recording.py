@@ -108,7 +108,7 @@ def opening_edits(document: Document) -> list[Edit]:
         edits.append(SetCrossings(state.crossings))
     edits += [AddPose(pose.name, pose.positions, pose.crossings) for pose in state.poses]
     edits += [
-        SetKeyframe(key.time, key.positions, key.ease, key.crossings, key.layers)
+        SetKeyframe(key.time, key.positions, key.ease, key.crossings, key.layers, key.depths)
         for key in state.animation.keyframes
     ]
     if state.animation.ease != Animation.ease:

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,27 +17,12 @@ from ..document.crossings import crossings_in_pose
 from ..document.document import Document, EditState
 from ..document.drawing import Drawing
 from ..document.pin_angles import pin_angles
-from .edits import Edit, Effect, SetLayerView, SetPins, SetPose
+from .edits import Edit, Effect, SetPins
 from .event_log import EventLog
 from .history import History
+from .preview import Preview
 from .recording import Recording, drawing_header, opening_edits
 from .stepper import INLINE, PIN_TOLERANCE, Stepper
-
-
-@dataclass(frozen=True, eq=False)
-class Preview:
-    """A state that is shown in place of the present one; see `Session.preview`.
-
-    present: the state to return to; steps_left: of its motion; shown: the previewed state; line: of the
-    recording, the one after which the previewed state was the present one, or None; takes_pose: whether the
-    next gesture starts from the previewed pose.
-    """
-
-    present: EditState
-    steps_left: int
-    shown: EditState
-    line: int | None
-    takes_pose: bool
 
 
 class Session:
@@ -267,10 +252,8 @@ class Session:
         self._stepper.reset_full_turns()
         self._record("begin", label=label)
         if preview is not None and preview.takes_pose:
-            view = (preview.shown.drawing or self._opened_drawing).layer_view
-            if view is not None:
-                self.apply(SetLayerView(view))
-            self.apply(SetPose(preview.shown.positions, preview.shown.crossings))
+            for edit in preview.taking_edits(self._opened_drawing):
+                self.apply(edit)
             self._taken_pose = self.state
 
     def rename(self, label: str) -> None:

@@ -11,7 +11,7 @@ from ...words import tr
 from .archive import Archive, ArchiveEntry
 from .json_records import Json, numbers, optional, parse_record, require
 from .layer_entries import read_layer_view, write_layer_view
-from .state_records import read_crossings, write_crossings
+from .state_records import read_crossings, read_depths, write_crossings, write_depths
 
 POSES_INDEX, KEYFRAMES_INDEX = "poses.json", "animation.json"
 MAX_POSES, MAX_KEYFRAMES = 1000, 10_000
@@ -109,6 +109,7 @@ def keyframe_entries(animation: Animation) -> list[ArchiveEntry]:
             **({} if key.ease is None else {"ease": key.ease}),
             **write_crossings(key.crossings),
             **write_layer_view(key.layers),
+            **write_depths(key.depths),
         }
         for key in animation.keyframes
     ]
@@ -154,7 +155,8 @@ def _read_keyframe(record: Json, poses: list[Floats]) -> Keyframe:
     if not 0 <= number < len(poses):
         raise InputError(tr("expected a pose below {count}, got {number}", count=len(poses), number=number))
     ease = require(record, "ease", str) if "ease" in record else None
-    return Keyframe(float(time), poses[number], ease, read_crossings(record), read_layer_view(record))
+    layers, depths = read_layer_view(record), read_depths(record)
+    return Keyframe(float(time), poses[number], ease, read_crossings(record), layers, depths)
 
 
 # -- arrays --------------------------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 """Reads pins and settings from untrusted JSON, and checks states, for .akap files and pose files."""
 
+import re
 import reprlib
 from typing import Any
 
@@ -9,7 +10,7 @@ from ...display_text import display_text
 from ...editor.document.crossings import as_crossings
 from ...editor.document.document import EditState
 from ...editor.document.named_poses import as_pose
-from ...editor.document.pin import MAX_PINS, Pin, check_pins
+from ...editor.document.pin import MAX_PINS, Pin, PinDepths, as_pin_depths, check_pins
 from ...editor.document.settings import Settings
 from ...editor.document.stiffness import as_stiffness
 from ...errors import InputError
@@ -18,6 +19,7 @@ from ...words import tr
 from .json_records import Json, numbers, optional, require
 
 MAX_CROSSINGS = 100_000
+_PIN_ID = re.compile(r"-?[0-9]{1,19}")
 
 
 def read_pins(records: list[Any]) -> tuple[Pin, ...]:
@@ -68,6 +70,19 @@ def read_crossings(record: Json) -> Ints:
 def write_crossings(crossings: Ints) -> Json:
     """The entry of a record for crossings (s, 2); empty if there are none."""
     return {"crossings": crossings.tolist()} if len(crossings) else {}
+
+
+def read_depths(record: Json) -> PinDepths:
+    """The depths of pins in a record, none if absent. Raises InputError on values of other kinds."""
+    depths = optional(record, "depths", dict, {})
+    if not all(_PIN_ID.fullmatch(name) for name in depths):
+        raise InputError(tr("depths: expected ids of pins, got {names}", names=reprlib.repr(list(depths))))
+    return as_pin_depths({int(name): depth for name, depth in depths.items()})
+
+
+def write_depths(depths: PinDepths) -> Json:
+    """The entry of a record for depths of pins; empty if there are none."""
+    return {"depths": {str(pin): depth for pin, depth in depths}} if depths else {}
 
 
 def read_settings(record: Json) -> Settings:

@@ -70,7 +70,7 @@ def bake_animation(document: Document) -> BakedAnimation | None:
     numbers = []
     for time in times:
         pose, crossings = animation_crossings(interpolation, blend, mesh, state.pins, animation, time)
-        overlaps = overlaps_of(mesh, state.pins, pose, crossings)
+        overlaps = overlaps_of(mesh, animation.pins_at(state.pins, time), pose, crossings)
         shown = interpolation.drawing(drawing, animation, time)
         numbers.append(collected.number_for(shown, overlaps, is_keyframe=time in animation.times))
         poses.append(pose)

@@ -12,10 +12,13 @@ from akap_editor.editor.animation.keyframe_poses import KeyframePoses, animation
 from akap_editor.editor.animation.keyframe_times import mirror_easings, stretch_times
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing
+from akap_editor.editor.document.keyframes import Keyframe
 from akap_editor.editor.document.remesh import remesh_drawing
 from akap_editor.editor.document.rest_pose import with_pose_as_rest
 from akap_editor.editor.session.edits import Remesh
 from akap_editor.editor.session.session import Session
+from akap_editor.errors import InputError
+from akap_editor.io.akap.project import load, save
 from tests.support.editor_driver import Driver, bits, replayed_state
 from tests.support.puppets import BODY, HAT, SKULL, puppet
 
@@ -322,3 +325,57 @@ def test_auto_key_keys_a_switched_layer(switched):
     key = driver.session.present.animation.keyframes[-1]
     assert key.time == 2.0
     assert not key.layers.visible[BODY]
+
+
+@pytest.fixture
+def deep(playback, pinned):
+    """Pin 2 has depth 3 in the keyframe at 1 second, and 0 in that at 0."""
+    playback.scrub(0.0)
+    playback.set_keyframe(0.0)
+    playback.scrub(1.0)
+    gestures.set_depth(pinned.editor, 2, 3)
+    playback.update()
+    assert playback.shows_unkeyed_pose
+    playback.set_keyframe(1.0)
+    return pinned
+
+
+def depths(state):
+    return {pin.id: pin.depth for pin in state.pins}
+
+
+def test_depths_of_pins_are_keyed_and_change_at_keyframes(playback, deep):
+    session = deep.session
+    for time, depth in ((0.0, 0), (0.9, 0), (1.0, 3), (2.0, 3)):
+        playback.scrub(time)
+        assert depths(session.state)[2] == depth
+        assert not playback.shows_unkeyed_pose
+    playback.show_present()
+    assert depths(session.state)[2] == 3, "of the present pose"
+
+
+def test_a_gesture_goes_on_with_the_depths_at_the_playhead(playback, deep, drawing):
+    session = deep.session
+    playback.scrub(0.5)
+    before = bits(session.present)
+    gestures.set_depth(deep.editor, 1, 5)
+    assert (depths(session.state)[1], depths(session.state)[2]) == (5, 0)
+    assert bits(replayed_state(session.recording, drawing)) == bits(session.state)
+    session.undo()
+    assert bits(session.present) == before
+
+
+def test_documents_with_keyed_depths_are_recorded_saved_and_read(deep, drawing, tmp_path):
+    keyframes = deep.session.present.animation.keyframes
+    assert dict(keyframes[-1].depths)[2] == 3
+    save(deep.session.present_document, tmp_path / "deep.akap")
+    opened = load(tmp_path / "deep.akap")
+    assert [each.depths for each in opened.state.animation.keyframes] == [each.depths for each in keyframes]
+    recorded = Session(opened)
+    assert bits(replayed_state(recorded.recording, drawing)) == bits(opened.state)
+
+
+@pytest.mark.parametrize("bad", [{1: 1000}, {1: 0.5}, {"1": 1}, {10**20: 1}, {1: True}])
+def test_bad_depths_are_refused(drawing, bad):
+    with pytest.raises(InputError, match="depths: expected"):
+        Keyframe(0.0, drawing.mesh.vertices, depths=bad)

@@ -29,6 +29,7 @@ def insert_edits(animation: Animation, keyframes: Sequence[Keyframe]) -> list[Ke
     deletion = [DeleteKeyframes(replaced)] if replaced else []
     start = [] if animation.keyframes else [SetEasing(None, NEW_EASING)]
     new = (
-        SetKeyframe(each.time, each.positions, each.ease, each.crossings, each.layers) for each in keyframes
+        SetKeyframe(each.time, each.positions, each.ease, each.crossings, each.layers, each.depths)
+        for each in keyframes
     )
     return [*deletion, *start, *new]

@@ -13,6 +13,7 @@ from ....words import tr
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.keyframes import Animation, Keyframe, as_keyframe_time
+from ...document.pin import PinDepths, as_pin_depths
 from .edit import (
     Edit,
     Json,
@@ -44,7 +45,8 @@ class SetKeyframe(KeyframeEdit):
 
     Replaces a keyframe at this time. ease: see `easing.check_keyframe_easing`; None keeps the easing of a
     replaced keyframe. crossings: which part passes in front in ``positions``, see `EditState`. layers: which
-    are visible from here on, and their order, by default the current ones.
+    are visible from here on, and their order, by default the current ones. depths: of the pins from here on,
+    by id.
     """
 
     name = "key"
@@ -55,25 +57,30 @@ class SetKeyframe(KeyframeEdit):
     ease: str | None = None
     crossings: ArrayLike | None = None
     layers: LayerView | None = None
+    depths: PinDepths = ()
 
     def animate(self, animation: Animation, state: EditState, drawing: Drawing) -> Animation:
         positions, crossings = pose_and_crossings(self.positions, self.crossings, state, drawing)
         layers = drawing.layer_view
         if self.layers is not None and drawing.layers:
             layers = drawing.with_layer_view(self.layers).layer_view
-        return animation.with_keyframe(Keyframe(self.time, positions, self.ease, crossings, layers))
+        return animation.with_keyframe(
+            Keyframe(self.time, positions, self.ease, crossings, layers, self.depths)
+        )
 
     def to_json(self, drawing: Drawing) -> Json:
         ease = {} if self.ease is None else {"ease": self.ease}
         pose = {**positions_to_json(self.positions), **crossings_to_json(self.crossings)}
         layers = {} if self.layers is None else {"layers": layer_view_to_json(self.layers)}
-        return {"time": self.time, **ease, **pose, **layers}
+        depths = {"depths": {str(pin): depth for pin, depth in self.depths}} if self.depths else {}
+        return {"time": self.time, **ease, **pose, **layers, **depths}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         positions = positions_from_json(event, target, drawing)
         layers = layer_view_from_json(event["layers"]) if "layers" in event else None
-        return cls(event["time"], positions, event.get("ease"), crossings_from_json(event), layers)
+        depths = as_pin_depths({int(pin): depth for pin, depth in event.get("depths", {}).items()})
+        return cls(event["time"], positions, event.get("ease"), crossings_from_json(event), layers, depths)
 
 
 @dataclass(frozen=True)
