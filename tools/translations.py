@@ -7,6 +7,7 @@ are gone, and prints what is missing.
 
 import ast
 from collections.abc import Container, Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO
 
@@ -17,6 +18,13 @@ from babel.messages.pofile import read_po, write_po
 from akap_editor.words import LANGUAGES, po_path
 
 ROOT = Path(__file__).resolve().parents[1]
+_NOISE = tuple(
+    f'"{field}:'
+    for field in (
+        *("Report-Msgid-Bugs-To", "POT-Creation-Date", "PO-Revision-Date", "Last-Translator"),
+        *("Language-Team", "Generated-By"),
+    )
+)
 KEYWORDS = {
     "tr": None,
     "mark": None,
@@ -65,6 +73,15 @@ def translation(language: str) -> Catalog:
         return read_po(file, locale=language)
 
 
+def store(catalog: Catalog, language: str) -> None:
+    """Write a file, without the lines of its header that change with each call or say nothing."""
+    content = BytesIO()
+    write_po(content, catalog, width=0, no_location=True, sort_by_file=True)
+    lines = content.getvalue().decode().splitlines()
+    kept = [line for line in lines if not line.startswith(_NOISE)]
+    po_path(language).write_text("\n".join(kept) + "\n", "utf-8")
+
+
 def missing(catalog: Catalog, texts: Catalog) -> list[str]:
     """The texts that a catalog has no translation of, or not of each plural form."""
 
@@ -85,8 +102,7 @@ def main() -> None:
         catalog = translation(language)
         catalog.update(texts, no_fuzzy_matching=True, update_header_comment=False)
         catalog.obsolete.clear()
-        with po_path(language).open("wb") as file:
-            write_po(file, catalog, width=0, no_location=True, omit_header=False, sort_by_file=True)
+        store(catalog, language)
         left = missing(catalog, texts)
         print(f"{language}: {len(texts) - len(left)} texts, {len(left)} without a translation")
 
