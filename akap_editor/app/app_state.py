@@ -1,5 +1,6 @@
 """The state of the window: the editor, and what two or more of its dialogs, panels and jobs share."""
 
+import math
 import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -56,7 +57,8 @@ class AppState:
     notice: text in the status bar until the next edit; error: text that must be read before anything else;
     task: the work whose progress a dialog shows; pose_exports: exports in the background; is_closing: whether
     the window is about to close; panels_are_hidden: whether only canvas and menus are shown; is_full_screen:
-    whether the window is to cover its monitor.
+    whether the window is to cover its monitor; exported: the file that was exported last, after the notice
+    that says so; frame_delay: seconds until a frame is due because something on the screen moves by itself.
 
     folder: where the next file dialog starts; preferences: what is stored between runs; autosave: keeps
     recovery copies, None for none; offscreen_renderer, thumbnails: share the window's OpenGL context.
@@ -75,6 +77,8 @@ class AppState:
     is_closing: bool = False
     panels_are_hidden: bool = False
     is_full_screen: bool = False
+    exported: tuple[str, Path] | None = None
+    frame_delay: float = math.inf
     folder: Path = field(default_factory=Path.cwd)
     preferences: Preferences = field(default_factory=Preferences)
     autosave: Autosave | None = None

@@ -157,6 +157,16 @@ def remembered_position(
     return None
 
 
+def remember_place(handle: Any, full_screen: FullScreen, scale: float, preferences: Preferences) -> None:
+    """Store size and position of the window, and whether it is maximized. scale: points per design point."""
+    is_maximized = bool(glfw.get_window_attrib(handle, glfw.MAXIMIZED))
+    preferences.put("maximized", is_maximized)
+    if not (is_maximized or full_screen.is_on or glfw.get_window_attrib(handle, glfw.ICONIFIED)):
+        width, height = glfw.get_window_size(handle)
+        preferences.put("window", [round(width / scale), round(height / scale)])
+        preferences.put("place", list(glfw.get_window_pos(handle)))
+
+
 def _shifted(start: int, screen_start: int, screen_length: int, length: int) -> int:
     """The start of an interval, moved so that it ends on the screen; at the earliest that of the screen."""
     return max(min(start, screen_start + screen_length - length), screen_start)

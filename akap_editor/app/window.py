@@ -3,6 +3,7 @@
 # imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
 from imgui_bundle import imgui  # isort: skip
 import ctypes
+import math
 import time
 from collections.abc import Callable
 from functools import partial
@@ -228,17 +229,7 @@ class Window:
 
     def remember(self) -> None:
         """Write the preferences if they have changed. The loop calls it before it sleeps."""
-        is_maximized = bool(glfw.get_window_attrib(self.handle, glfw.MAXIMIZED))
-        width, height = glfw.get_window_size(self.handle)
-        preferences = self.state.preferences
-        preferences.put("maximized", is_maximized)
-        if (
-            not is_maximized
-            and not self._full_screen.is_on
-            and not glfw.get_window_attrib(self.handle, glfw.ICONIFIED)
-        ):
-            preferences.put("window", [round(width / self.scale), round(height / self.scale)])
-            preferences.put("place", list(glfw.get_window_pos(self.handle)))
+        glfw_window.remember_place(self.handle, self._full_screen, self.scale, self.state.preferences)
         self.state.save_preferences()
 
     def _wait_until_needed(self) -> None:
@@ -246,13 +237,13 @@ class Window:
         is_typing, tooltip_delay = imgui.get_io().want_text_input, widgets.tooltip_due()
         limit = tooltip_delay or (BLINK_SECONDS if is_typing else IDLE_SECONDS)
         dialog_delay = self.state.task.seconds_until_shown if self.state.task is not None else 0.0
-        limit = min(limit, dialog_delay or limit)
+        limit = min(limit, dialog_delay or limit, self.state.frame_delay)
         if self.state.part(FileDialog).native_is_open:
             limit = min(limit, NATIVE_DIALOG_SECONDS)
         has_happened = self._wait(limit)
         if has_happened or tooltip_delay or dialog_delay or self.state.part(FileDialog).native_is_answered:
             self._frames_due = SETTLE_FRAMES
-        elif is_typing:
+        elif is_typing or self.state.frame_delay <= limit:
             self._frames_due = 1
 
     def _wait(self, limit: float) -> bool:
@@ -308,6 +299,7 @@ class Window:
     def _build_interface(self) -> None:
         """Build ImGui's part of the frame, take in the input, and step the drawing."""
         state = self.state
+        state.frame_delay = math.inf
         self._watch_focus()
         while self._dropped and not state.is_waiting:
             files.open_dropped(state, self._dropped.pop(0))

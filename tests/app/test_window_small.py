@@ -8,6 +8,7 @@ import pytest
 
 from akap_editor.app import files, widgets
 from akap_editor.app.commands import registry as commands
+from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
 from akap_editor.app.glfw_window import MIN_SIZE
@@ -30,6 +31,14 @@ def ask_export(state):
     state.part(ExportPoseDialog).open(state)
 
 
+def ask_animation(state):
+    state.timeline.show_keyframes()
+    playback = state.timeline.keyframe_playback
+    for time in (0.0, 1.0):
+        playback.set_keyframe(time)
+    state.part(ExportAnimationDialog).open(state)
+
+
 def ask_question(state):
     question = UnsavedChangesQuestion(state.document.drawing.name, lambda: None, lambda: None)
     state.part(UnsavedChangesDialog).ask(question)
@@ -48,6 +57,7 @@ def show_error(state):
     [
         ("Save drawing", ask_save),
         ("Export", ask_export),
+        ("Export animation", ask_animation),
         ("Unsaved changes", ask_question),
         ("Keyboard shortcuts", show_keys),
         ("Error", show_error),

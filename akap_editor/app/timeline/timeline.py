@@ -2,6 +2,7 @@
 
 from typing import Literal
 
+from ...editor.animation.frames import Frame
 from ...editor.animation.keyframe_playback import KeyframePlayback
 from ...editor.animation.keyframe_times import TIME_STEP
 from ...editor.animation.playback import Playback
@@ -37,6 +38,12 @@ class Timeline:
     def shows_keyframes(self) -> bool:
         """Whether the panel is visible and shows keyframes."""
         return self.is_shown and self.mode == "keyframes"
+
+    def frame(self, time: float) -> Frame:
+        """What the current mode shows at a time in seconds."""
+        if self.mode == "keyframes":
+            return self.keyframe_playback.frame(time)
+        return self.session_playback.frame(time)
 
     def follow(self) -> str:
         """Record the session's state, once a frame; a sentence if it was continued from an earlier moment."""

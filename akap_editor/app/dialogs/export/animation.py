@@ -11,7 +11,7 @@ from imgui_bundle import ImVec2, imgui
 from ....display_text import display_name, file_stem
 from ....editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
 from ....editor.document.easing import EASING_LABELS, EASINGS
-from ....editor.framing import Color
+from ....editor.framing import Box, Color, output_size
 from ....errors import InputError
 from ....io.animation.formats import (
     ANIMATION_FORMATS,
@@ -32,6 +32,8 @@ from ..file_dialog import FileDialog, FileRequest
 from ..replace_files import ReplaceFilesDialog
 from .animation_size import AnimationSize
 from .fields import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
+from .preview import AnimationPreview
+from .size_estimate import SizeEstimate, WrittenAnimation, size_in_words
 
 PREFERENCE = "animation"  # name of the stored options
 
@@ -40,6 +42,7 @@ FRAME_RATES = (12, 24, 30, 60)
 LIMITS = {"fps": (1.0, 120.0), "size": (16, 8192), "speed": (0.01, 100.0)}
 _POSING_SHARE = 0.4  # of the time until the last frame is drawn
 _WIDTH, _HEIGHT, _LIST_WIDTH = 600, 346, 190  # design points
+_MIN_PREVIEW, _MARGINS, _ROOM_ABOVE_AND_BELOW = 160, 80, 104  # around all that is in the dialog
 
 T = TypeVar("T")
 
@@ -122,6 +125,8 @@ class ExportAnimationDialog:
     def __init__(self) -> None:
         self.is_open = False
         self._size = AnimationSize()
+        self._estimate = SizeEstimate()
+        self._preview = AnimationPreview()
 
     def open(self, state: AppState) -> None:
         """Show the dialog if there is a range to export; playback stops. It loops if playback does."""
@@ -143,14 +148,27 @@ class ExportAnimationDialog:
         if not widgets.begin_dialog("Export animation"):
             return
         options = AnimationExportOptions.remembered(state.preferences)
-        width, height = _LIST_WIDTH * scale, _HEIGHT * scale
+        window = imgui.get_main_viewport().size
+        height = min(_HEIGHT * scale, window.y - _ROOM_ABOVE_AND_BELOW * scale)
+        width = _LIST_WIDTH * scale
         options.format = format_list(DIALOG_FORMATS, options.chosen_format, width, height).label
         imgui.same_line(0, 18 * scale)
         size = ImVec2((_WIDTH - _LIST_WIDTH - 18) * scale, height)
         imgui.begin_child("##options", size, widgets.NAV_FLATTENED)
         _draw_options(options, scale)
-        _draw_result(state, options, self._size, scale)
+        times, framing, problem = _written_frames(state, options, self._size)
+        animation = _written_animation(options, times, framing)
+        size_in_bytes = None if animation is None else self._estimate.advance(state, animation)
+        _draw_result(options, len(times), framing, problem, scale)
+        _draw_file_size(size_in_bytes, scale)
         imgui.end_child()
+        side = min(height / scale, window.x / scale - _WIDTH - _MARGINS)
+        if side >= _MIN_PREVIEW:
+            imgui.same_line(0, 18 * scale)
+            background = options.visible_background
+            self._preview.draw(
+                state, times, options.written_fps, framing, background, round(side * scale), scale
+            )
         imgui.spacing()
         options.remember(state.preferences)
         accepted = widgets.button(tr("Export..."), primary=True)
@@ -164,22 +182,15 @@ class ExportAnimationDialog:
 
     def _close(self) -> None:
         self.is_open = False
+        self._estimate.close()
         widgets.close_popup()
 
 
-def frame_at(state: AppState, time: float) -> Frame:
-    """The timeline's frame at a time in seconds."""
-    keyed = state.timeline.mode == "keyframes"
-    return (
-        state.timeline.keyframe_playback.frame(time) if keyed else state.timeline.session_playback.frame(time)
-    )
-
-
-def frame_count(state: AppState, options: AnimationExportOptions) -> int:
-    """The number of frames of an export with these options."""
+def frame_times_in_order(state: AppState, options: AnimationExportOptions) -> list[float]:
+    """Times of the frames of an export with these options, seconds on the timeline, in playing order."""
     start, end = state.timeline.playback.played_range
     times = options.frame_times(start, end)
-    return len(options.playing_order(times, frame_at(state, start), frame_at(state, end)))
+    return options.playing_order(times, state.timeline.frame(start), state.timeline.frame(end))
 
 
 def request_file(state: AppState, options: AnimationExportOptions) -> None:
@@ -224,7 +235,7 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
     posed = _POSING_SHARE * drawn
     frames = []
     for number, time in enumerate(times):
-        frames.append(frame_at(state, time))
+        frames.append(state.timeline.frame(time))
         yield Progress(
             posed * number / len(times),
             tr("Posing frame {number} of {count}", number=number + 1, count=len(times)),
@@ -264,6 +275,7 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
         file=display_name(path),
         details=encoder.said,
     )
+    state.exported = state.notice, path
 
 
 def _draw_options(options: AnimationExportOptions, scale: float) -> None:
@@ -314,11 +326,42 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     )
 
 
+def _written_frames(
+    state: AppState, options: AnimationExportOptions, measured_size: AnimationSize
+) -> tuple[list[float], tuple[Box, float] | None, str]:
+    """Times of all frames, their box and scale (None until they are known), and what prevents an export."""
+    times = options.frame_times(*state.timeline.playback.played_range)
+    try:
+        framing = measured_size.framing(state, times, options.size, options.chosen_format.is_video)
+    except InputError as error:
+        return frame_times_in_order(state, options), None, str(error)
+    return frame_times_in_order(state, options), framing, ""
+
+
+def _written_animation(
+    options: AnimationExportOptions, times: list[float], framing: tuple[Box, float] | None
+) -> WrittenAnimation | None:
+    """What the size of the file depends on; None until it is known."""
+    if framing is None:
+        return None
+    return WrittenAnimation(
+        options.chosen_format,
+        tuple(times),
+        framing,
+        options.written_fps,
+        options.plays,
+        options.visible_background,
+    )
+
+
 def _draw_result(
-    state: AppState, options: AnimationExportOptions, measured_size: AnimationSize, scale: float
+    options: AnimationExportOptions,
+    count: int,
+    framing: tuple[Box, float] | None,
+    problem: str,
+    scale: float,
 ) -> None:
     """Draw the number of frames, the seconds and the size in pixels of what is written."""
-    count = frame_count(state, options)
     seconds = f"{count / options.written_fps:.1f}".removesuffix(".0")
     text = tr_plural("{count} frame, {seconds} s", "{count} frames, {seconds} s", count, seconds=seconds)
     if options.written_fps < options.fps:
@@ -326,22 +369,24 @@ def _draw_result(
     widgets.label(tr("Result"), LABEL_WIDTH * scale)
     imgui.text(text)
     widgets.label("", LABEL_WIDTH * scale)
-    imgui.text(size_text(state, options, measured_size))
+    imgui.text(problem or size_text(options, framing))
 
 
-def size_text(state: AppState, options: AnimationExportOptions, measured_size: AnimationSize) -> str:
+def _draw_file_size(size: int | None, scale: float) -> None:
+    """Draw the estimated size of the file in bytes, an ellipsis until it is known."""
+    widgets.label("", LABEL_WIDTH * scale)
+    imgui.text("..." if size is None else tr("about {size}", size=size_in_words(size)))
+
+
+def size_text(options: AnimationExportOptions, framing: tuple[Box, float] | None) -> str:
     """The size of the pictures that are written, in words; an ellipsis until it is known."""
-    times = options.frame_times(*state.timeline.playback.played_range)
-    try:
-        size = measured_size.measure(state, times, options.size, options.chosen_format.is_video)
-    except InputError as error:
-        return str(error)
-    if size is None:
+    if framing is None:
         return "..."
+    width, height = output_size(*framing)
     # of a sheet, margins that are empty in all frames are cropped
     text = (
         mark("at most {width} × {height} px")
         if options.chosen_format.is_sheet
         else mark("{width} × {height} px")
     )
-    return tr(text, width=size[0], height=size[1])
+    return tr(text, width=width, height=height)

@@ -28,6 +28,16 @@ class AnimationSize:
     ) -> tuple[int, int] | None:
         """Width and height of the pictures at ``times``, seconds; None if not all poses are measured yet.
 
+        Arguments as in `framing`. Raises InputError if the pictures would be too large.
+        """
+        framing = self.framing(state, times, longest_side, is_even)
+        return None if framing is None else output_size(*framing)
+
+    def framing(
+        self, state: AppState, times: list[float], longest_side: int, is_even: bool
+    ) -> tuple[Box, float] | None:
+        """Box and scale of the pictures at ``times``, seconds; None if not all poses are measured yet.
+
         The window is woken, so that measuring goes on in the next frame. longest_side, is_even: see
         `fitted_box`. Raises InputError if the pictures would be too large.
         """
@@ -45,4 +55,4 @@ class AnimationSize:
                 return None
         if self._box is None:
             raise InputError(tr("times: expected at least one, got none"))
-        return output_size(*fitted_box(self._box, longest_side, is_even))
+        return fitted_box(self._box, longest_side, is_even)

@@ -136,6 +136,7 @@ def _begin_export(state: AppState, options: PoseExportOptions, path: Path) -> No
         if format_of(path).uses_framing:
             width, height = options.output_size(document)
             said = tr("{exported}, {width} × {height} pixels", exported=said, width=width, height=height)
+        state.exported = said, path
         return said
 
     state.notice = tr("Exporting {file} ...", file=display_name(path))

@@ -19,8 +19,7 @@ from akap_editor.app.dialogs.export.animation import (
     AnimationExportOptions,
     ExportAnimationDialog,
     export_animation,
-    frame_at,
-    frame_count,
+    frame_times_in_order,
     size_text,
 )
 from akap_editor.app.dialogs.export.animation_size import AnimationSize
@@ -67,6 +66,18 @@ def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
     assert AnimationExportOptions.remembered(keyed.state.preferences).fps == 60
 
 
+def test_after_an_export_a_button_shows_the_file(keyed, tmp_path, monkeypatch):
+    shown = []
+    monkeypatch.setattr("akap_editor.app.frame.status_bar.show_in_folder", shown.append)
+    export_animation(keyed.state, AnimationExportOptions("GIF", fps=5, size=40), tmp_path / "wave.gif")
+    keyed.settle()
+    keyed.do(lambda hand: hand.item_click("//Status/###show in folder"))
+    assert shown == [tmp_path / "wave.gif"]
+    keyed.state.notice = "Saved figure.akap"
+    keyed.settle()
+    keyed.do(lambda hand: [] if not hand.item_exists("//Status/###show in folder") else pytest.fail("shown"))
+
+
 def test_asking_does_not_change_what_is_seen(keyed):
     keyed.state.timeline.keyframe_playback.show_present()
     before = keyed.session.state
@@ -106,7 +117,7 @@ def test_the_session_moves_between_its_shots_too(keyed, tmp_path):
     )
     before, after = snapshots[index - 1].state.positions, snapshots[index].state.positions
     start = max(snapshots[index - 1].time, snapshots[index].time - 0.25)
-    middle = frame_at(state, 0.5 * (start + snapshots[index].time)).pose
+    middle = state.timeline.frame(0.5 * (start + snapshots[index].time)).pose
     assert (middle != before).any()
     assert (middle != after).any()
     assert np.abs(middle - 0.5 * (before + after)).max() < 0.2 * np.abs(after - before).max()
@@ -123,7 +134,7 @@ def test_what_plays_over_and_over_shows_its_ends_once(keyed, tmp_path):
         keyed.settle()
         assert f"{count} frames" in keyed.state.notice
     playback.mark_range(end=0.4)
-    assert frame_count(keyed.state, AnimationExportOptions("APNG", fps=10)) == 5
+    assert len(frame_times_in_order(keyed.state, AnimationExportOptions("APNG", fps=10))) == 5
 
 
 @pytest.fixture
@@ -141,7 +152,10 @@ def test_what_the_dialog_says_is_what_is_written(round_trip, tmp_path, kind, lon
         pytest.importorskip("av")
     state = round_trip.state
     options = AnimationExportOptions(kind.label, fps=10, size=longest)
-    count, said = frame_count(state, options), size_text(state, options, AnimationSize(clock=lambda: 0.0))
+    count = len(frame_times_in_order(state, options))
+    times = options.frame_times(*state.timeline.playback.played_range)
+    measured = AnimationSize(clock=lambda: 0.0)
+    said = size_text(options, measured.framing(state, times, longest, kind.is_video))
     export_animation(state, options, tmp_path / f"out{kind.suffix}")
     round_trip.settle()
     assert not state.error
@@ -213,8 +227,8 @@ def test_the_dialog_loops_if_playback_does(keyed):
 
 def test_a_gif_has_the_rate_that_players_show(keyed):
     assert AnimationExportOptions("GIF", fps=60).written_fps == 50
-    assert frame_count(keyed.state, AnimationExportOptions("GIF", fps=60)) == 21
-    assert frame_count(keyed.state, AnimationExportOptions("APNG", fps=60)) == 25
+    assert len(frame_times_in_order(keyed.state, AnimationExportOptions("GIF", fps=60))) == 21
+    assert len(frame_times_in_order(keyed.state, AnimationExportOptions("APNG", fps=60))) == 25
 
 
 def test_background_and_size(keyed, tmp_path):
