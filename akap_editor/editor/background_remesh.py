@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import Event
 
 from ..progress import Cancelled, listening, part
@@ -23,13 +23,15 @@ HISTORY_LABEL = mark("Change Mesh")
 class SliderGesture:
     """One drag of a slider: all its values are applied to the state before it, as one entry of the history.
 
-    start_drawing, start_state: from before the gesture; entry: in the history, None before the first mesh.
+    start_drawing, start_state: from before the gesture; entry: in the history, None before the first mesh;
+    label: of this entry.
     """
 
     session: Session
     start_drawing: Drawing
     start_state: EditState
     entry: HistoryEntry | None = None
+    label: str = HISTORY_LABEL
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,13 +89,16 @@ class BackgroundRemesh:
         """Whether a mesh is being made, or requested."""
         return self._requested is not None or self._job is not None
 
-    def request(self, meshing: Meshing, dragging: bool = False) -> None:
-        """Ask for another mesh. dragging: more requests of the same gesture may follow, until `end_drag`."""
+    def request(self, meshing: Meshing, dragging: bool = False, label: str = HISTORY_LABEL) -> None:
+        """Ask for another mesh. dragging: more requests of the same gesture may follow, until `end_drag`.
+
+        label: of the entry in the history.
+        """
         session = self._editor.session
         if session is None:
             return
         if self._gesture is None or not self._is_dragging or self._gesture.session is not session:
-            self._gesture = SliderGesture(session, session.drawing, session.state)
+            self._gesture = SliderGesture(session, session.drawing, session.state, label=label)
         self._requested, self._is_dragging = meshing, dragging
 
     def cancel(self) -> None:
@@ -120,6 +125,7 @@ class BackgroundRemesh:
         """
         if self._gesture is not None and self._gesture.session is not self._editor.session:
             self._gesture = self._requested = self._job = None
+        self._take_cuts()
         has_changed = False
         job = self._job
         if job is not None and job.result.done() and not self._editor.is_busy:
@@ -130,6 +136,13 @@ class BackgroundRemesh:
         if self._job is None and self._requested is not None and self._gesture is not None:
             self._start(self._gesture, self._requested)
         return has_changed
+
+    def _take_cuts(self) -> None:
+        """Request the mesh with the cuts that the knife or the list of cuts asks for."""
+        knife, meshing = self._editor.knife_tool, self.meshing
+        cuts, knife.request = knife.request, None
+        if cuts is not None and meshing is not None:
+            self.request(replace(meshing, cuts=cuts.cuts), label=cuts.label)
 
     def finish(self) -> None:
         """Wait for the requested mesh. Raises InputError as `advance` does."""
@@ -165,7 +178,7 @@ class BackgroundRemesh:
         if gesture.entry is not None and gesture.entry is session.history.last:
             session.undo()
         is_at_start = session.state is gesture.start_state
-        session.begin(HISTORY_LABEL)
+        session.begin(gesture.label)
         try:
             session.apply(Remesh.from_drawing(drawing, state if is_at_start else None))
         except Exception:

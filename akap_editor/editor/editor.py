@@ -20,6 +20,7 @@ from .session.stepper import INLINE
 from .tools.base import IdleTool, Tool, distance
 from .tools.joints import JointsIdle
 from .tools.keyboard_pointer import MARGIN, KeyboardPointer
+from .tools.knife import KnifeIdle
 from .tools.pan import HandIdle, Panning
 from .tools.pins import PinsIdle
 from .tools.stiffness_brush import BrushIdle
@@ -55,7 +56,8 @@ class Editor:
         self.menu_request: Point | None = None  # where the menu of the empty canvas is to open
         self.trails = Trails()
         self.pins_tool, self.hand_tool = PinsIdle(self), HandIdle(self)
-        self.zoom_tool, self.brush_tool, self.joint_tool = ZoomIdle(self), BrushIdle(self), JointsIdle(self)
+        self.zoom_tool, self.brush_tool = ZoomIdle(self), BrushIdle(self)
+        self.joint_tool, self.knife_tool = JointsIdle(self), KnifeIdle(self)
         self.chosen_tool: IdleTool = self.pins_tool
         self._active_tool: Tool | None = None  # None while the idle tool is active
         self._canvas = (0.0, 0.0, 1280.0, 800.0)

@@ -53,13 +53,14 @@ NO_POINTS = MeshPoints(np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
 class TriMesh:
     """A triangle mesh in its rest pose, in drawing units: image pixels, x right, y down.
 
-    vertices: (n, 2) float64, each used by a face, no two of a layer at one place.
+    vertices: (n, 2) float64, each used by a face, no two of a layer at one place, unless the mesh is cut.
     faces: (m, 3) int32, each with a positive signed area, at most one on each side of an edge. No two faces
     meet in a vertex only, because they could rotate freely about it.
     tied: whether a component without pins moves with the nearest one that has pins, see `deform.islands`;
     otherwise it stays where it is.
     layers: (n,) int32 the layer of each vertex, from 0, the hindmost first; None if all lie on one sheet. A
     face has its corners on one layer.
+    is_cut: whether the mesh is open along slits, on whose two lips vertices are at one place.
     Arrays are read-only. Raises InputError if one of these conditions is violated.
     """
 
@@ -67,6 +68,7 @@ class TriMesh:
     faces: Ints
     tied: bool = False
     layers: Ints | None = None
+    is_cut: bool = False
 
     def __post_init__(self) -> None:
         vertices = as_points(self.vertices, "vertices")
@@ -89,6 +91,8 @@ class TriMesh:
         self._check_edges()
 
     def _check_places(self) -> None:
+        if self.is_cut:
+            return
         places = self.vertices if self.layers is None else np.column_stack([self.vertices, self.layers])
         order = np.lexsort(places.T)
         same = (places[order[1:]] == places[order[:-1]]).all(axis=1)
@@ -120,6 +124,7 @@ class TriMesh:
         object.__setattr__(mesh, "vertices", freeze(self.vertices[vertex_order]))
         object.__setattr__(mesh, "faces", freeze(numbers[self.faces[face_order]]))
         object.__setattr__(mesh, "tied", self.tied)
+        object.__setattr__(mesh, "is_cut", self.is_cut)
         layers = None if self.layers is None else freeze(self.layers[vertex_order])
         object.__setattr__(mesh, "layers", layers)
         edges = np.sort(numbers[self.edges], axis=1)
@@ -194,7 +199,7 @@ class TriMesh:
     def _graph(self, edges: Ints) -> csr_array:
         n, (i, j) = len(self.vertices), edges.T
         lengths = np.abs((self.vertices[i] - self.vertices[j]).view(np.complex128)[:, 0])
-        if self.layers is not None:  # a graph has no edges of length 0, which gaps between layers may have
+        if self.layers is not None or self.is_cut:  # gaps may have length 0, which edges of a graph must not
             lengths = np.maximum(lengths, np.finfo(np.float64).tiny)
         return csr_array((np.tile(lengths, 2), (np.r_[i, j], np.r_[j, i])), shape=(n, n))
 

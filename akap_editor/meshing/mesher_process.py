@@ -65,7 +65,8 @@ class MesherProcess:
     ) -> tuple[Floats, Ints]:
         """Triangulate a planar graph: vertices (n, 2) and faces (m, 3).
 
-        graph: "vertices" (p, 2), "segments" (s, 2) indices, "holes" (h, 2), a point in each.
+        graph: "vertices" (p, 2), "segments" (s, 2) indices, "holes" (h, 2), a point in each; optionally
+        "slits" (s,), which segments lie inside, with faces on both sides.
         Raises InputError if the mesher crashes, needs more than ``limit`` seconds, or finds no faces.
         """
         if not np.isfinite(graph["vertices"]).all():

@@ -19,6 +19,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Graph = dict[str, NDArray[Any]]
 
+_ON_LINE = 1e-6  # pixels
+_FRAME = ((False, False), (True, False), (True, True), (False, True))  # whether right, whether below
 _MAX_INSERTED = 1_000_000  # vertices; the process is ended long before
 
 
@@ -58,6 +60,7 @@ def _triangle(graph: Graph, min_angle: float, max_area: float, most: int) -> tup
     """Mesh a graph with Triangle (Shewchuk 1996); ``most`` has no effect, because it needs few vertices."""
     import triangle
 
+    graph.pop("slits", None)
     if not len(graph["holes"]):
         del graph["holes"]
     mesh = triangle.triangulate(graph, f"pq{min_angle:g}a{max_area:.9f}")
@@ -74,12 +77,12 @@ def _pythoncdt(graph: Graph, min_angle: float, max_area: float, most: int) -> tu
     margin = np.abs(high - low).max() / 2
     # Corners of a frame keep the triangles outside so round that new vertices on the outline stay on it. They
     # come last and are dropped with the outside.
-    (left, top), (right, bottom) = low - margin, high + margin
-    frame = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
+    frame = np.where(_FRAME, high + margin, low - margin)
     mesh = cdt.Triangulation(cdt.VertexInsertionOrder.AUTO, cdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0)
     mesh.insert_vertices(np.concatenate([outline, frame]))
     mesh.insert_edges(graph["segments"].astype(np.uint32))
-    outside = mesh.collect_outer_triangles_and_holes()
+    slits = graph["segments"][graph["slits"]] if "slits" in graph else np.zeros((0, 2), np.int32)
+    outside = mesh.collect_outer_triangles_and_holes() if not len(slits) else _outside(mesh, graph)
     # Small faces have fewer bad angles: area first needs fewer vertices, and the angles are right in the end.
     mesh.refine_triangles(_MAX_INSERTED, cdt.RefinementCriterion.LARGEST_AREA, max_area, outside)
     angle = cdt.deg_to_rad(min_angle)
@@ -88,9 +91,39 @@ def _pythoncdt(graph: Graph, min_angle: float, max_area: float, most: int) -> tu
     points, faces = mesh.vertices_array(), mesh.triangles_array()["vertices"].astype(np.int32)
     vertices: Floats = np.stack([points["x"], points["y"]], axis=1)
     if len(np.unique(faces)) > most:
-        faces = _Thinning(vertices, faces).run(len(outline), most, min_angle)
+        faces = _Thinning(vertices, faces, _on_segments(vertices, outline, slits)).run(
+            len(outline), most, min_angle
+        )
     used, index = np.unique(faces, return_inverse=True)
     return vertices[used], index.reshape(-1, 3).astype(np.int32)
+
+
+def _outside(mesh: Any, graph: Graph) -> set[int]:
+    """The triangles outside the outline and in its holes.
+
+    A ray from there crosses the outline an even number of times. The mesher itself would count slits, too.
+    """
+    points = mesh.vertices_array()
+    places = np.stack([points["x"], points["y"]], axis=1)
+    x, y = places[mesh.triangles_array()["vertices"]].mean(axis=1).T
+    is_inside = np.zeros(len(x), dtype=bool)
+    for (ax, ay), (bx, by) in graph["vertices"][graph["segments"][~graph["slits"]]]:
+        if ay != by:
+            crossed = np.flatnonzero((y >= min(ay, by)) & (y < max(ay, by)))
+            is_right = ax + (y[crossed] - ay) / (by - ay) * (bx - ax) > x[crossed]
+            is_inside[crossed[is_right]] ^= True
+    return set(np.flatnonzero(~is_inside).tolist())
+
+
+def _on_segments(points: Floats, corners: Floats, segments: NDArray[Any]) -> set[int]:
+    """The points (p, 2) on segments (s, 2) between corners."""
+    found: set[int] = set()
+    for start, end in corners[segments]:
+        along, offset = end - start, points - start
+        distance = np.abs(along[0] * offset[:, 1] - along[1] * offset[:, 0]) / np.hypot(*along)
+        share = offset @ along / (along @ along)
+        found.update(np.flatnonzero((distance < _ON_LINE) & (share > 0) & (share < 1)).tolist())
+    return found
 
 
 @cache
@@ -104,10 +137,11 @@ class _Thinning:
     """Removes vertices from a constrained Delaunay mesh, which stays one.
 
     A removed vertex leaves a star-shaped polygon, and the constrained Delaunay triangulation of that polygon
-    takes the place of its faces. vertices: (n, 2); faces: (m, 3).
+    takes the place of its faces. vertices: (n, 2); faces: (m, 3); fixed: vertices that stay.
     """
 
-    def __init__(self, vertices: Floats, faces: Ints) -> None:
+    def __init__(self, vertices: Floats, faces: Ints, fixed: set[int]) -> None:
+        self._fixed = fixed
         self._vertices = vertices
         self._places = [complex(x, y) for x, y in vertices.tolist()]
         self._next_number = len(faces)
@@ -125,13 +159,14 @@ class _Thinning:
         smallest one there before.
         """
         limit = 1 / math.tan(math.radians(min_angle))
-        candidates = {vertex for vertex in self._star if vertex >= first}
+        candidates = {vertex for vertex in self._star if vertex >= first} - self._fixed
         while candidates:
             changed: set[int] = set()
             for vertex in sorted(candidates, reverse=True):
                 if len(self._star) <= most:
                     return self._all_faces()
                 changed.update(self._remove(vertex, limit))
+            changed -= self._fixed
             candidates = {vertex for vertex in changed if vertex >= first and vertex in self._star}
         return self._all_faces()
 

@@ -16,6 +16,7 @@ from ..words import tr
 from .mesher_process import MESHER_PROCESS, Refinement
 from .meshers import PYTHONCDT, check_mesher
 from .outline import Outline
+from .slits import Cut, SlitGraph, check_cuts, open_slits, slit_graph
 
 MIN_ANGLE = 28.0  # degrees; meshers provably terminate up to 20.7, and in practice up to 33
 COARSE_MIN_ANGLE = 26.0  # degrees, of PythonCDT where the outline leaves few vertices for good angles
@@ -42,26 +43,35 @@ class _Try:
     result: tuple[Floats, Ints]
 
 
-def triangulate(parts: Sequence[Outline], vertices: int = 2000, mesher: str | None = None) -> TriMesh:
+def triangulate(
+    parts: Sequence[Outline],
+    vertices: int = 2000,
+    mesher: str | None = None,
+    cuts: Sequence[Cut] = (),
+    reach: float = 0.0,
+) -> TriMesh:
     """Make a graded Delaunay mesh of polygons with holes; only the outline can force angles below 28°.
 
     parts: polygons that do not touch one another; vertices: the requested number, met within a few percent
-    unless the outline alone needs more; mesher: "triangle", "pythoncdt", or None for the default one. Faces
-    are in an order for drawing, see `_limbs_last`.
+    unless the outline alone needs more; mesher: "triangle", "pythoncdt", or None for the default one; cuts:
+    strokes along which the mesh is open, and reach: pixels to the outline that they need not reach, see
+    `slit_graph`. Faces are in an order for drawing, see `_limbs_last`.
     Raises InputError for unusable outlines, a number out of range, a mesher that is not installed, or if it
     fails.
     """
     as_number(vertices, "vertices", MIN_VERTICES, MAX_VERTICES)
     mesher = check_mesher(mesher)
     shape = _union(parts)
+    slits = slit_graph(shape, check_cuts(cuts), reach)
     corners = sum(_count_corners(ring) for part in parts for ring in (part.outer, *part.holes))
-    model = _EdgeLengthModel(shape.area, shape.length, corners, vertices)
+    slit_length = 0.0 if slits is None else 2 * slits.slits.length
+    model = _EdgeLengthModel(shape.area, shape.length + slit_length, corners, vertices)
     tries: list[_Try] = []
     edge = model.edge()
     max_area = _equilateral_area(INTERIOR_EDGE_FACTOR * edge)
     for number in range(1, MAX_TRIES + 1):
-        job = _planar_graph(parts, shape, edge)
-        result = MESHER_PROCESS.run(job, Refinement(mesher, MIN_ANGLE, max_area))
+        job = _planar_graph(parts, shape, edge, slits)
+        result = _opened(MESHER_PROCESS.run(job, Refinement(mesher, MIN_ANGLE, max_area)), slits)
         tries.append(_Try(edge, max_area, len(job["vertices"]), len(result[0]), result))
         if abs(tries[-1].count - vertices) <= COUNT_TOLERANCE * vertices or max_area > shape.area:
             break
@@ -80,18 +90,29 @@ def triangulate(parts: Sequence[Outline], vertices: int = 2000, mesher: str | No
             max_area = np.sqrt(nearest.max_area * max(above)) if above else max(scaled, nearest.max_area / 3)
     best = min(tries, key=lambda run: abs(run.count - vertices))
     if mesher == PYTHONCDT and best.count > (1 + COUNT_TOLERANCE) * vertices:
-        best = _coarser(parts, shape, best, vertices)
-    return _oriented_mesh(*best.result)
+        best = _coarser(parts, shape, best, vertices, slits)
+    return _oriented_mesh(*best.result, is_cut=slits is not None)
 
 
-def _coarser(parts: Sequence[Outline], shape: shapely.Geometry, best: _Try, vertices: int) -> _Try:
+def _opened(result: tuple[Floats, Ints], slits: SlitGraph | None) -> tuple[Floats, Ints]:
+    return result if slits is None else open_slits(*result, slits.slits)
+
+
+def _coarser(
+    parts: Sequence[Outline],
+    shape: shapely.Geometry,
+    best: _Try,
+    vertices: int,
+    slits: SlitGraph | None,
+) -> _Try:
     """Mesh a detailed outline with few vertices by PythonCDT, which by itself would need many more."""
     tries = [best]
     scale = 1.0
     for _ in range(COARSE_TRIES):
         edge, max_area = scale * best.edge, scale**2 * best.max_area
-        job = _planar_graph(parts, shape, edge)
-        result = MESHER_PROCESS.run(job, Refinement(PYTHONCDT, COARSE_MIN_ANGLE, max_area, vertices))
+        job = _planar_graph(parts, shape, edge, slits)
+        refinement = Refinement(PYTHONCDT, COARSE_MIN_ANGLE, max_area, vertices)
+        result = _opened(MESHER_PROCESS.run(job, refinement), slits)
         tries.append(_Try(edge, max_area, len(job["vertices"]), len(result[0]), result))
         if abs(tries[-1].count - vertices) <= COUNT_TOLERANCE * vertices:
             break
@@ -160,13 +181,13 @@ def _union(parts: Sequence[Outline]) -> shapely.Geometry:
     return shape
 
 
-def _oriented_mesh(points: Floats, faces: Ints) -> TriMesh:
+def _oriented_mesh(points: Floats, faces: Ints, is_cut: bool) -> TriMesh:
     """Make a mesh without unused vertices, faces oriented to positive area and in `_limbs_last` order."""
     used, faces = np.unique(faces, return_inverse=True)
     points, faces = points[used], faces.reshape(-1, 3).astype(np.int32)
     flipped = signed_areas(points, faces) < 0
     faces[flipped] = faces[flipped][:, ::-1]
-    return TriMesh(points, faces[_limbs_last(points, faces)])
+    return TriMesh(points, faces[_limbs_last(points, faces)], is_cut=is_cut)
 
 
 def _limbs_last(points: Floats, faces: Ints) -> Ints:
@@ -187,8 +208,12 @@ def _limbs_last(points: Floats, faces: Ints) -> Ints:
     return np.argsort(distance[faces].mean(axis=1), kind="stable")
 
 
-def _planar_graph(parts: Sequence[Outline], shape: shapely.Geometry, edge: float) -> dict[str, np.ndarray]:
+def _planar_graph(
+    parts: Sequence[Outline], shape: shapely.Geometry, edge: float, slits: SlitGraph | None
+) -> dict[str, np.ndarray]:
     """The input of a mesher: points, segments no longer than ``edge``, and one point in each hole."""
+    if slits is not None:
+        return {**slits.planar_graph(edge), "holes": _hole_points(parts, shape)}
     rings = [ring for part in parts for ring in (part.outer, *part.holes)]
     points, segments, count = [], [], 0
     for ring in rings:
@@ -198,6 +223,15 @@ def _planar_graph(parts: Sequence[Outline], shape: shapely.Geometry, edge: float
         points.append(dense)
         segments.append(np.stack([index, np.roll(index, -1)], axis=1) + count)
         count += len(dense)
+    return {
+        "vertices": np.concatenate(points),
+        "segments": np.concatenate(segments).astype(np.int32),
+        "holes": _hole_points(parts, shape),
+    }
+
+
+def _hole_points(parts: Sequence[Outline], shape: shapely.Geometry) -> Floats:
+    """A point in each hole of the parts, (h, 2)."""
     holes = []
     for part in parts:
         for hole in part.holes:
@@ -205,8 +239,4 @@ def _planar_graph(parts: Sequence[Outline], shape: shapely.Geometry, edge: float
                 if gap.area > 0:
                     inside = gap.representative_point()
                     holes.append((inside.x, inside.y))
-    return {
-        "vertices": np.concatenate(points),
-        "segments": np.concatenate(segments).astype(np.int32),
-        "holes": np.array(holes, dtype=np.float64).reshape(-1, 2),
-    }
+    return np.array(holes, dtype=np.float64).reshape(-1, 2)

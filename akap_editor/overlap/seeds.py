@@ -4,8 +4,10 @@ import numpy as np
 
 from ..geometry.jit import compiled
 from ..geometry.validation import Floats, Ints
+from .common_area import common_areas
 from .topology import Topology
 
+_TOUCHING = 1e-9  # share of the square of a face's size; faces that touch have less in common
 _FULL_TURN = 2 * np.pi + 1e-9
 
 
@@ -24,6 +26,12 @@ def overlap_seeds(topology: Topology, pose: Floats) -> Ints:
     if len(t.loops) > 1 and t.components.any():
         inside = _enclosed_loops(pose, t.faces, t.rim, t.rim_faces, t.components, t.layers, t.loops)
         seeds = np.concatenate([seeds, inside])
+    if t.is_cut[0] and len(seeds):  # the lips of a slit touch, and by rounding their edges may cross
+        first, second = (np.ascontiguousarray(side) for side in seeds.T)
+        corners = pose[t.faces[first]]
+        sides = np.abs(corners - np.roll(corners, 1, axis=1)).max(axis=(1, 2))
+        common = common_areas(pose, t.faces, first, second)
+        seeds = np.ascontiguousarray(seeds[common > _TOUCHING * sides**2])
     return seeds
 
 

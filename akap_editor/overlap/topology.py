@@ -18,7 +18,7 @@ class Topology:
     edge that ends where each one starts; fans: (c, 2) faces and corners at the vertices of the rim;
     fan_edges: (c,) the rim edge that starts at each of them; components: (m,) the connected component of each
     face; layers: (m,) its layer, whose faces alone it can cross; loops: (l,) one rim edge of each boundary
-    loop.
+    loop; is_cut: (1,) whether the rim has lips of slits, which touch.
     """
 
     faces: Ints
@@ -31,6 +31,7 @@ class Topology:
     components: Ints
     layers: Ints
     loops: Ints
+    is_cut: Ints
 
 
 @lru_cache(maxsize=8)
@@ -60,6 +61,7 @@ def mesh_topology(mesh: TriMesh) -> Topology:
         mesh.component[faces[:, 0]],
         mesh.face_layers,
         np.array([leaving[loop[0]] for loop in mesh.boundary_loops]),
+        np.array([mesh.is_cut]),
     )
     return Topology(*(np.ascontiguousarray(array, dtype=np.int32) for array in arrays))
 

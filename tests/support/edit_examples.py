@@ -80,6 +80,7 @@ def _first_pose(session: Session) -> str:
 
 
 # An edit for the current state of a session. It may be refused by InputError, for example without poses.
+_CUTS = (((0.0, 40.0), (60.0, 40.0)),)
 LAYER_EDITS = frozenset(
     {"layers", "layer-order", "layer-view", "key-layers", "group", "joints"}
 )  # which need a drawing in layers
@@ -93,7 +94,7 @@ EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "pose": lambda session: SetPose(session.state.positions + np.array([3.0, -2.0])),
     "reset": lambda session: ResetPose(),
     "bake": lambda session: SetRestPose(),
-    "mesh": lambda session: Remesh(replace(session.drawing.meshing or Meshing(), vertices=200)),
+    "mesh": lambda session: Remesh(replace(session.drawing.meshing or Meshing(), vertices=200, cuts=_CUTS)),
     "artwork": lambda session: ReloadArtwork(_painted_anew(session.drawing)),
     "limb": lambda session: OrderLimb([pin.id for pin in session.state.pins[-1:]], False),
     "crossings": lambda session: SetCrossings(np.array([[3, 1]], dtype=np.int32)),

@@ -14,6 +14,7 @@ from ...editor.tools.rotate import RING_RADIUS
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, packed
 from ..timeline.motion_paths import draw_motion_paths
+from .cut_markers import draw_cuts
 from .joint_markers import draw_joints
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
@@ -28,6 +29,7 @@ def draw_markers(state: AppState, scale: float) -> None:
     if session is None:
         return
     draw_joints(state, scale)
+    draw_cuts(state, scale)
     draw_motion_paths(state, scale)
     draw, markers = imgui.get_background_draw_list(), editor.tool.markers
     draw.push_clip_rect(ImVec2(*editor.canvas[:2]), ImVec2(*editor.canvas[2:]))

@@ -315,6 +315,7 @@ PIN_TOOL = _tool("Pin Tool", lambda editor: editor.pins_tool, Key.p, icons.ICON_
 HAND_TOOL = _tool("Hand Tool", lambda editor: editor.hand_tool, Key.n, icons.ICON_FA_HAND)
 BRUSH_TOOL = _tool("Stiffness Brush", lambda editor: editor.brush_tool, Key.b, icons.ICON_FA_PAINTBRUSH)
 JOINT_TOOL = _tool("Joint Tool", lambda editor: editor.joint_tool, Key.u, icons.ICON_FA_LINK)
+KNIFE_TOOL = _tool("Knife", lambda editor: editor.knife_tool, Key.x, icons.ICON_FA_SCISSORS)
 ZOOM_TOOL = _tool("Zoom Tool", lambda editor: editor.zoom_tool, Key.z, icons.ICON_FA_MAGNIFYING_GLASS)
 ERASE = Command("Erase Stiffness", _toggle_erasing, (Key.e,), "", _has_brush, _is_erasing)
 DECREASE_BRUSH = Command("Decrease Brush Size", _resize_brush(False), (Key.left_bracket,), "", _has_brush)
@@ -363,7 +364,7 @@ MENUS: tuple[Menu, ...] = (
 )
 COMMANDS = (
     *(item for _, items in MENUS for item in commands_and_files(items) if isinstance(item, Command)),
-    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL, JOINT_TOOL, CROSSHAIR),
+    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL, JOINT_TOOL, KNIFE_TOOL, CROSSHAIR),
     *(ERASE, DECREASE_BRUSH, INCREASE_BRUSH),
     *PANNING,
 )

@@ -21,6 +21,7 @@ SYNONYMS = {
     "Pin Values": mark("coordinates position numbers transform"),
     "Pin Tool": mark("puppet warp deform bend liquify mesh move"),
     "Joint Tool": mark("brad bone rig hinge weld layers skeleton"),
+    "Knife": mark("cut slit split separate scissors apart tear"),
     "Hand Tool": mark("pan scroll move view"),
     "Zoom Tool": mark("magnify magnifying glass loupe"),
     "Stiffness Brush": mark("starch rigid freeze paint stick bone mask"),

@@ -10,6 +10,7 @@ from ..commands.registry import (
     FIT,
     HAND_TOOL,
     JOINT_TOOL,
+    KNIFE_TOOL,
     PIN_TOOL,
     REDO,
     REMOVE_SELECTED,
@@ -20,7 +21,7 @@ from ..commands.registry import (
 from ..theme import ACCENT, TEXT, packed
 
 TOOLBAR: tuple[Command | None, ...] = (
-    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL, JOINT_TOOL),
+    *(PIN_TOOL, HAND_TOOL, ZOOM_TOOL, BRUSH_TOOL, JOINT_TOOL, KNIFE_TOOL),
     None,
     *(UNDO, REDO, REMOVE_SELECTED),
     None,

@@ -1,9 +1,12 @@
 """The sections Mesh and Figures: how the picture is cut out and meshed, and figures of the result."""
 
+import math
 from dataclasses import replace
 from functools import lru_cache
+from itertools import pairwise
 
 from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor.document.drawing import Meshing
 from ...geometry.mesh import TriMesh
@@ -19,6 +22,7 @@ from . import folding
 MIN_VERTICES, MAX_VERTICES = 200, 50_000
 MAX_MARGIN = 20.0  # pixels
 MAX_TOLERANCE = 60.0  # percent
+_CUT_ROWS = 5  # cuts that are visible at once
 _LABEL_WIDTH = 7.6  # times the font size
 
 
@@ -41,6 +45,7 @@ def draw(state: AppState, scale: float) -> None:
     if folding.draw_advanced(state, "Mesh parameters"):
         _draw_outline(state, meshing)
         _draw_mesher(state, meshing)
+    _draw_cuts(state, meshing)
 
 
 def draw_figures(state: AppState, scale: float) -> None:
@@ -121,6 +126,27 @@ def _draw_mesher(state: AppState, meshing: Meshing) -> None:
         state.notice = ""
         state.preferences.mesher = names[index]
         state.remesher.request(replace(meshing, mesher=names[index]))
+
+
+def _draw_cuts(state: AppState, meshing: Meshing) -> None:
+    """Draw the list of the knife's strokes; the one under the pointer is shown on the canvas."""
+    knife = state.editor.knife_tool
+    knife.highlighted = None
+    if not meshing.cuts:
+        return
+    widgets.row("Cuts", f"{len(meshing.cuts)}", "Strokes of the knife (X), along which limbs come apart.")
+    widgets.begin_list("##cuts", min(len(meshing.cuts), _CUT_ROWS))
+    width = imgui.get_content_region_avail().x
+    for index, cut in enumerate(meshing.cuts):
+        length = sum(math.dist(*pair) for pair in pairwise(cut))
+        size = ImVec2(width - 2.0 * imgui.get_font_size(), 0)
+        imgui.selectable(f"Cut {index + 1}, {length:,.0f} px###cut {index}", False, size=size)
+        if imgui.is_item_hovered() or imgui.is_item_focused():
+            knife.highlighted = index
+        imgui.same_line(width - 1.7 * imgui.get_font_size())
+        if widgets.icon_switch(icons.ICON_FA_TRASH, f"remove cut {index}", True, "Remove this cut", 1.7):
+            knife.remove(index)
+    imgui.end_child()
 
 
 def _slider(

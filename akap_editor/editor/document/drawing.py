@@ -21,6 +21,7 @@ from ...meshing.faint import DEFAULT_THRESHOLD, MIN_VISIBLE, fitting_threshold
 from ...meshing.layer_mesh import mesh_layers
 from ...meshing.meshers import check_mesher, default_mesher, nearest_mesher
 from ...meshing.picture_mesh import mesh_picture
+from ...meshing.slits import Cut, check_cuts
 from ...progress import announce, part
 from ...words import tr
 
@@ -35,7 +36,8 @@ class Meshing:
     moved outwards, so that soft edges lie inside the mesh and parts that are close together join; threshold
     ("Alpha threshold"): share of full opacity at which the picture ends; background: tolerance with which a
     plain background was removed (see `remove_background`), None if none was; mesher: the program that makes
-    the mesh, see `meshers`.
+    the mesh, see `meshers`; cuts: strokes of the knife, in pixels of the picture, along which the mesh is
+    open, see `slits`; a drawing in layers has none. Raises InputError on bad strokes.
     """
 
     vertices: int = 2000
@@ -43,6 +45,10 @@ class Meshing:
     threshold: float = 0.5
     background: float | None = None
     mesher: str = field(default_factory=default_mesher)
+    cuts: tuple[Cut, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "cuts", check_cuts(self.cuts))
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +224,7 @@ def mesh_drawing(
     """
     meshing = replace(meshing, mesher=nearest_mesher(meshing.mesher))
     picture_mesh = mesh_picture(
-        image[..., 3], meshing.vertices, meshing.expand, meshing.threshold, meshing.mesher
+        image[..., 3], meshing.vertices, meshing.expand, meshing.threshold, meshing.mesher, meshing.cuts
     )
     mesh = replace(picture_mesh.mesh, tied=True)
     height, width = image.shape[:2]

@@ -32,6 +32,7 @@ from .rig.joint import Joint
 
 _MAX_UV_OFFSET = 0.5  # pixels of a vertex from its texture coordinates on the picture
 _MAX_PIN_DISTANCE = 0.08  # share of √area: a pin farther from the new mesh was on a part that is gone
+_SIDE = 0.05  # share of the way from a vertex to the middle of its faces
 _MIN_AREA = 0.02  # share of the rest area to which flipped faces grow
 _MAX_ROUNDS = 1000  # of growing faces; tens are usual
 _ROUNDS_PER_DOUBLING = 200  # of `_MIN_AREA`, because small faces may keep flipping back
@@ -156,7 +157,7 @@ def transfer_state(
 def _map_vertices(new_mesh: TriMesh, mesh: TriMesh, pose: Floats, origins: LayerOrigins | None) -> Floats:
     """A pose (n, 2) of ``mesh`` on another mesh of the same layers, or of those with ``origins``."""
     points, _, layers = _origin_of(new_mesh.vertices, new_mesh.layers, mesh, origins)
-    mapped = map_points(points, mesh, pose, layers)
+    mapped = map_points(points, mesh, pose, layers, _sides(new_mesh) if mesh.is_cut else None)
     if origins is None or new_mesh.layers is None or mesh.layers is None:
         return mapped
     for layer, old in enumerate(origins.layers.tolist()):
@@ -188,13 +189,30 @@ def _origin_of(
     return points - origins.shifts[layers], mesh, origins.layers[layers]
 
 
-def map_points(points: Floats, mesh: TriMesh, pose: Floats, layers: Ints | None = None) -> Floats:
+def _sides(mesh: TriMesh) -> Floats:
+    """Vertices (n, 2), moved a little into the mesh: vertices on two lips of a slit differ by that."""
+    centers = mesh.vertices[mesh.faces].mean(axis=1)
+    count = np.bincount(mesh.faces.ravel(), minlength=len(mesh.vertices))
+    middles = [
+        np.bincount(mesh.faces.ravel(), np.repeat(c, 3), len(mesh.vertices)) / count for c in centers.T
+    ]
+    return mesh.vertices + _SIDE * (np.stack(middles, axis=1) - mesh.vertices)
+
+
+def map_points(
+    points: Floats,
+    mesh: TriMesh,
+    pose: Floats,
+    layers: Ints | None = None,
+    sides: Floats | None = None,
+) -> Floats:
     """Map points (k, 2) of the rest pose of ``mesh`` to its ``pose`` (n, 2).
 
-    layers: (k,) those of the mesh on which the points lie, None for any. The map is linear on each face. A
-    point outside the mesh moves rigidly with the nearest face.
+    layers: (k,) those of the mesh on which the points lie, None for any; sides: (k, 2) points near them, from
+    which the nearest faces count. The map is linear on each face. A point outside the mesh moves rigidly with
+    the nearest face.
     """
-    faces, nearest, weights = _nearest_on_mesh(points, mesh, layers)
+    faces, nearest, weights = _nearest_on_mesh(points, mesh, layers, sides)
     rest_corners, corners = mesh.vertices[mesh.faces[faces]], pose[mesh.faces[faces]]
     is_outside = np.abs(points - nearest).max(axis=1) > 0
     mapped = np.einsum("kc,kcd->kd", weights, corners)
@@ -207,24 +225,25 @@ def map_points(points: Floats, mesh: TriMesh, pose: Floats, layers: Ints | None 
 
 
 def _nearest_on_mesh(
-    points: Floats, mesh: TriMesh, layers: Ints | None = None
+    points: Floats, mesh: TriMesh, layers: Ints | None = None, sides: Floats | None = None
 ) -> tuple[Ints, Floats, Floats]:
     """Points of the rest pose that are nearest to ``points`` (k, 2), on the layers (k,) if they are given.
 
-    A layer of −1 stands for any.
+    A layer of −1 stands for any. sides: see `map_points`.
 
     Returns their faces (k,), their positions (k, 2), and their barycentric weights (k, 3).
     """
     corners = mesh.vertices[mesh.faces]
     triangles = shapely.polygons(corners)
     shapely_points = shapely.points(points)
+    seekers = shapely_points if sides is None else shapely.points(sides)
     faces = np.zeros(len(points), dtype=np.int64)
     for layer in [None] if layers is None else np.unique(layers).tolist():
         mine = slice(None) if layer is None else layers == layer
         own = np.arange(len(triangles))
         if layer is not None and layer >= 0:
             own = np.flatnonzero(mesh.face_layers == layer)
-        faces[mine] = own[shapely.STRtree(triangles[own]).nearest(shapely_points[mine])]
+        faces[mine] = own[shapely.STRtree(triangles[own]).nearest(seekers[mine])]
     lines = shapely.shortest_line(triangles[faces], shapely_points)
     nearest = shapely.get_coordinates(lines).reshape(-1, 2, 2)[:, 0]
     is_inside = shapely.intersects(triangles[faces], shapely_points)

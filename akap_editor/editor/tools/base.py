@@ -62,6 +62,7 @@ class Markers:
     hovered_pin: the pin under the pointer, by id; removes_hovered_pin: whether a click removes it; new_pin:
     where a click would add a pin; pin_targets: of the pins that are dragged, by id; selection_box: its upper
     left and lower right corners; hovered_joint: the joint under the pointer, by id; new_joint: where it goes;
+    hovered_cut: the stroke of the knife under the pointer, by index; cut_stroke: the one that is drawn;
     suggested_pins: of which the number hovered_suggestion is under the pointer.
     """
 
@@ -77,6 +78,8 @@ class Markers:
     selection_box: tuple[Point, Point] | None = None
     hovered_joint: int | None = None
     new_joint: Point | None = None
+    hovered_cut: int | None = None
+    cut_stroke: tuple[Point, ...] = ()
 
 
 class ToolContext(EditContext, Protocol):

@@ -2,9 +2,11 @@
 
 import hashlib
 import json
+import reprlib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -19,6 +21,7 @@ from ...geometry.mesh import TriMesh
 from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
 from ...layers.drawing_layer import flat_picture
 from ...meshing.meshers import TRIANGLE, check_known
+from ...meshing.slits import Cut, check_cuts
 from ...words import mark, tr
 from ..atomic import as_path, read_file, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
@@ -250,7 +253,7 @@ def _describe(document: Document) -> Json:
     width, height = drawing.size
     return {
         "format": DOCUMENT_FORMAT,
-        "version": DOCUMENT_VERSION if drawing.layers else FLAT_VERSION,
+        "version": DOCUMENT_VERSION if drawing.layers or drawing.mesh.is_cut else FLAT_VERSION,
         "program": program_name(),
         "name": drawing.name,
         "picture": {"width": width, "height": height},
@@ -258,6 +261,7 @@ def _describe(document: Document) -> Json:
             "vertices": len(drawing.mesh.vertices),
             "faces": len(drawing.mesh.faces),
             "tied": drawing.mesh.tied,
+            **({"cut": True} if drawing.mesh.is_cut else {}),
             **({"made": _describe_meshing(drawing)} if drawing.meshing is not None else {}),
         },
         "pins": [pin.to_json() for pin in document.state.pins],
@@ -279,6 +283,7 @@ def _describe_meshing(drawing: Drawing) -> Json:
         "threshold": float(meshing.threshold),
         "mesher": meshing.mesher,
         **({"background": float(meshing.background or 0.0)} if is_background_removed else {}),
+        **({"cuts": [list(map(list, cut)) for cut in meshing.cuts]} if meshing.cuts else {}),
     }
 
 
@@ -314,6 +319,7 @@ def _decode(archive: Archive) -> Document:
         width, height = require(picture, "width", int), require(picture, "height", int)
         n, m = require(mesh, "vertices", int), require(mesh, "faces", int)
         tied = optional(mesh, "tied", bool, True)
+        is_cut = optional(mesh, "cut", bool, False) and version > FLAT_VERSION
         meshing = _read_meshing(require(mesh, "made", dict)) if "made" in mesh else None
         _check_sizes(width, height, n, m)
     positions = archive.read_array("pose/positions", "<f8", n, 2)
@@ -329,14 +335,14 @@ def _decode(archive: Archive) -> Document:
     faces, uv = archive.read_array("mesh/faces", "<i4", m, 3), archive.read_array("mesh/uv", "<f4", n, 2)
     if version > FLAT_VERSION and "layers" in record:
         texture, layers, order, vertex_layers = read_layers(archive, record, n)
-        layered_mesh = TriMesh(vertices, faces, tied, vertex_layers)
+        layered_mesh = TriMesh(vertices, faces, tied, vertex_layers, is_cut)
         drawing = Drawing(
             texture, layered_mesh, uv, name, meshing, None, layers, order, canvas=(width, height)
         )
         with error_context("document.json"):
             joints = read_joints(record)
         return Document(drawing, replace(state, joints=joints))
-    trimesh = TriMesh(vertices, faces, tied)
+    trimesh = TriMesh(vertices, faces, tied, is_cut=is_cut)
     image, original = _picture(archive, "picture.png", width, height), None
     if meshing is not None and meshing.background is not None:
         original = _picture(archive, ORIGINAL_ENTRY, width, height)
@@ -353,9 +359,18 @@ def _read_meshing(record: Json) -> Meshing:
         float(threshold),
         None if background is None else float(background),
         check_known(record.get("mesher", TRIANGLE)),
+        _read_cuts(optional(record, "cuts", list, [])),
     )
     _check_meshing(meshing)
     return meshing
+
+
+def _read_cuts(records: list[Any]) -> tuple[Cut, ...]:
+    """The strokes of the knife. Raises InputError on values of other kinds."""
+    for record in records:
+        if type(record) is not list or any(type(point) is not list or len(point) != 2 for point in record):
+            raise InputError(f"cuts: expected lists of points, got {reprlib.repr(record)}")
+    return check_cuts([[numbers(point, "cuts").tolist() for point in record] for record in records])
 
 
 def _picture(archive: Archive, name: str, width: int, height: int) -> NDArray[np.uint8]:

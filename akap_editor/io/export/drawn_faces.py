@@ -57,7 +57,9 @@ class DrawnFaces:
         used, corners = np.unique(self.faces, return_inverse=True)  # not all if layers are hidden
         layers = np.zeros(len(used), dtype=np.int64)
         layers[corners.reshape(-1, 3)] = self.layers[:, None]
-        mesh = TriMesh(self.rest[used], corners.reshape(-1, 3), layers=layers if layers.any() else None)
+        mesh = TriMesh(
+            self.rest[used], corners.reshape(-1, 3), layers=layers if layers.any() else None, is_cut=True
+        )
         pairs = overlapping_faces(mesh_topology(mesh), self.pose[used])
         return np.minimum(pairs.first, pairs.second), np.maximum(pairs.first, pairs.second)
 

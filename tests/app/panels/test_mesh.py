@@ -180,3 +180,23 @@ def test_without_a_choice_no_mesher_is_shown(opened, monkeypatch):
     assert shows_choice()
     pretend_installed(monkeypatch, PYTHONCDT)
     assert not shows_choice()
+
+
+def test_cuts_are_listed_and_removed(pinned):
+    knife = pinned.editor.knife_tool
+    pinned.state.remesher.request(replace(pinned.state.remesher.meshing, cuts=(((0.0, 45.0), (70.0, 45.0)),)))
+    pinned.settle()
+    assert pinned.session.drawing.mesh.is_cut
+    seen = []
+
+    def point(hand):
+        hand.item_click("//Panel/**/###cut 0")
+        hand.yield_(2)
+        seen.append(knife.highlighted)
+
+    pinned.do(point)
+    assert seen == [0]
+    pinned.do(lambda hand: hand.item_click("//Panel/**/###remove cut 0"))
+    pinned.settle()
+    assert not pinned.session.drawing.meshing.cuts
+    assert pinned.session.history.labels[-1] == "Remove Cut"

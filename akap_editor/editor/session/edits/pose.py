@@ -121,7 +121,10 @@ class Remesh(Edit):
         return transferred or transfer_state(state, drawing.mesh, remeshed)
 
     def to_json(self, drawing: Drawing) -> Json:
-        return asdict(self.meshing)
+        record = asdict(self.meshing)
+        if not self.meshing.cuts:
+            del record["cuts"]
+        return record
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
@@ -133,6 +136,7 @@ class Remesh(Edit):
                 float(event["threshold"]),
                 None if tolerance is None else float(tolerance),
                 nearest_mesher(check_known(event.get("mesher", TRIANGLE))),
+                tuple(target.points(cut, "cuts", len(cut)).tolist() for cut in event.get("cuts", ())),
             )
         )
 
