@@ -183,6 +183,7 @@ def test_without_a_choice_no_mesher_is_shown(opened, monkeypatch):
 
 
 def test_cuts_are_listed_and_removed(pinned):
+    pinned.tab("Mesh")
     knife = pinned.editor.knife_tool
     pinned.state.remesher.request(replace(pinned.state.remesher.meshing, cuts=(((0.0, 45.0), (70.0, 45.0)),)))
     pinned.settle()
