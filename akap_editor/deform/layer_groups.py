@@ -105,7 +105,7 @@ class LayerGroupDeformer(Deformer):
             more["joints"] = MeshJoints(
                 faces[joints.faces[inside]], joints.weights[inside], joints.is_weld[inside]
             )
-        part = TriMesh(mesh.vertices[vertices], number[mesh.faces[own]], False, layers)
+        part = TriMesh(mesh.vertices[vertices], number[mesh.faces[own]], False, layers, mesh.is_cut)
         self._kept[group] = vertices, faces, self._make(part, **self._parameters, **more)
         while len(self._kept) > _MAX_KEPT:
             del self._kept[next(iter(self._kept))]

@@ -14,8 +14,7 @@ from ...editor.tools.rotate import RING_RADIUS
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, packed
 from ..timeline.motion_paths import draw_motion_paths
-from .cut_markers import draw_cuts
-from .joint_markers import draw_joints
+from .rig_markers import draw_cuts, draw_joints
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 _UP = -math.pi / 2  # direction of the ring's handle at angle 0

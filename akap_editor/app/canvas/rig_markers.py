@@ -1,17 +1,23 @@
-"""Draws the joints over the drawing: rings for hinges, squares for welds, broken rings for proposals."""
+"""Draws the joints and the strokes of the knife over the drawing.
+
+Joints are rings for hinges, squares for welds, and broken rings for proposals.
+"""
 
 import math
+from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, imgui
 
 from ...editor.camera import Point
 from ...editor.document.rig.joint import Joint
 from ...editor.tools.joints import joints_on_screen
+from ...editor.tools.knife import cuts_on_screen
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, packed
 
 _RADIUS = 8.0  # design points
 _COLOR = (0.35, 0.78, 1.0, 1.0)
+_CUT_COLOR = (1.0, 0.35, 0.35, 1.0)
 _DASHES = 8  # of a proposal's ring
 
 
@@ -62,3 +68,29 @@ def _draw_joint(
         draw.add_circle(middle, radius, packed(DARK, 0.75), 0, 5.0 * scale)
         draw.add_circle(middle, radius, color, 0, 2.2 * scale)
     draw.add_circle_filled(middle, 2.2 * scale, color)
+
+
+def draw_cuts(state: AppState, scale: float) -> None:
+    """Draw all strokes while the knife is chosen, or one that the list points at, and the one under way."""
+    editor = state.editor
+    knife = editor.knife_tool
+    is_chosen = editor.chosen_tool is knife
+    if editor.session is None or not (is_chosen or knife.highlighted is not None):
+        return
+    draw, markers = imgui.get_background_draw_list(), editor.tool.markers
+    hovered = markers.hovered_cut if is_chosen else knife.highlighted
+    draw.push_clip_rect(ImVec2(*editor.canvas[:2]), ImVec2(*editor.canvas[2:]))
+    for index, lips in enumerate(cuts_on_screen(editor)):
+        for lip in lips if is_chosen or index == hovered else ():
+            _draw_line(draw, lip, scale, index == hovered)
+    if markers.cut_stroke:
+        _draw_line(draw, markers.cut_stroke, scale, True)
+    draw.pop_clip_rect()
+
+
+def _draw_line(draw: imgui.ImDrawList, line: Sequence[Point], scale: float, is_hovered: bool) -> None:
+    color = packed(ACCENT if is_hovered else _CUT_COLOR)
+    for stroke, width in ((packed(DARK, 0.6), 4.0), (color, 1.8)):
+        for point in line:
+            draw.path_line_to(ImVec2(*point))
+        draw.path_stroke(stroke, width * scale)
