@@ -3,7 +3,7 @@
 from imgui_bundle import imgui  # isort: skip
 import pytest
 
-from akap_editor.app.canvas.joint_markers import are_shown
+from akap_editor.app.canvas.rig_markers import are_shown
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.rig.suggestion import suggest_joints
