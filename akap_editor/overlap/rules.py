@@ -104,6 +104,8 @@ def signs_after_drag(
     signs: (p,) int8; known: (p,) whether each pair was there before; by_age: (r,) regions, the oldest first;
     budget: area of known pairs that may turn over, square pixels.
     """
+    if len(by_age) < 2:
+        return None
     result, size2, given = signs.copy(), size_squared(mesh), None
     ends = np.searchsorted(pairs.regions, np.arange(pairs.region_count + 1))
     faces = mesh_topology(mesh).faces
@@ -113,9 +115,11 @@ def signs_after_drag(
         if len(members) > most_pairs:
             continue
         given = rules() if given is None else given
+        if given.dragged is None:
+            return None
         first, second = pairs.first[members], pairs.second[members]
         areas = common_areas(pose, faces, first, second)
-        if given.dragged is None or areas.sum() > _LARGEST_BRUSH * size2:
+        if areas.sum() > _LARGEST_BRUSH * size2:
             continue
         sign = given.drag_sign(mesh, first, second, areas)
         is_wrong = signs[members] == -sign
