@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -134,8 +135,9 @@ def signs_after_drag(
     return None if np.array_equal(result, signs) else result
 
 
+@lru_cache(maxsize=8)
 def size_squared(mesh: TriMesh) -> float:
-    """The square of the larger side of a mesh's box at rest, square pixels."""
+    """The square of the larger side of a mesh's box at rest, square pixels; cached."""
     return float(np.ptp(mesh.vertices, axis=0).max()) ** 2
 
 
