@@ -88,7 +88,7 @@ def next_overlaps(
         decision.carry_over(other, mesh)
     decision.decide_new(before, rules)
     decision.part_contradictions()
-    arguments = mesh, decision.pose, pairs, decision.signs, decision.known, decision.by_age(), rules
+    arguments = mesh, decision.pose, pairs, decision.signs, decision.known, decision.ages, rules
     swept = signs_after_drag(*arguments, _TRAVEL * size_squared(mesh) - _SEAM_TRAVEL * mesh.length**2)
     return decision.result(before, swept)
 

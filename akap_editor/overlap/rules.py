@@ -92,28 +92,33 @@ def signs_after_drag(
     pairs: FacePairs,
     signs: Ints,
     known: Ints,
-    by_age: Ints,
+    ages: Ints,
     rules: RulesSource,
     budget: float,
 ) -> Ints | None:
     """Signs (p,) that bring what is dragged to the front in small regions; None if nothing changes.
 
     Where two limbs begin to touch, their outlines decide whether the overlap is the fringe of an older
-    region, whose sign it has, or a new one. So a small overlap takes the sign of a new one gradually.
-    The oldest region stays as it is: it is the one that was asked for, if any was.
+    region, whose sign it has, or a new one. So a small part that is no longer connected to the rest of its
+    region takes the sign of a new one, gradually. Other regions stay as they were, or were asked to be.
 
-    signs: (p,) int8; known: (p,) whether each pair was there before; by_age: (r,) regions, the oldest first;
-    budget: area of known pairs that may turn over, square pixels.
+    signs: (p,) int8; known: (p,) whether each pair was there before; ages: (r,) rank of each region before,
+    that of the same one for parts of it; budget: area of known pairs that may turn over, square pixels.
     """
-    if len(by_age) < 2:
+    if len(ages) < 2:
         return None
     result, size2, given = signs.copy(), size_squared(mesh), None
     ends = np.searchsorted(pairs.regions, np.arange(pairs.region_count + 1))
+    by_age = np.lexsort((-np.diff(ends), ages))
+    has_split = np.zeros(len(ages), dtype=bool)
+    has_split[by_age[1:]] = ages[by_age[1:]] == ages[by_age[:-1]]
     faces = mesh_topology(mesh).faces
     most_pairs = _PAIRS_PER_FACE * _LARGEST_BRUSH * size2 / mesh.rest_areas.mean()
-    for region in by_age[1:].tolist():
+    for region in by_age.tolist():
         members = np.arange(ends[region], ends[region + 1])
-        if len(members) > most_pairs:
+        own = signs[members]
+        is_turning = region != by_age[0] and own.min() != own.max()
+        if len(members) > most_pairs or not (has_split[region] or is_turning):
             continue
         given = rules() if given is None else given
         if given.dragged is None:
@@ -123,7 +128,7 @@ def signs_after_drag(
         if areas.sum() > _LARGEST_BRUSH * size2:
             continue
         sign = given.drag_sign(mesh, first, second, areas)
-        is_wrong = signs[members] == -sign
+        is_wrong = own == -sign
         if not sign or not is_wrong.any() or areas[is_wrong].sum() > _BRUSH * size2:
             continue
         is_new = ~known[members]

@@ -15,9 +15,9 @@ from akap_editor.editor.session.session import Session
 from akap_editor.io.images import read_image
 from akap_editor.overlap.limbs import mesh_limbs
 from akap_editor.overlap.overlaps import Overlaps, no_overlaps
-from akap_editor.overlap.rules import TRUNK_SHARE, Rules
+from akap_editor.overlap.rules import TRUNK_SHARE, Rules, signs_after_drag
 from akap_editor.resources import bundled_drawings
-from tests.overlap.test_overlaps import ROPE, SEAM_TRAVEL, decided, turned_area
+from tests.overlap.test_overlaps import ROPE, SEAM_TRAVEL, decided, rolled_up, rope_pose, turned_area
 
 Point = tuple[float, float]
 
@@ -125,6 +125,24 @@ def test_a_brushed_limb_passes_to_the_front_gradually(scene: tuple[Scene, Sessio
 
     played(*scene, scene[0].seeds[1], each_step)
     assert 0 < max(shares) <= SEAM_TRAVEL
+
+
+def test_only_a_part_of_a_region_passes_to_the_front_others_stay_as_asked() -> None:
+    overlaps, pose, middles = rolled_up(), rope_pose(1.0), ROPE.vertices[ROPE.faces].mean(axis=1)[:, 0]
+    pairs, known = overlaps.pairs, np.ones(len(overlaps), dtype=bool)
+    behind = np.where(middles[pairs.first] < middles[pairs.second], -1, 1).astype(np.int8)
+    rules = Rules(dragged=middles)  # the left end
+
+    def after_drag(*ages: int) -> np.ndarray | None:
+        return signs_after_drag(ROPE, pose, pairs, behind, known, np.array(ages), lambda: rules, 1e9)
+
+    assert after_drag(0, 1, 2) is None
+    turned = after_drag(0, 1, 1)
+    assert turned is not None
+    regions = set(pairs.regions[turned != behind].tolist())
+    assert len(regions) == 1, "the smaller one of the two that were one"
+    assert regions < {1, 2}
+    assert (turned == np.where(np.isin(pairs.regions, list(regions)), -behind, behind)).all()
 
 
 def test_a_dragged_limb_is_in_front_of_the_trunk_even_if_it_is_large() -> None:
