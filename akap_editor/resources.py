@@ -2,6 +2,12 @@
 
 from pathlib import Path
 
+from .words import mark, tr
+
+_TITLES = (
+    *(mark("Alien"), mark("Bar"), mark("Cat"), mark("Elephant"), mark("Gingerbread")),
+    *(mark("Raptor"), mark("Rope")),
+)
 _PACKAGE = Path(__file__).resolve().parent
 
 
@@ -21,3 +27,8 @@ def resource(*parts: str) -> Path:
 def bundled_drawings() -> list[Path]:
     """The paths of the bundled drawings, PNG files, in alphabetical order."""
     return sorted(resource("assets", "drawings").glob("*.png"))
+
+
+def drawing_title(path: Path) -> str:
+    """The name of a bundled drawing in the user's language."""
+    return tr(path.stem.capitalize())

@@ -9,7 +9,7 @@ from PIL import Image
 
 from ..display_text import display_name, display_text
 from ..io.images import Picture, read_image
-from ..resources import bundled_drawings
+from ..resources import bundled_drawings, drawing_title
 from ..words import tr
 from . import files, widgets
 from .app_state import AppState
@@ -79,7 +79,7 @@ def _draw_button(state: AppState, path: Path, side: int, scale: float, pixels_pe
     state.thumbnails.draw(
         (path, pixels), corner, side, lambda: _scaled_picture(path, pixels), pixels_per_point
     )
-    name = path.stem.capitalize()
+    name = drawing_title(path)
     name_corner = ImVec2(corner.x + (side - imgui.calc_text_size(name).x) / 2, end.y + 6 * scale)
     draw.add_text(name_corner, packed(TEXT if is_hovered else SECONDARY), name)
 

@@ -37,7 +37,7 @@ _FOCUS: tuple[Line, ...] = (
     (mark("F6, Shift+F6"), mark("Next, previous panel")),
     (mark("Tab, arrows, Enter"), mark("Use the focused panel")),
 )
-_COLUMN_WIDTH, _KEYS_WIDTH = 302, 158  # design points
+_PLATE_MARGIN, _KEYS_GAP, _COLUMN_GAP = 5, 10, 16  # design points
 _MAX_COLUMNS = 4
 _TOOLS_INDEX = 3  # among the groups: there, all columns have about the same height
 _SCROLL_LINES = {Key.up_arrow: -1, Key.down_arrow: 1, Key.page_up: -10, Key.page_down: 10}
@@ -86,24 +86,46 @@ class ShortcutsPage:
 def _draw_groups(groups: list[Group], scale: float) -> None:
     """Draw all groups in as many columns as the window has room for; keys scroll them."""
     room = imgui.get_main_viewport().size  # ImGui makes no dialog larger
-    count = max(1, min(_MAX_COLUMNS, int((room.x - 40 * scale) / (_COLUMN_WIDTH * scale))))
-    columns = columns_of(groups, count)
+    columns, widths = _fitting_columns(groups, room.x - 40 * scale - imgui.get_style().scrollbar_size, scale)
     line_count = max(sum(len(lines) + 2 for _, lines in column) for column in columns)
     height = min(line_count * imgui.get_text_line_height_with_spacing(), room.y - 140 * scale)
-    width = len(columns) * _COLUMN_WIDTH * scale + imgui.get_style().scrollbar_size
+    width = sum(map(sum, widths)) + imgui.get_style().scrollbar_size
     imgui.begin_child("##all", ImVec2(width, height), 0, imgui.WindowFlags_.no_nav_inputs)
     scrolled_lines = sum(count for key, count in _SCROLL_LINES.items() if imgui.is_key_pressed(key))
     if scrolled_lines:
         scrolled = scrolled_lines * imgui.get_text_line_height_with_spacing()
         imgui.set_scroll_y(imgui.get_scroll_y() + scrolled)
+    imgui.push_style_var(imgui.StyleVar_.cell_padding, ImVec2(0, 0))
     if imgui.begin_table("##columns", len(columns)):
+        for number, (keys_width, actions_width) in enumerate(widths):
+            flags = imgui.TableColumnFlags_.width_fixed
+            imgui.table_setup_column(f"##{number}", flags, keys_width + actions_width)
         imgui.table_next_row()
-        for column in columns:
+        for column, (keys_width, _) in zip(columns, widths, strict=True):
             imgui.table_next_column()
             for title, lines in column:
-                _draw_group(title, lines, scale)
+                _draw_group(title, lines, keys_width, scale)
         imgui.end_table()
+    imgui.pop_style_var()
     imgui.end_child()
+
+
+def _fitting_columns(
+    groups: list[Group], room: float, scale: float
+) -> tuple[list[list[Group]], list[tuple[float, float]]]:
+    """As many columns as have room, and for each the widths of its keys and of what they do; points."""
+    for count in range(_MAX_COLUMNS, 0, -1):
+        columns = columns_of(groups, count)
+        widths = [_column_width(column, scale) for column in columns]
+        if sum(map(sum, widths)) <= room:
+            break
+    return columns, widths
+
+
+def _column_width(column: list[Group], scale: float) -> tuple[float, float]:
+    lines = [line for _, lines in column for line in lines]
+    keys, actions = (max(imgui.calc_text_size(line[place]).x for line in lines) for place in (0, 1))
+    return keys + (2 * _PLATE_MARGIN + _KEYS_GAP) * scale, actions + _COLUMN_GAP * scale
 
 
 def columns_of(groups: list[Group], count: int) -> list[list[Group]]:
@@ -123,8 +145,8 @@ def columns_of(groups: list[Group], count: int) -> list[list[Group]]:
     return [groups]
 
 
-def _draw_group(title: str, lines: list[Line], scale: float) -> None:
-    """Draw a title and its lines. scale: points per design point."""
+def _draw_group(title: str, lines: list[Line], keys_width: float, scale: float) -> None:
+    """Draw a title and its lines. keys_width: in points; scale: points per design point."""
     imgui.push_font(None, imgui.get_style().font_size_base * 0.86)
     imgui.text_colored(ImVec4(*SECONDARY), title.upper())
     imgui.pop_font()
@@ -132,7 +154,7 @@ def _draw_group(title: str, lines: list[Line], scale: float) -> None:
     for keys, action in lines:
         _draw_keys(keys, scale)
         imgui.same_line()
-        imgui.set_cursor_pos_x(left + _KEYS_WIDTH * scale)
+        imgui.set_cursor_pos_x(left + keys_width)
         imgui.text(action)
     imgui.dummy(ImVec2(0, 0.4 * imgui.get_font_size()))
 
@@ -140,7 +162,7 @@ def _draw_group(title: str, lines: list[Line], scale: float) -> None:
 def _draw_keys(keys: str, scale: float) -> None:
     """Draw the name of keys on a plate."""
     corner, size = imgui.get_cursor_screen_pos(), imgui.calc_text_size(keys)
-    draw, margin = imgui.get_window_draw_list(), 5 * scale
+    draw, margin = imgui.get_window_draw_list(), _PLATE_MARGIN * scale
     low = ImVec2(corner.x, corner.y - 1 * scale)
     high = ImVec2(corner.x + size.x + 2 * margin, corner.y + size.y + 1 * scale)
     draw.add_rect_filled(low, high, packed(ACTIVE, 0.6), 4 * scale)

@@ -13,9 +13,9 @@ from ..commands.command import Command
 from ..commands.keymap import KEYMAP, pressed_chord, shown_chord
 from ..theme import ACCENT, SECONDARY
 
-_WIDTH, _HEIGHT = 520, 380  # of the list, in design points
+_WIDTH, _HEIGHT = 620, 380  # of the list, in design points
 _OTHER_HEIGHT = 240  # of everything around the list, in design points
-_NAME_WIDTH = 230  # design points
+_NAME_WIDTH = 270  # design points
 _HINT = mark("Type a few letters of a command")
 _LANGUAGES = ("", *words.LANGUAGES)  # the first one: the system's
 

@@ -134,7 +134,9 @@ def _draw_cuts(state: AppState, meshing: Meshing) -> None:
     knife.highlighted = None
     if not meshing.cuts:
         return
-    widgets.row("Cuts", f"{len(meshing.cuts)}", "Strokes of the knife (X), along which limbs come apart.")
+    widgets.row(
+        tr("Cuts"), f"{len(meshing.cuts)}", tr("Strokes of the knife (X), along which limbs come apart.")
+    )
     widgets.begin_list("##cuts", min(len(meshing.cuts), _CUT_ROWS))
     width = imgui.get_content_region_avail().x
     for index, cut in enumerate(meshing.cuts):

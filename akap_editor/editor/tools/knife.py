@@ -10,6 +10,7 @@ from ...geometry.mesh import TriMesh
 from ...geometry.operators import to_complex
 from ...geometry.validation import Floats
 from ...meshing.slits import Cut, simplified_cut
+from ...words import mark, tr
 from ..camera import Point
 from ..document.drawing import Drawing
 from ..document.remesh import map_points
@@ -99,12 +100,12 @@ class KnifeIdle(IdleTool):
     def press_hint(self) -> str:
         session, pointer = self.context.session, self.context.pointer
         if session is not None and session.drawing.layers:
-            return "The knife cuts flat drawings; layers come apart already"
+            return tr("The knife cuts flat drawings; layers come apart already")
         if pointer is not None and self._hovered is not None:
-            return "Alt-click removes this cut; drag across the drawing to cut it"
-        return "Drag across the drawing, from outside, to cut limbs apart; Shift draws a straight line"
+            return tr("Alt-click removes this cut; drag across the drawing to cut it")
+        return tr("Drag across the drawing, from outside, to cut limbs apart; Shift draws a straight line")
 
-    keyboard_hint = "The knife needs a mouse; Esc ends"
+    keyboard_hint = mark("The knife needs a mouse; Esc ends")
 
     @property
     def _hovered(self) -> int | None:
@@ -132,20 +133,20 @@ class KnifeIdle(IdleTool):
         session = self.context.session
         if session is not None:
             cuts = cuts_of(session.drawing)
-            self.request = CutsRequest("Remove Cut", (*cuts[:index], *cuts[index + 1 :]))
+            self.request = CutsRequest(mark("Remove Cut"), (*cuts[:index], *cuts[index + 1 :]))
 
     def add(self, lines: list[list[Floats]]) -> None:
         """Ask for the mesh with more strokes, whose points are in pixels of the rest pose."""
         session = self.context.session
         new = [cut for line in lines if (cut := simplified_cut([point.tolist() for point in line]))]
         if session is not None and new:
-            self.request = CutsRequest("Cut", (*cuts_of(session.drawing), *new))
+            self.request = CutsRequest(mark("Cut"), (*cuts_of(session.drawing), *new))
 
 
 class Cutting(Tool):
     """A stroke of the knife; with Shift it is a straight line. It cuts when the button is released."""
 
-    hint = "Release to cut, Shift for a straight line, Esc to cancel"
+    hint = mark("Release to cut, Shift for a straight line, Esc to cancel")
 
     def __init__(self, context: ToolContext, event: PointerEvent, idle_tool: KnifeIdle) -> None:
         super().__init__(context)
