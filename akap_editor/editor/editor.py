@@ -12,7 +12,8 @@ from .camera import ZOOM_STEP, Camera, Point, fit, shift_into
 from .document.document import Document
 from .document.drawing import Drawing, visible_point
 from .events import ARROWS, Event, KeyEvent, PinRequest, PointerEvent, ScrollEvent
-from .gestures import NudgeSeries, T
+from .gestures import T
+from .pin_arrangement import NudgeSeries
 from .pin_trails import Trails
 from .session.edits import Edit
 from .session.session import Session
@@ -28,7 +29,6 @@ from .tools.zoom import ZoomIdle
 
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
 FRAME_BUDGET = 0.02  # seconds that a frame waits for steps
-NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
 WHEEL_STEP = 60.0  # points of the design that a notch of the wheel pans by
 HELD_KEYS = ("space", "zoom", "alt", "shift", "h")  # keys that have a meaning while they are held
 
@@ -189,9 +189,7 @@ class Editor:
         elif event.key == "escape" and event.pressed:
             self.select(())
         elif event.key in ARROWS and event.pressed:
-            length = BIG_NUDGE if event.shift else NUDGE
-            x, y = ARROWS[event.key]
-            self._nudges.nudge(self, length * x, length * y)
+            self._nudges.nudge_towards(self, ARROWS[event.key], is_long=event.shift)
 
     def pointer_left(self) -> None:
         """Note that the mouse left the canvas."""

@@ -32,12 +32,9 @@ from .session.edits import (
     SetTargets,
     ShowGroup,
 )
-from .session.history import HistoryEntry
 from .session.session import Session
 
 T = TypeVar("T")
-
-SERIES_PAUSE = 1.0  # seconds: a longer pause between two nudges starts a new gesture
 
 
 class EditContext(Protocol):
@@ -176,41 +173,6 @@ def set_pin_angle(editor: EditContext, pin: int, angle: float | None) -> None:
         editor.edit(mark("Release Angle"), lambda session: pin_edits.hold_angles(session, {pin}, False))
     else:
         editor.apply(mark("Rotate Pin"), SetAngles({pin: angle}))
-
-
-class NudgeSeries:
-    """Moves the selected pins by small steps; steps in quick succession are one gesture.
-
-    clock: returns seconds.
-    """
-
-    def __init__(self, clock: Callable[[], float]) -> None:
-        self._clock = clock
-        self._last: tuple[HistoryEntry | None, frozenset[int], float] | None = None  # entry, pins, time
-
-    def nudge(self, editor: EditContext, dx: float, dy: float) -> None:
-        """Move the targets of the selected pins by (dx, dy) pixels."""
-        session = editor.session
-        if session is None or editor.is_busy:
-            return
-        locked = {pin.id for pin in session.state.pins if pin.is_locked}
-        pins = editor.selection - locked
-        if not pins:
-            return
-        now = self._clock()
-        entry, last_pins, last_time = self._last or (None, pins, now)
-        joins = entry is not None and entry is session.history.last and last_pins == pins
-        session.begin(mark("Nudge Pin") if len(pins) == 1 else f"Nudge {len(pins)} Pins")
-        try:
-            pin_edits.hold_stopped_pins(session)
-            moved = (session.state.pin(pin) for pin in sorted(pins))
-            targets = {pin.id: (pin.target[0] + dx, pin.target[1] + dy) for pin in moved}
-            session.apply(SetTargets(targets))
-        except Exception:
-            session.abort()
-            raise
-        session.commit(join=joins and now - last_time < SERIES_PAUSE)
-        self._last = session.history.last, pins, now
 
 
 # -- layers --------------------------------------------------------------------------------------------------

@@ -1,6 +1,6 @@
-"""Gestures on several pins at once: align, distribute, depth and stiffness."""
+"""Gestures on several pins at once: nudge, align, distribute, depth and stiffness."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,11 +10,56 @@ from ..words import mark
 from .document.pin import Pin, pin_points
 from .document.stiffness import MIN_STIFFNESS
 from .gestures import EditContext
+from .mirroring import mirrored_targets, with_partners
 from .session import pin_edits
 from .session.edits import PaintStiffness, SetTargets
+from .session.history import HistoryEntry
 from .session.session import Session
 
+NUDGE, BIG_NUDGE = 1.0, 10.0  # pixels
+SERIES_PAUSE = 1.0  # seconds: a longer pause between two nudges starts a new gesture
 _STIFF_SHARE = 0.12  # radius of the stiffness around a pin, as a share of the drawing's length
+
+
+class NudgeSeries:
+    """Moves the selected pins by small steps; steps in quick succession are one gesture.
+
+    clock: returns seconds.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._last: tuple[HistoryEntry | None, frozenset[int], float] | None = None  # entry, pins, time
+
+    def nudge_towards(self, editor: EditContext, direction: tuple[int, int], is_long: bool) -> None:
+        """Move the targets of the selected pins by a step along a direction of the screen."""
+        length = BIG_NUDGE if is_long else NUDGE
+        self.nudge(editor, length * direction[0], length * direction[1])
+
+    def nudge(self, editor: EditContext, dx: float, dy: float) -> None:
+        """Move the targets of the selected pins by (dx, dy) pixels."""
+        session = editor.session
+        if session is None or editor.is_busy:
+            return
+        locked = {pin.id for pin in session.state.pins if pin.is_locked}
+        pins = editor.selection - locked
+        if not pins:
+            return
+        now = self._clock()
+        entry, last_pins, last_time = self._last or (None, pins, now)
+        joins = entry is not None and entry is session.history.last and last_pins == pins
+        session.begin(mark("Nudge Pin") if len(pins) == 1 else f"Nudge {len(pins)} Pins")
+        try:
+            pin_edits.hold_stopped_pins(session)
+            moved = (session.state.pin(pin) for pin in sorted(with_partners(session, pins)))
+            starts = {pin.id: (float(pin.target[0]), float(pin.target[1])) for pin in moved}
+            leader = min(pins)
+            session.apply(SetTargets(mirrored_targets(session, starts, np.array([dx, dy]), leader)))
+        except Exception:
+            session.abort()
+            raise
+        session.commit(join=joins and now - last_time < SERIES_PAUSE)
+        self._last = session.history.last, pins, now
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from akap_editor.editor.document.drawing import Drawing, Meshing
 from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.document.rig.joint import Joint, make_joint
+from akap_editor.editor.document.rig.mirror import Mirror
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import (
     AddPose,
@@ -32,6 +33,7 @@ from akap_editor.editor.session.edits import (
     SetLayers,
     SetLayerView,
     SetLoop,
+    SetMirror,
     SetPins,
     SetPose,
     SetRestPose,
@@ -75,6 +77,11 @@ def _mirrored_view(drawing: Drawing) -> LayerView:
     return LayerView(shown, tuple(reversed(drawing.layer_order)))
 
 
+def _first_pair(session: Session) -> tuple[tuple[int, int], ...]:
+    ids = [pin.id for pin in session.state.pins]
+    return ((ids[0], ids[1]),) if len(ids) > 1 else ()
+
+
 def _first_pose(session: Session) -> str:
     return next((pose.name for pose in session.state.poses), "no pose")
 
@@ -112,5 +119,6 @@ EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "unkey": lambda session: DeleteKeyframes([1.0]),
     "rekey": lambda session: MoveKeyframes({1.0: 2.0}, copy=True),
     "ease": lambda session: SetEasing([1.0], "out"),
+    "mirror": lambda session: SetMirror(Mirror(40.5, 30.0, 1.2, True, _first_pair(session))),
     "loop": lambda session: SetLoop(not session.state.animation.loop),
 }

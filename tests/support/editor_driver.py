@@ -56,7 +56,8 @@ def bits(state: EditState) -> tuple[Any, ...]:
         (joint.id, joint.faces, joint.weights.tobytes(), joint.kind, joint.is_proposed)
         for joint in state.joints
     )
-    return pose, pins, state.settings, mesh_bits, layer_list, joints, stiffness, poses, animation
+    rig = joints, state.mirror
+    return pose, pins, state.settings, mesh_bits, layer_list, rig, stiffness, poses, animation
 
 
 def _layer_bits(layer: DrawingLayer) -> tuple[Any, ...]:

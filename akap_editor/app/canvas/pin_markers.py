@@ -8,6 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...editor.camera import Point
 from ...editor.document.pin import Pin
 from ...editor.editor import Editor
+from ...editor.mirroring import active_mirror
 from ...editor.session.session import Session
 from ...editor.tools.base import BrushCircle, Crosshair, Markers, RotationRing
 from ...editor.tools.rotate import RING_RADIUS
@@ -17,6 +18,7 @@ from ..timeline.motion_paths import draw_motion_paths
 from .rig_markers import draw_cuts, draw_joints
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
+_DASH, _GAP = 9.0, 6.0  # of the axis of the mirror, design points
 _UP = -math.pi / 2  # direction of the ring's handle at angle 0
 _HORIZONTAL, _VERTICAL, _RISING, _FALLING = (1, 0), (0, 1), (1, -1), (1, 1)  # strokes of + and ×
 _PLUS, _MINUS, _TIMES = (_HORIZONTAL, _VERTICAL), (_HORIZONTAL,), (_FALLING, _RISING)
@@ -33,6 +35,7 @@ def draw_markers(state: AppState, scale: float) -> None:
     draw, markers = imgui.get_background_draw_list(), editor.tool.markers
     draw.push_clip_rect(ImVec2(*editor.canvas[:2]), ImVec2(*editor.canvas[2:]))
     if state.view.show_pins and "h" not in editor.held and not state.timeline.playback.is_playing:
+        _draw_mirror(draw, editor, session, markers, scale)
         _draw_pins(draw, editor, session, markers, scale)
         if markers.new_pin is not None:
             _draw_new_pin(draw, markers.new_pin, scale)
@@ -80,6 +83,49 @@ def _draw_pins(
         _draw_pin_values(draw, pin, center, scale, session.supports_rotation)
         if pin.id == markers.hovered_pin and markers.removes_hovered_pin:
             _draw_sign(draw, center, 4.0 * scale, scale, _TIMES)
+
+
+def _draw_mirror(
+    draw: imgui.ImDrawList, editor: Editor, session: Session, markers: Markers, scale: float
+) -> None:
+    """Draw the axis of a mirror that is on, or the one that is being drawn, and rings around partners."""
+    if markers.mirror_axis is not None:
+        _draw_axis(draw, editor, *markers.mirror_axis, scale, 1.0)
+        return
+    mirror = active_mirror(session)
+    if mirror is None:
+        return
+    start = editor.camera.to_screen((mirror.x, mirror.y))
+    end = start[0] + math.cos(mirror.angle), start[1] + math.sin(mirror.angle)
+    _draw_axis(draw, editor, start, end, scale, 0.75)
+    centers = editor.pins_on_screen()
+    shown = {pin.id for pin in session.state.pins if not pin.is_hidden}
+    for pin in editor.selection:
+        partner = mirror.partner(pin)
+        if partner in shown and partner not in editor.selection and partner is not None:
+            center = ImVec2(*centers[partner])
+            draw.add_circle(center, 11.5 * scale, packed(DARK, 0.6), 0, 3.5 * scale)
+            draw.add_circle(center, 11.5 * scale, packed(ACCENT), 0, 1.8 * scale)
+
+
+def _draw_axis(
+    draw: imgui.ImDrawList, editor: Editor, start: Point, end: Point, scale: float, strength: float
+) -> None:
+    """Draw the line through two points of the screen across the whole canvas, in dashes."""
+    left, top, right, bottom = editor.canvas
+    length = math.hypot(end[0] - start[0], end[1] - start[1])
+    if length == 0:
+        return
+    dx, dy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+    reach = math.hypot(right - left, bottom - top) + math.hypot(start[0] - left, start[1] - top)
+    step, at = (_DASH + _GAP) * scale, -reach
+    while at < reach:
+        x, y = start[0] + at * dx, start[1] + at * dy
+        if left - step <= x <= right + step and top - step <= y <= bottom + step:
+            ends = ImVec2(x, y), ImVec2(x + _DASH * scale * dx, y + _DASH * scale * dy)
+            draw.add_line(*ends, packed(DARK, 0.5 * strength), 3.0 * scale)
+            draw.add_line(*ends, packed(_WHITE, strength), 1.2 * scale)
+        at += step
 
 
 def _draw_lock(draw: imgui.ImDrawList, center: Point) -> None:

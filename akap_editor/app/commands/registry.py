@@ -36,6 +36,7 @@ from .command import (
     has_drawing,
 )
 from .edit.arrange import ALIGN_PINS, DISTRIBUTE_PINS
+from .edit.mirror import MIRROR
 from .keyboard_pointer import CONTEXT_MENU, CROSSHAIR, FINISH, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
 from .keymap import KEYMAP
 from .palette import Palette
@@ -344,7 +345,7 @@ MENUS: tuple[Menu, ...] = (
             *(SUGGEST_PINS, REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT),
             *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, FINISH, None),
             *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE),
-            *(ARRANGE, None),
+            *(ARRANGE, CommandGroup("Mirror", MIRROR), None),
             *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS, CLEAR_STIFFNESS, None),
             PREFERENCES,
         ),

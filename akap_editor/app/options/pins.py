@@ -15,6 +15,7 @@ from ...words import mark, tr, tr_plural
 from .. import widgets
 from ..app_state import AppState
 from ..commands.edit.arrange import ALIGN_PINS, DISTRIBUTE_PINS
+from ..commands.edit.mirror import PAIR_PINS, UNPAIR_PINS
 from ..commands.registry import HOLD_ANGLE, REMOVE_SELECTED
 from ..pending_values import PendingValues
 from .items import FIELD_WIDTH, Item, command_button, draw_label, text
@@ -44,9 +45,12 @@ def items(state: AppState) -> Sequence[Item]:
             Item("stiffness", partial(_draw_stiffness, pins)),
             command_button(REMOVE_SELECTED, mark("Remove")),
         )
+    mirror = state.document.state.mirror if state.document is not None else None
+    is_pair = mirror is not None and mirror.partner(pins[0].id) == pins[1].id
     return (
         text("count", tr_plural("{count} pin", "{count} pins", len(pins))),
         Item("align", _draw_align),
+        *((command_button(UNPAIR_PINS if is_pair else PAIR_PINS),) if len(pins) == 2 else ()),
         Item("depth", partial(_draw_depth, pins)),
         Item("stiffness", partial(_draw_stiffness, pins)),
         command_button(REMOVE_SELECTED, mark("Remove")),

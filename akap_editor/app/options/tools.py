@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from ...words import tr
 from ..app_state import AppState
+from ..commands.edit.mirror import DRAW_AXIS, FLIP_POSE, MIRROR_PINS
 from ..commands.registry import RESET_POSE, SUGGEST_PINS
 from ..commands.view import ACTUAL_SIZE, FIT, ZOOM_IN, ZOOM_OUT
 from ..panels.rig.joints import ACCEPT_JOINTS, PROPOSE_JOINTS
@@ -21,4 +22,4 @@ def items(state: AppState) -> Sequence[Item]:
         if state.document is not None and state.document.drawing.layers:
             return (command_button(PROPOSE_JOINTS), command_button(ACCEPT_JOINTS))
         return (text("no layers", tr("Joints hold layers together. This drawing has none.")),)
-    return (command_button(SUGGEST_PINS), command_button(RESET_POSE))
+    return tuple(map(command_button, (SUGGEST_PINS, MIRROR_PINS, DRAW_AXIS, FLIP_POSE, RESET_POSE)))

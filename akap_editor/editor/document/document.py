@@ -15,6 +15,7 @@ from .keyframes import NO_ANIMATION, Animation
 from .named_poses import NamedPose
 from .pin import Pin, pin_points
 from .rig.joint import Joint
+from .rig.mirror import Mirror
 from .settings import Settings
 
 
@@ -27,7 +28,7 @@ class EditState:
     session, None if it never was; poses: the named ones; stiffness: factors of the faces, (m,) float64 (see
     `stiffness`), None is 1 everywhere; animation: the keyframes; crossings: which part passes in front
     where the pose overlaps itself, (s, 2) int32 upper and lower faces (see `overlap.overlaps.Overlaps`);
-    joints: between layers.
+    joints: between layers; mirror: its axis and pairs of pins, None until it is used.
     """
 
     pins: tuple[Pin, ...]
@@ -39,6 +40,7 @@ class EditState:
     animation: Animation = NO_ANIMATION
     crossings: Ints = field(default_factory=no_crossings)
     joints: tuple[Joint, ...] = ()
+    mirror: Mirror | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positions", as_floats(self.positions, "positions"))

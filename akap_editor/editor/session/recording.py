@@ -25,6 +25,7 @@ from .edits import (
     SetJoints,
     SetKeyframe,
     SetLoop,
+    SetMirror,
     SetPins,
     SetPose,
     SetSettings,
@@ -104,6 +105,8 @@ def opening_edits(document: Document) -> list[Edit]:
         edits.append(SetJoints(state.joints))
     if state.pins:
         edits.append(SetPins(state.pins))
+    if state.mirror is not None:
+        edits.append(SetMirror(state.mirror))
     if len(state.crossings):
         edits.append(SetCrossings(state.crossings))
     edits += [AddPose(pose.name, pose.positions, pose.crossings) for pose in state.poses]

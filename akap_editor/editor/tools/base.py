@@ -61,7 +61,8 @@ class Markers:
 
     hovered_pin: the pin under the pointer, by id; removes_hovered_pin: whether a click removes it; new_pin:
     where a click would add a pin; pin_targets: of the pins that are dragged, by id; selection_box: its upper
-    left and lower right corners; hovered_joint: the joint under the pointer, by id; new_joint: where it goes;
+    left and lower right corners; mirror_axis: two points of the axis that is drawn;
+    hovered_joint: the joint under the pointer, by id; new_joint: where it goes;
     hovered_cut: the stroke of the knife under the pointer, by index; cut_stroke: the one that is drawn;
     suggested_pins: of which the number hovered_suggestion is under the pointer.
     """
@@ -76,6 +77,7 @@ class Markers:
     brush: BrushCircle | None = None
     crosshair: Crosshair | None = None
     selection_box: tuple[Point, Point] | None = None
+    mirror_axis: tuple[Point, Point] | None = None
     hovered_joint: int | None = None
     new_joint: Point | None = None
     hovered_cut: int | None = None

@@ -6,6 +6,7 @@ from ...words import mark, tr
 from ..camera import Point
 from ..events import PointerEvent, ScrollEvent
 from ..gestures import remove_pins
+from ..mirroring import add_partner, mirrored_targets, with_partners
 from ..session.edits import OrderLimb, SetTargets
 from ..session.pin_edits import add_pin, hold_stopped_pins
 from .base import Cursor, IdleTool, Markers, PinGesture, Pointing, Tool, ToolContext
@@ -124,6 +125,7 @@ class PinsIdle(IdleTool):
             self.session.abort()
             context.set_tool(PointingCanvas(context, event))
         else:
+            add_partner(self.session, pin)
             context.set_tool(PointingPin(context, event, pin, self, is_new=True))
 
 
@@ -149,7 +151,7 @@ class PointingPin(Pointing):
         if self.session.state.pin(self.pin).is_locked:
             self.context.return_to_idle()
             return
-        dragging = DraggingPin(self.context, self.start, self._selection_before, self._is_new)
+        dragging = DraggingPin(self.context, self.start, self._selection_before, self._is_new, self.pin)
         self.context.set_tool(dragging)
         dragging.move(event)
 
@@ -177,7 +179,7 @@ class DraggingPin(PinGesture):
     drags_pins = True
 
     def __init__(
-        self, context: ToolContext, start: Point, selection_before: frozenset[int], is_new: bool
+        self, context: ToolContext, start: Point, selection_before: frozenset[int], is_new: bool, pin: int
     ) -> None:
         super().__init__(context, selection_before)
         session = self.session
@@ -189,8 +191,10 @@ class DraggingPin(PinGesture):
             session.begin(mark("Drag Pin") if count == 1 else f"Drag {count} Pins")
         hold_stopped_pins(session)
         positions = zip(session.state.pins, session.pin_positions(), strict=True)
+        self._pin = pin
+        dragged = with_partners(session, context.selection)
         self._positions_before = {
-            pin.id: (x, y) for pin, (x, y) in positions if pin.id in context.selection and not pin.is_locked
+            pin.id: (x, y) for pin, (x, y) in positions if pin.id in dragged and not pin.is_locked
         }
 
     @property
@@ -219,8 +223,8 @@ class DraggingPin(PinGesture):
 
     def move(self, event: PointerEvent) -> None:
         x, y = self.context.camera.to_drawing(event.position)
-        dx, dy = x - self._start[0], y - self._start[1]
-        targets = {pin: (a + dx, b + dy) for pin, (a, b) in self._positions_before.items()}
+        moved = np.array([x - self._start[0], y - self._start[1]])
+        targets = mirrored_targets(self.session, self._positions_before, moved, self._pin)
         self.session.apply(SetTargets(targets))
 
 

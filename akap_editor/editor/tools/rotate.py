@@ -6,6 +6,7 @@ from ...words import mark, tr
 from ..camera import Point
 from ..events import PointerEvent
 from ..gestures import add_pin
+from ..mirroring import with_partners
 from ..session.edits import SetAngles
 from ..session.pin_edits import hold_stopped_pins
 from .base import Markers, PinGesture, Pointing, RotationRing, ToolContext, distance
@@ -87,6 +88,13 @@ class RotatingPin(PinGesture):
         self.pin = pin
         held_angle = self.session.state.pin(pin).angle
         self._angle = self.session.pin_angle(pin) if held_angle is None else held_angle
+        self._first_angle = self._angle
+        partners = with_partners(self.session, frozenset({pin})) - {pin}
+        self._partner = next(iter(partners), None)
+        self._partner_angle = 0.0
+        if self._partner is not None:
+            held_angle = self.session.state.pin(self._partner).angle
+            self._partner_angle = self.session.pin_angle(self._partner) if held_angle is None else held_angle
         self._direction = self._direction_to(start)
         context.select({pin})
         self.session.begin(mark("Rotate Pin"))
@@ -109,7 +117,10 @@ class RotatingPin(PinGesture):
         self._direction = direction
         snaps = event.shift or "shift" in self.context.held
         angle = SNAP_ANGLE * round(self._angle / SNAP_ANGLE) if snaps else self._angle
-        self.session.apply(SetAngles({self.pin: angle}))
+        angles = {self.pin: angle}
+        if self._partner is not None:
+            angles[self._partner] = self._partner_angle - (angle - self._first_angle)
+        self.session.apply(SetAngles(angles))
 
     def _direction_to(self, position: Point) -> float:
         """Direction from the pin to a point of the screen, radians."""

@@ -16,6 +16,7 @@ from PIL import Image
 from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing, Meshing
 from ...editor.document.rig.joint import check_joints
+from ...editor.document.rig.mirror import Mirror
 from ...errors import FileError, InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
@@ -269,6 +270,7 @@ def _describe(document: Document) -> Json:
         **describe_layers(drawing),
         **({"joints": [joint.to_json() for joint in state.joints]} if state.joints else {}),
         **write_crossings(document.state.crossings),
+        **({"mirror": state.mirror.to_json()} if state.mirror is not None else {}),
     }
 
 
@@ -329,7 +331,11 @@ def _decode(archive: Archive) -> Document:
         crossings = read_crossings(record)
     stiffness = archive.read_array(STIFFNESS_ENTRY, "<f8", m, 1)[:, 0] if STIFFNESS_ENTRY in archive else None
     poses, animation = read_named_poses(archive, n), read_keyframes(archive, n)
-    state = EditState(pins, positions, settings, None, poses, stiffness, animation, crossings)
+    with error_context("document.json"):
+        mirror = (
+            Mirror.from_json(record["mirror"]).of_pins(pin.id for pin in pins) if "mirror" in record else None
+        )
+    state = EditState(pins, positions, settings, None, poses, stiffness, animation, crossings, mirror=mirror)
     vertices = archive.read_array("mesh/vertices", "<f8", n, 2)
     _check_vertices(vertices)
     faces, uv = archive.read_array("mesh/faces", "<i4", m, 3), archive.read_array("mesh/uv", "<f4", n, 2)

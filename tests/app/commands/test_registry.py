@@ -20,7 +20,7 @@ from akap_editor.app.dialogs.preferences_page import PreferencesPage
 from akap_editor.app.dialogs.take import TakeDialog
 from akap_editor.app.frame import layout
 from akap_editor.app.glfw_window import on_key
-from akap_editor.editor import gestures
+from akap_editor.editor import gestures, mirroring
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import PinRequest
@@ -70,6 +70,11 @@ def scattered(ui):
     targets = {1: (40.0, 70.0), 2: (120.0, 90.0), 3: (220.0, 77.0)}
     ui.editor.edit("Move Pins", lambda session: (session.apply(SetTargets(targets)), session.settle()))
     ui.editor.select_all()
+
+
+def paired(ui):
+    ui.editor.select({1, 3})
+    mirroring.pair_selected(ui.editor)
 
 
 def targets_are(axis, expected):
@@ -345,6 +350,17 @@ CASES = {
     "Align Bottom": (scattered, targets_are(1, [90.0, 90.0, 90.0])),
     "Distribute Horizontally": (scattered, targets_are(0, [40.0, 130.0, 220.0])),
     "Distribute Vertically": (scattered, targets_are(1, [70.0, 90.0, 80.0])),
+    "Mirror Pins": (
+        nothing,
+        lambda ui: ui.session.state.mirror is not None and ui.session.state.mirror.is_on,
+    ),
+    "Draw Mirror Axis": (nothing, lambda ui: ui.tool == "AxisIdle"),
+    "Pair Pins": (
+        lambda ui: ui.editor.select({1, 3}),
+        lambda ui: ui.session.state.mirror is not None and ui.session.state.mirror.partner(1) == 3,
+    ),
+    "Unpair Pins": (paired, lambda ui: ui.session.state.mirror.partner(1) is None),
+    "Flip Pose": (bent, lambda ui: ui.session.history.undo_label == "Flip Pose"),
     "Finish": (one_selected, lambda ui: not ui.editor.selection),
     "Stiffness Brush": (nothing, lambda ui: ui.editor.chosen_tool is ui.editor.brush_tool),
     "Erase Stiffness": (with_tool("brush_tool"), lambda ui: ui.editor.brush_tool.brush.erasing),

@@ -30,6 +30,8 @@ def test_what_has_no_room_is_in_a_popup(pinned):
 
 
 def test_all_that_fits_is_shown(pinned):
+    pinned.editor.chosen_tool = pinned.editor.hand_tool
+    pinned.settle()
     found = []
     pinned.do(lambda hand: found.append(hand.item_exists("//Options/###more")))
     assert found == [False]

@@ -6,13 +6,13 @@ from .keyframes import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, S
 from .layers import KeyLayers, OrderLayers, SetJoints, SetLayers, SetLayerView, ShowGroup
 from .method import PaintStiffness, SetSettings, SetStiffness
 from .named_poses import AddPose, DeletePose, RenamePose, ReorderPoses
-from .pins import SetAngles, SetPins, SetTargets
+from .pins import SetAngles, SetMirror, SetPins, SetTargets
 from .pose import ReloadArtwork, Remesh, ResetPose, SetPose, SetRestPose
 
 EDITS: dict[str, type[Edit]] = {
     edit.name: edit
     for edit in (
-        *(SetPins, SetTargets, SetAngles),
+        *(SetPins, SetTargets, SetAngles, SetMirror),
         *(SetSettings, SetStiffness, PaintStiffness),
         *(SetPose, ResetPose, SetRestPose, Remesh, ReloadArtwork),
         *(OrderLimb, SetCrossings),
@@ -48,6 +48,7 @@ __all__ = [
     "SetLayerView",
     "SetLayers",
     "SetLoop",
+    "SetMirror",
     "SetPins",
     "SetPose",
     "SetRestPose",

@@ -15,6 +15,7 @@ from ...document.crossings import crossings_by_depth
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.pin import MAX_PIN_ANGLE, Pin, check_pins
+from ...document.rig.mirror import Mirror
 from .edit import Edit, Effect, Json, ReplayTarget
 
 Target = tuple[float, float]
@@ -35,7 +36,8 @@ class SetPins(Edit):
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         mesh, pins = drawing.mesh, state.pins
         crossings = crossings_by_depth(mesh, pins, self.pins, state.positions, state.crossings)
-        return replace(state, pins=self.pins, crossings=crossings)
+        mirror = None if state.mirror is None else state.mirror.of_pins(pin.id for pin in self.pins)
+        return replace(state, pins=self.pins, crossings=crossings, mirror=mirror)
 
     def fixed_at_pose(self, state: EditState, drawing: Drawing) -> "SetPins":
         """This edit with the current positions of existing pins as their targets, to stop a motion."""
@@ -171,6 +173,29 @@ class SetAngles(Edit):
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         return cls({int(pin): angle for pin, angle in event["angles"].items()})
+
+
+@dataclass(frozen=True, eq=False)
+class SetMirror(Edit):
+    """Set the mirror; None removes it. Pairs of unknown pins are left out."""
+
+    name = "mirror"
+    fields = ("mirror",)
+    effect = Effect.NONE
+
+    mirror: Mirror | None
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        mirror = None if self.mirror is None else self.mirror.of_pins(pin.id for pin in state.pins)
+        return replace(state, mirror=mirror)
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"mirror": None if self.mirror is None else self.mirror.to_json()}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        record = event["mirror"]
+        return cls(None if record is None else Mirror.from_json(record, target.scale))
 
 
 def _check_ids(name: str, ids: Iterable[int], pins: Sequence[Pin]) -> None:
