@@ -79,6 +79,8 @@ class Deformer(Protocol):
     has_memory: the constructor takes ``memory``, from 0 to 1: how strongly a step pulls towards the rest
     pose.
     takes_joints: the constructor takes ``joints``, `MeshJoints` that hold components together.
+    takes_scales: ``set_scales(scales)`` takes factors (m,) by which the rest shape of each face is enlarged
+    for the memory from now on, None for none; moves nothing.
     has_vector_fields: the pose follows a vector field: results have one, and ``vector_fields(positions,
     velocities)`` returns two of shape (n, 2), the one followed and the one before its last solve.
     """
@@ -88,6 +90,7 @@ class Deformer(Protocol):
     has_memory: bool = False
     has_vector_fields: bool = False
     takes_joints: bool = False
+    takes_scales: bool = False
 
     def set_pins(self, points: MeshPoints) -> None:
         """Choose the pins, k points of the mesh; moves nothing. Raises InputError."""

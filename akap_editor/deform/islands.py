@@ -26,7 +26,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from ..geometry.joints import NO_JOINTS, MeshJoints
-from ..geometry.mesh import NO_POINTS, MeshPoints, TriMesh
+from ..geometry.mesh import NO_POINTS, MeshPoints, TriMesh, signed_areas
 from ..geometry.operators import to_complex, to_points
 from ..geometry.validation import Complexes, Floats, Ints, as_points
 from .deformer import Deformer, Flow, StepResult
@@ -51,10 +51,11 @@ class Islands:
     arms: csr_array
     min_arms: Floats
 
-    def carry(self, before: Complexes, positions: Floats) -> Floats:
+    def carry(self, before: Complexes, positions: Floats, growth: Floats | None = None) -> Floats:
         """Move the islands with their patches, from the pose ``before`` (n,) to ``positions`` (n, 2).
 
-        Returns the pose (n, 2) with the islands moved.
+        growth: (r,) by how much each vertex's island becomes larger, None for not at all. Returns the pose
+        (n, 2) with the islands moved.
         """
         pose = to_complex(positions).copy()
         arms, arms_before = self.arms @ pose, self.arms @ before
@@ -62,6 +63,8 @@ class Islands:
         rotation = np.where(has_direction, arms * arms_before.conj(), 1.0)
         rotation = (rotation / np.abs(rotation))[self.patch]
         offsets = before[self.vertices] - (self.mean @ before)[self.patch]
+        if growth is not None:
+            offsets *= growth
         pose[self.vertices] = (self.mean @ pose)[self.patch] + rotation * offsets
         return to_points(pose)
 
@@ -92,7 +95,8 @@ class IslandDeformer(Deformer):
         self._deformer: Any = deformer  # may have more methods than the contract asks for
         self.holds_angles, self.takes_stiffness = deformer.holds_angles, deformer.takes_stiffness
         self.has_memory, self.has_vector_fields = deformer.has_memory, deformer.has_vector_fields
-        self.takes_joints = deformer.takes_joints
+        self.takes_joints, self.takes_scales = deformer.takes_joints, deformer.takes_scales
+        self._scales: Floats | None = None
         self._rest = to_complex(mesh.vertices)
         corner_areas = np.repeat(mesh.rest_areas / 3, 3)
         self._vertex_areas = np.bincount(mesh.faces.ravel(), corner_areas, len(self._rest))
@@ -144,13 +148,36 @@ class IslandDeformer(Deformer):
         result: StepResult = self._deformer.step(pose, targets, *optional)
         if not len(islands.vertices):
             return result
-        before, field, flow = to_complex(pose), result.field, _carried_flow(result.flow, islands, pose)
-        moved = islands.carry(before, result.positions)
+        growth = self._growth(pose)
+        before, field, flow = (
+            to_complex(pose),
+            result.field,
+            _carried_flow(result.flow, islands, pose, growth),
+        )
+        moved = islands.carry(before, result.positions, growth)
         if flow is not None and field is not None:  # the field belongs to the last substep
             start = flow(1 - 1 / max(result.report.substeps, 1))
             field = islands.extend_field(to_complex(start), field)
         report = replace(result.report, seconds=time.perf_counter() - started)
         return StepResult(moved, field, report, flow)
+
+    def set_scales(self, scales: Floats | None) -> None:
+        """Take scales (m,) of the faces, see `Deformer`; islands become as large as those of their own."""
+        if scales is not self._scales:
+            self._scales = scales
+            self._deformer.set_scales(scales)
+
+    def _growth(self, pose: Floats) -> Floats | None:
+        """By how much each vertex's island becomes larger in a step from a pose (n, 2), (r,)."""
+        if self._scales is None:
+            return None
+        mesh, count = self._mesh, len(self._component_areas)
+        component = mesh.component[mesh.faces[:, 0]]
+        areas = np.bincount(component, signed_areas(pose, mesh.faces), count)
+        wanted = np.bincount(component, mesh.rest_areas * self._scales**2, count)
+        ratio = np.divide(wanted, areas, out=np.ones(count), where=areas > 0)
+        growth: Floats = np.sqrt(ratio)[mesh.component[self._islands.vertices]]
+        return growth
 
     def vector_field(self, positions: ArrayLike, velocities: ArrayLike) -> Floats:
         """U_opt (n, 2) at a pose (n, 2) for pin velocities (k, 2), if the method has vector fields."""
@@ -185,10 +212,14 @@ class IslandDeformer(Deformer):
         return np.asarray(weights / weights.sum())
 
 
-def _carried_flow(flow: Flow | None, islands: Islands, pose: Floats) -> Flow | None:
+def _carried_flow(
+    flow: Flow | None, islands: Islands, pose: Floats, growth: Floats | None = None
+) -> Flow | None:
     """The flow γ(t) of a step from a pose (n, 2), with the islands moved."""
     before = to_complex(pose)
-    return None if flow is None else lambda t: islands.carry(before, flow(t))
+    if flow is None:
+        return None
+    return lambda t: islands.carry(before, flow(t), None if growth is None else growth**t)
 
 
 def _gaps_of_islands(mesh: TriMesh, joints: MeshJoints, pinned: list[int]) -> dict[int, tuple[int, int, int]]:

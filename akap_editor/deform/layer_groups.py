@@ -65,6 +65,8 @@ class LayerGroupDeformer(Deformer):
         self.holds_angles, self.takes_stiffness = sample.holds_angles, sample.takes_stiffness
         self.has_memory, self.has_vector_fields = sample.has_memory, sample.has_vector_fields
         self.takes_joints = sample.takes_joints
+        self.takes_scales = sample.takes_scales
+        self._scales: ArrayLike | None = None
         if not self.takes_joints:
             self._joined = self._joined[:0]
         self.set_pins(NO_POINTS)
@@ -83,6 +85,22 @@ class LayerGroupDeformer(Deformer):
             deformer.set_pins(MeshPoints(faces[points.faces[pins]], points.weights[pins]))
             groups.append(_Group(vertices, faces, deformer, pins))
         self._groups, self._pin_count = groups, len(points)
+        self._pass_scales()
+
+    def set_scales(self, scales: ArrayLike | None) -> None:
+        """Take scales (m,) of the faces, see `Deformer`."""
+        if scales is not self._scales:
+            self._scales = scales
+            self._pass_scales()
+
+    def _pass_scales(self) -> None:
+        if not self.takes_scales:
+            return
+        for group in self._groups:
+            own = None
+            if self._scales is not None:
+                own = np.asarray(self._scales, dtype=np.float64)[group.faces >= 0]
+            group.deformer.set_scales(own)
 
     def _part(self, group: tuple[int, ...]) -> tuple[Ints, Ints, Any]:
         """Vertices, numbers of faces and deformer of some components, see `_Group`."""

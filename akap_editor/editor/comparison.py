@@ -8,7 +8,7 @@ from ..geometry.validation import Floats
 from .document.document import Document
 from .document.pin import Pin
 from .document.settings import Settings
-from .session.edits import SetAngles, SetPins, SetTargets
+from .session.edits import SetAngles, SetPins, SetScales, SetTargets
 from .session.pin_edits import hold_angles
 from .session.session import Session
 from .session.stepper import INLINE
@@ -94,19 +94,20 @@ class MethodComparison:
         if [_anchor(pin) for pin in session.state.pins] != [_anchor(pin) for pin in pins]:
             session.apply(SetPins(pins))
         if any(
-            (copy.target != pin.target).any() or copy.angle != pin.angle
+            (copy.target != pin.target).any() or (copy.angle, copy.scale) != (pin.angle, pin.scale)
             for copy, pin in zip(session.state.pins, pins, strict=True)
         ):
             _copy_goals(session, pins)
 
 
 def _copy_goals(session: Session, pins: tuple[Pin, ...]) -> None:
-    """Set the targets and angles of a session's pins to those of ``pins``."""
+    """Set the targets, angles and scales of a session's pins to those of ``pins``."""
     angles = {pin.id: pin.angle for pin in pins if pin.angle is not None}
     if freed := {pin.id for pin in session.state.pins if pin.angle is not None} - set(angles):
         hold_angles(session, freed, False)
     session.apply(SetTargets({pin.id: (float(pin.target[0]), float(pin.target[1])) for pin in pins}))
     session.apply(SetAngles(angles))
+    session.apply(SetScales({pin.id: pin.scale for pin in pins if pin.scale is not None}))
 
 
 def _anchor(pin: Pin) -> tuple[object, ...]:

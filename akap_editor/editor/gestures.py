@@ -28,6 +28,7 @@ from .session.edits import (
     SetPins,
     SetPose,
     SetRestPose,
+    SetScales,
     SetSettings,
     SetTargets,
     ShowGroup,
@@ -173,6 +174,11 @@ def set_pin_angle(editor: EditContext, pin: int, angle: float | None) -> None:
         editor.edit(mark("Release Angle"), lambda session: pin_edits.hold_angles(session, {pin}, False))
     else:
         editor.apply(mark("Rotate Pin"), SetAngles({pin: angle}))
+
+
+def set_pin_scale(editor: EditContext, pin: int, scale: float) -> None:
+    """Let the drawing around a pin grow to a multiple of its rest size. Raises InputError out of range."""
+    editor.apply(mark("Scale Pin"), SetScales({pin: scale}))
 
 
 # -- layers --------------------------------------------------------------------------------------------------

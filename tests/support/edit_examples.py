@@ -37,6 +37,7 @@ from akap_editor.editor.session.edits import (
     SetPins,
     SetPose,
     SetRestPose,
+    SetScales,
     SetSettings,
     SetStiffness,
     SetTargets,
@@ -51,7 +52,7 @@ def _pins(session: Session) -> Edit:
     """The first pin in front of the others, and a new one."""
     first = [replace(pin, depth=2) for pin in session.state.pins[:1]]
     new_id = 1 + max((pin.id for pin in session.state.pins), default=0)
-    new = Pin(new_id, 5, np.array([0.2, 0.3, 0.5]), np.array([60.0, 50.0]), 0, 0.5, "hand", True, True)
+    new = Pin(new_id, 5, np.array([0.2, 0.3, 0.5]), np.array([60.0, 50.0]), 0, 0.5, "hand", True, True, 0.75)
     return SetPins((*first, new))
 
 
@@ -95,6 +96,7 @@ EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "pins": _pins,
     "targets": lambda session: SetTargets({pin.id: (90.0, 65.0) for pin in session.state.pins[-1:]}),
     "angles": lambda session: SetAngles({pin.id: 0.25 for pin in session.state.pins[:1]}),
+    "scales": lambda session: SetScales({pin.id: 1.25 for pin in session.state.pins[:1]}),
     "settings": lambda session: SetSettings(Settings.parse("akap:memory=0.5,no-dirichlet")),
     "stiffness": lambda session: SetStiffness(np.linspace(1, 1000, len(session.drawing.mesh.faces))),
     "paint": lambda session: PaintStiffness([(45.0, 40.0), (50.0, 41.0)], 12.0, 50.0),

@@ -36,7 +36,7 @@ def bits(state: EditState) -> tuple[Any, ...]:
     pins = tuple(
         (
             *(pin.id, pin.face, pin.weights.tobytes(), pin.target.tobytes(), pin.depth, pin.angle),
-            *(pin.name, pin.is_hidden, pin.is_locked),
+            *(pin.name, pin.is_hidden, pin.is_locked, pin.scale),
         )
         for pin in state.pins
     )

@@ -12,6 +12,7 @@ from ...editor.mirroring import active_mirror
 from ...editor.session.session import Session
 from ...editor.tools.base import BrushCircle, Crosshair, Markers, RotationRing
 from ...editor.tools.rotate import RING_RADIUS
+from ...editor.tools.scale import scale_handle
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, packed
 from ..timeline.motion_paths import draw_motion_paths
@@ -43,7 +44,7 @@ def draw_markers(state: AppState, scale: float) -> None:
             is_hovered = number == markers.hovered_suggestion
             _draw_suggestion(draw, center, scale, is_hovered, is_hovered and markers.removes_hovered_pin)
         if markers.ring is not None:
-            _draw_ring(draw, markers.ring, scale)
+            _draw_ring(draw, markers.ring, scale, session.supports_scales)
     if markers.brush is not None:
         _draw_brush(draw, markers.brush, scale)
     if markers.crosshair is not None:
@@ -170,8 +171,23 @@ def _draw_suggestion(
         _draw_sign(draw, center, 4.0 * scale, scale, _TIMES)
 
 
-def _draw_ring(draw: imgui.ImDrawList, ring: RotationRing, scale: float) -> None:
-    """Draw the ring of a pin with its handle; while it is dragged, also the angle as an arc and a number."""
+def _draw_scale_handle(draw: imgui.ImDrawList, ring: RotationRing, scale: float) -> None:
+    """Draw the square by which the drawing around a pin is scaled."""
+    x, y = scale_handle(ring, scale)
+    is_dragged = ring.handle_radius is not None
+    if is_dragged:
+        draw.add_line(ImVec2(*ring.center), ImVec2(x, y), packed(DARK, 0.6), 4.0 * scale)
+        draw.add_line(ImVec2(*ring.center), ImVec2(x, y), packed(ACCENT), 1.6 * scale)
+    for size, color in ((5.5, packed(DARK, 0.75)), (4.0, packed(ACCENT if is_dragged else _WHITE))):
+        low, high = ImVec2(x - size * scale, y - size * scale), ImVec2(x + size * scale, y + size * scale)
+        draw.add_rect_filled(low, high, color, 1.0 * scale)
+
+
+def _draw_ring(draw: imgui.ImDrawList, ring: RotationRing, scale: float, has_scale: bool) -> None:
+    """Draw the ring of a pin with its handles; while it is dragged, also its angle or scale as a number.
+
+    has_scale: whether the method can scale the drawing.
+    """
     center, radius = ImVec2(*ring.center), RING_RADIUS * scale
     color = packed(ACCENT if ring.is_dragged else _WHITE)
     draw.add_circle(center, radius, packed(DARK, 0.6), 64, 4.5 * scale)
@@ -183,8 +199,12 @@ def _draw_ring(draw: imgui.ImDrawList, ring: RotationRing, scale: float) -> None
     handle = _on_circle(ring.center, ring.angle, radius)
     draw.add_circle_filled(handle, 6.0 * scale, packed(DARK, 0.75))
     draw.add_circle_filled(handle, 4.5 * scale, color)
-    if ring.is_dragged:
+    if has_scale:
+        _draw_scale_handle(draw, ring, scale)
+    if ring.is_dragged or ring.scale is not None:
         text = f"{round(math.degrees(ring.angle), 1) + 0.0:+.1f}°"  # + 0.0 turns -0.0 into 0.0
+        if ring.scale is not None:
+            text = f"{100 * ring.scale:.0f} %"
         left = ring.center[0] - imgui.calc_text_size(text).x / 2 - 6 * scale
         _draw_label(draw, (left, ring.center[1] + radius + 14 * scale), text, (6.0, 2.0), scale)
 

@@ -96,6 +96,7 @@ def _draw_values(state: AppState, pin: Pin, scale: float) -> None:
     depth = _field(state, pin, tr("Depth"), pin.depth, lambda value: imgui.input_int("##Depth", value, 0, 0))
     widgets.show_tooltip(tr("Where limbs overlap, the higher number is in front."))
     _draw_angle(state, pin)
+    _draw_scale(state, pin)
     imgui.pop_item_width()
     if widgets.cancel_pressed():  # ImGui would only leave the field
         widgets.close_popup()
@@ -127,6 +128,19 @@ def _draw_angle(state: AppState, pin: Pin) -> None:
     else:
         return
     state.run_reporting_errors(lambda: gestures.set_pin_angle(state.editor, pin.id, angle))
+
+
+def _draw_scale(state: AppState, pin: Pin) -> None:
+    """Draw a field for the scale in percent."""
+    session = state.editor.session
+    assert session is not None
+    imgui.begin_disabled(not session.supports_scales)
+    percent = _number_field(state, pin, tr("Scale"), 100 * (pin.scale or 1.0), "%.0f %%")
+    widgets.show_tooltip(tr("Size of the drawing around the pin, compared with the rest pose."))
+    imgui.end_disabled()
+    if percent is not None:
+        scale = percent / 100
+        state.run_reporting_errors(lambda: gestures.set_pin_scale(state.editor, pin.id, scale))
 
 
 def _number_field(state: AppState, pin: Pin, name: str, value: float, text_format: str) -> float | None:

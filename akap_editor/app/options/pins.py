@@ -9,7 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...editor import gestures, pin_arrangement
-from ...editor.document.pin import MAX_DEPTH, Pin
+from ...editor.document.pin import MAX_DEPTH, MAX_PIN_SCALE, MIN_PIN_SCALE, Pin
 from ...editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
 from ...words import mark, tr, tr_plural
 from .. import widgets
@@ -41,6 +41,7 @@ def items(state: AppState) -> Sequence[Item]:
             ),
             Item("angle", partial(_draw_angle, pins[0])),
             command_button(HOLD_ANGLE),
+            Item("scale", partial(_draw_scale, pins[0])),
             Item("depth", partial(_draw_depth, pins)),
             Item("stiffness", partial(_draw_stiffness, pins)),
             command_button(REMOVE_SELECTED, mark("Remove")),
@@ -83,6 +84,28 @@ def _draw_angle(pin: Pin, state: AppState) -> None:
     imgui.end_disabled()
     if new is not None and f"{new:.1f}" != f"{degrees:.1f}":
         state.run_reporting_errors(lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(new)))
+
+
+def _draw_scale(pin: Pin, state: AppState) -> None:
+    """Draw the scale in percent, which a drag or a typed number changes."""
+    session = state.editor.session
+    assert session is not None
+    percent = 100 * (pin.scale or 1.0)
+    imgui.begin_disabled(not session.supports_scales)
+    new = _drag_number(
+        state,
+        mark("Scale"),
+        (pin.id,),
+        percent,
+        lambda value: imgui.drag_float(
+            "##scale", value, 0.5, 100 * MIN_PIN_SCALE, 100 * MAX_PIN_SCALE, "%.0f %%"
+        ),
+        tr("Size of the drawing around the pin, compared with the rest pose. Drag, or double-click to type."),
+    )
+    imgui.end_disabled()
+    if new is not None and f"{new:.0f}" != f"{percent:.0f}":
+        scale = min(max(new / 100, MIN_PIN_SCALE), MAX_PIN_SCALE)
+        state.run_reporting_errors(lambda: gestures.set_pin_scale(state.editor, pin.id, scale))
 
 
 def _draw_depth(pins: Sequence[Pin], state: AppState) -> None:

@@ -90,6 +90,7 @@ class AkapDeformer(Deformer):
     has_memory = True
     has_vector_fields = True
     takes_joints = True
+    takes_scales = True
 
     def __init__(
         self,
@@ -145,6 +146,8 @@ class AkapDeformer(Deformer):
         self._flow = LogSpirals(mesh).flow if self._has_spirals else linear_flow
         self._memory = RestMemory(mesh, self._system, self._stiffness)
         self._faces, self._min_areas = mesh.faces.astype(np.uint32), _MIN_AREA_SHARE * mesh.rest_areas
+        self._scales: Floats | None = None
+        self._given_scales: ArrayLike | None = None
         self.set_pins(NO_POINTS)
 
     def set_pins(self, points: MeshPoints) -> None:
@@ -156,12 +159,28 @@ class AkapDeformer(Deformer):
         self._points = self._order.points(points)
         self._set_angle_pins(np.zeros(len(points), dtype=bool))
 
+    def set_scales(self, scales: ArrayLike | None) -> None:
+        """Remember the rest shape enlarged, see `Deformer`; without memory this has no effect."""
+        if scales is self._given_scales or not self._memory_strength:
+            return
+        self._given_scales, self._scales = scales, None
+        min_areas = _MIN_AREA_SHARE * self._mesh.rest_areas
+        if scales is not None:
+            count = len(self._mesh.faces)
+            self._scales = self._order.face_values(as_numbers(scales, "scales", count, 1e-3, 1e3))
+            min_areas = min_areas * self._scales**2
+        self._min_areas = min_areas
+        self._memory.set_scales(self._scales)
+        if self._pin_rotation is not None:
+            self._pin_rotation.set_scales(self._scales)
+
     def _set_angle_pins(self, has_angle: NDArray[np.bool_]) -> None:
         """Choose which pins (k,) hold an angle."""
         self._has_angle = has_angle
         self._pin_rotation: PinRotationConstraints | None = None
         if has_angle.any():
             self._pin_rotation = PinRotationConstraints(self._mesh, self._points, has_angle)
+            self._pin_rotation.set_scales(self._scales)
         self._system.set_pins(self._points, self._pin_rotation)
         self._memory.set_pins(self._points, self._pin_rotation)
         self._exact_system = None

@@ -47,6 +47,14 @@ class PinRotationConstraints:
         dx, dy, areas = hat_gradients(mesh.vertices, self._corners)
         self._rest_hats, self._rest_areas = dx + 1j * dy, areas
         self._hats, self._areas = self._rest_hats, areas
+        self._unscaled = self._rest_hats, self._rest_areas
+
+    def set_scales(self, scales: Floats | None) -> None:
+        """Compare with the rest shape enlarged by scales (m,) of the faces, None for 1."""
+        self._rest_hats, self._rest_areas = self._unscaled
+        if scales is not None:
+            own = scales[self.faces]
+            self._rest_hats, self._rest_areas = self._rest_hats / own[:, None], self._rest_areas * own**2
 
     def set_pose(self, positions: Floats) -> None:
         """Set the pose (n, 2) for `energy` and `pin_force`."""

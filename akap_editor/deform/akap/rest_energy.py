@@ -34,6 +34,15 @@ class SymmetricDirichlet:
         self._hats = dx + 1j * dy  # gradients of the hat functions, (m, 3)
         self._weights = areas if stiffness is None else areas * stiffness
         self._areas = areas
+        self._unscaled = self._hats, self._weights, self._areas
+
+    def set_scales(self, scales: Floats | None) -> None:
+        """Measure J_f / s_f with the areas s_f² A_f from now on; scales: (m,) s of the faces, None for 1."""
+        self._hats, self._weights, self._areas = self._unscaled
+        if scales is not None:
+            squares = scales * scales
+            self._hats = self._hats / scales[:, None]
+            self._weights, self._areas = self._weights * squares, self._areas * squares
 
     def evaluate(self, positions: Complexes) -> tuple[float, Complexes, Complexes]:
         """The energy of a pose (n,), its derivative by the vertices, (n,), and the columns (m, 2).

@@ -39,6 +39,10 @@ class RestMemory:
         self._energy = SymmetricDirichlet(mesh, stiffness)
         self._hessian: CholeskyFactors | None = None
 
+    def set_scales(self, scales: Floats | None) -> None:
+        """Remember the rest shape enlarged by scales (m,) of the faces, None for 1."""
+        self._energy.set_scales(scales)
+
     def set_pins(self, points: MeshPoints, rotation: PinRotationConstraints | None) -> None:
         """Choose the pins, k points of the mesh, and the faces that rotate with them."""
         groups = self._system.groups

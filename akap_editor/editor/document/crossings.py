@@ -29,7 +29,7 @@ from .drawing import Drawing
 from .pin import MAX_DEPTH, Pin
 
 LEVELS_PER_DEPTH = 4  # faces of one level keep the order of the mesh, so that a limb is drawn as a whole
-_PIN_RADIUS = 1e-6  # share of √area: a vertex nearer than this to a pin has the pin's depth
+PIN_RADIUS = 1e-6  # share of √area: a vertex nearer than this to a pin has the pin's depth
 
 _PinDepths = tuple[tuple[int, bytes, int], ...]  # face, weights and depth of each pin, as a key of a cache
 
@@ -307,7 +307,7 @@ def _vertex_depths(mesh: TriMesh, pins: _PinDepths) -> Floats:
     data", 1968.
     """
     distances = np.stack([_point_distances(mesh, face, weights) for face, weights, _ in pins])
-    weights = 1.0 / np.maximum(distances, _PIN_RADIUS * mesh.length) ** 2
+    weights = 1.0 / np.maximum(distances, PIN_RADIUS * mesh.length) ** 2
     if mesh.layers is not None:
         weights *= mesh.layers == mesh.face_layers[[face for face, *_ in pins]][:, None]
     sums = weights.sum(axis=0)

@@ -17,6 +17,7 @@ from ...words import tr
 MAX_PINS = 10_000
 MAX_DEPTH = 999  # in front of the drawing or behind it
 MAX_PIN_NAME = 100  # characters
+MIN_PIN_SCALE, MAX_PIN_SCALE = 0.25, 4.0
 MAX_PIN_ANGLE = 20 * math.pi  # radians, in either direction
 WEIGHT_TOLERANCE = 1e-9
 
@@ -33,7 +34,8 @@ class Pin:
     `crossings.face_order`; angle: to which the drawing around the pin is to rotate, radians from the rest
     pose, clockwise on the screen; None lets it rotate freely; name: empty for “Pin” and its id; is_hidden:
     whether it is left out on the canvas, where it still holds the drawing; is_locked: whether the hand can
-    neither move nor remove it.
+    neither move nor remove it; scale: by how much the drawing around the pin is to be larger than at rest,
+    see `rig.pin_scales`; None counts as 1.
     """
 
     id: int
@@ -45,6 +47,7 @@ class Pin:
     name: str = ""
     is_hidden: bool = False
     is_locked: bool = False
+    scale: float | None = None
 
     @property
     def label(self) -> str:
@@ -67,6 +70,7 @@ class Pin:
             **({"name": self.name} if self.name else {}),
             **({"hidden": True} if self.is_hidden else {}),
             **({"locked": True} if self.is_locked else {}),
+            **({"scale": float(self.scale)} if self.scale is not None else {}),
         }
 
 
@@ -173,6 +177,11 @@ def _check_pin(pin: Pin, faces: int) -> None:
         expected = tr("an angle from -{most:.5g} to {most:.5g} radians", most=MAX_PIN_ANGLE)
         raise InputError(
             tr("pin {pin}: expected {expected}, got {angle}", pin=pin.id, expected=expected, angle=pin.angle)
+        )
+    if pin.scale is not None and not MIN_PIN_SCALE <= pin.scale <= MAX_PIN_SCALE:
+        expected = tr("a scale from {least:g} to {most:g}", least=MIN_PIN_SCALE, most=MAX_PIN_SCALE)
+        raise InputError(
+            tr("pin {pin}: expected {expected}, got {scale}", pin=pin.id, expected=expected, scale=pin.scale)
         )
     if len(pin.name) > MAX_PIN_NAME:
         raise InputError(

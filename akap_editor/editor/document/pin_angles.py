@@ -11,6 +11,7 @@ from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.operators import to_complex
 from ...geometry.validation import Floats
 from .pin import Pin, pin_points
+from .rig.pin_scales import with_measured_scales
 
 _MeasuredPins = tuple[tuple[int, bytes, bool], ...]  # face, weights, and whether its angle is measured
 
@@ -38,8 +39,9 @@ def _rotation_constraints(mesh: TriMesh, pins: _MeasuredPins) -> PinRotationCons
 
 
 def pins_fixed_at_pose(mesh: TriMesh, pins: Sequence[Pin], positions: Floats) -> tuple[Pin, ...]:
-    """Pins with targets, and held angles, equal to those in a pose (n, 2), so that they stay there."""
+    """Pins with targets, held angles and scales equal to those in a pose (n, 2), so that they stay there."""
     targets = mesh.evaluate(pin_points(pins), positions)
+    pins = with_measured_scales(mesh, pins, positions)
     angles = pin_angles(mesh, pins, positions)
     return tuple(
         replace(pin, target=target, angle=None if pin.angle is None else float(angle))

@@ -129,6 +129,12 @@ class Session:
         return get_method(self.state.settings.method).deformer.holds_angles
 
     @property
+    def supports_scales(self) -> bool:
+        """Whether pins can scale the drawing: with methods that remember the rest shape, if they do."""
+        settings = self.state.settings
+        return get_method(settings.method).deformer.takes_scales and bool(settings.get("memory", 0.0))
+
+    @property
     def has_pending_step(self) -> bool:
         """Whether a step is being computed, or is computed and `step` has not taken it over."""
         return self._stepper.has_pending_step

@@ -18,6 +18,7 @@ from ..document.crossings import following_overlaps, overlaps_of, remember_overl
 from ..document.document import EditState
 from ..document.pin_angles import FullTurnCounter, pin_angles
 from ..document.rig.joint import mesh_joints
+from ..document.rig.pin_scales import face_scales
 
 MAX_PIN_TRAVEL = 0.035  # of a pin in one step, as a share of √area; longer steps cost as much per pixel
 MAX_PIN_ROTATION = 0.2  # radians of a pin in one step
@@ -243,8 +244,12 @@ class Stepper:
         is_dragged |= turns > max(ANGLE_TOLERANCE, _DRAGGED_SHARE * turns.max(initial=0.0))
         dragged_ids = {pin.id for pin, dragged in zip(state.pins, is_dragged, strict=True) if dragged}
 
+        scales = face_scales(self._mesh, state.pins) if self._deformer.takes_scales else None
+
         def step() -> StepResult:
             with self._lock:
+                if self._deformer.takes_scales:
+                    self._deformer.set_scales(scales)
                 result: StepResult = self._deformer.step(state.positions, targets, *angles)
             return result
 

@@ -26,16 +26,19 @@ def distance(a: Point, b: Point) -> float:
 
 @dataclass(frozen=True)
 class RotationRing:
-    """The ring around a pin by which the drawing is rotated.
+    """The ring around a pin by which the drawing is rotated, with a handle that scales it.
 
     angle: of the pin, radians from the rest pose, clockwise on the screen; is_dragged: whether it is rotated
-    now.
+    now; handle_radius: distance of the scale's handle from the pin, in points of the screen, while it is
+    dragged; scale: the one that is shown then.
     """
 
     pin: int
     center: Point
     angle: float
     is_dragged: bool = False
+    handle_radius: float | None = None
+    scale: float | None = None
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from ..session.edits import OrderLimb, SetTargets
 from ..session.pin_edits import add_pin, hold_stopped_pins
 from .base import Cursor, IdleTool, Markers, PinGesture, Pointing, Tool, ToolContext
 from .rotate import PointingRotationRing, pin_with_ring, ring_at, rotation_ring
+from .scale import PointingScaleHandle, scale_handle_at
 
 
 class PinsIdle(IdleTool):
@@ -21,6 +22,8 @@ class PinsIdle(IdleTool):
     @property
     def press_hint(self) -> str:
         context = self.context
+        if self._hovered_handle is not None:
+            return tr(PointingScaleHandle.hint)
         if self._hovered_ring is not None:
             return tr("Drag the ring to rotate the drawing around this pin, Shift snaps to 15°")
         hovered_pin = self.hovered_pin
@@ -63,6 +66,8 @@ class PinsIdle(IdleTool):
 
     @property
     def cursor(self) -> Cursor:
+        if self._hovered_handle is not None:
+            return "hand"
         if self._hovered_ring is not None:
             return "rotate"
         return "hand" if self.hovered_pin is not None else "arrow"
@@ -85,12 +90,18 @@ class PinsIdle(IdleTool):
         return None if pointer is None else ring_at(self.context, pointer)
 
     @property
+    def _hovered_handle(self) -> int | None:
+        """The pin whose scale handle is under the pointer."""
+        pointer = self.context.pointer
+        return None if pointer is None else scale_handle_at(self.context, pointer)
+
+    @property
     def _new_pin(self) -> Point | None:
         """The point of the screen where a click would add a pin."""
         context, pointer = self.context, self.context.pointer
         if pointer is None or self.hovered_pin is not None or context.held & {"shift", "alt"}:
             return None
-        if self._hovered_ring is not None:
+        if self._hovered_ring is not None or self._hovered_handle is not None:
             return None
         return pointer if context.is_on_drawing(pointer) else None
 
@@ -100,8 +111,11 @@ class PinsIdle(IdleTool):
             return
         pin = context.pin_at(event.position)
         ring_pin = None if event.shift and not event.alt else ring_at(context, event.position)
+        scaled_pin = scale_handle_at(context, event.position)
         if event.button == "right":
             context.set_tool(OpeningMenu(context, event, pin))
+        elif scaled_pin is not None:
+            context.set_tool(PointingScaleHandle(context, event, scaled_pin))
         elif ring_pin is not None:
             context.set_tool(PointingRotationRing(context, event, ring_pin))
         elif pin is None:

@@ -254,7 +254,7 @@ def _describe(document: Document) -> Json:
     width, height = drawing.size
     return {
         "format": DOCUMENT_FORMAT,
-        "version": DOCUMENT_VERSION if drawing.layers or drawing.mesh.is_cut else FLAT_VERSION,
+        "version": DOCUMENT_VERSION if _is_of_version_2(document) else FLAT_VERSION,
         "program": program_name(),
         "name": drawing.name,
         "picture": {"width": width, "height": height},
@@ -272,6 +272,13 @@ def _describe(document: Document) -> Json:
         **write_crossings(document.state.crossings),
         **({"mirror": state.mirror.to_json()} if state.mirror is not None else {}),
     }
+
+
+def _is_of_version_2(document: Document) -> bool:
+    """Whether it has what programs that know version 1 only would lose."""
+    drawing = document.drawing
+    has_scales = any(pin.scale is not None for pin in document.state.pins)
+    return bool(drawing.layers) or drawing.mesh.is_cut or has_scales
 
 
 def _describe_meshing(drawing: Drawing) -> Json:

@@ -45,6 +45,7 @@ def _read_pin(record: Any) -> Pin:
         display_text(optional(record, "name", str, "")),
         optional(record, "hidden", bool, False),
         optional(record, "locked", bool, False),
+        float(numbers([record["scale"]], "scale")[0]) if "scale" in record else None,
     )
 
 

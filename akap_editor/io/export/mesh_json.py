@@ -63,6 +63,7 @@ def encode_json(document: Document) -> bytes:
                 "id": pin.id,
                 "depth": pin.depth,
                 "angle": pin.angle,
+                "scale": pin.scale,
                 "face": pin.face,
                 "weights": pin.weights.tolist(),
                 "rest": rest_points[index].tolist(),

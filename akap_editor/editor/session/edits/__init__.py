@@ -6,13 +6,13 @@ from .keyframes import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, S
 from .layers import KeyLayers, OrderLayers, SetJoints, SetLayers, SetLayerView, ShowGroup
 from .method import PaintStiffness, SetSettings, SetStiffness
 from .named_poses import AddPose, DeletePose, RenamePose, ReorderPoses
-from .pins import SetAngles, SetMirror, SetPins, SetTargets
+from .pins import SetAngles, SetMirror, SetPins, SetScales, SetTargets
 from .pose import ReloadArtwork, Remesh, ResetPose, SetPose, SetRestPose
 
 EDITS: dict[str, type[Edit]] = {
     edit.name: edit
     for edit in (
-        *(SetPins, SetTargets, SetAngles, SetMirror),
+        *(SetPins, SetTargets, SetAngles, SetScales, SetMirror),
         *(SetSettings, SetStiffness, PaintStiffness),
         *(SetPose, ResetPose, SetRestPose, Remesh, ReloadArtwork),
         *(OrderLimb, SetCrossings),
@@ -52,6 +52,7 @@ __all__ = [
     "SetPins",
     "SetPose",
     "SetRestPose",
+    "SetScales",
     "SetSettings",
     "SetStiffness",
     "SetTargets",

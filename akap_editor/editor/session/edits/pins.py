@@ -14,7 +14,7 @@ from ....words import tr
 from ...document.crossings import crossings_by_depth
 from ...document.document import EditState
 from ...document.drawing import Drawing
-from ...document.pin import MAX_PIN_ANGLE, Pin, check_pins
+from ...document.pin import MAX_PIN_ANGLE, MAX_PIN_SCALE, MIN_PIN_SCALE, Pin, check_pins
 from ...document.rig.mirror import Mirror
 from .edit import Edit, Effect, Json, ReplayTarget
 
@@ -86,6 +86,7 @@ class SetPins(Edit):
                     display_text(pin.get("name", "")),
                     pin.get("hidden", False) is True,
                     pin.get("locked", False) is True,
+                    None if pin.get("scale") is None else as_pin_scale(pin["scale"]),
                 )
                 for pin, (face, weights), goal in zip(pins, points, targets, strict=True)
             )
@@ -196,6 +197,36 @@ class SetMirror(Edit):
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         record = event["mirror"]
         return cls(None if record is None else Mirror.from_json(record, target.scale))
+
+
+@dataclass(frozen=True, eq=False)
+class SetScales(Edit):
+    """Let the drawing around pins, by id, grow to these multiples of its rest size; steps make it so."""
+
+    name = "scales"
+    fields = ("scales",)
+    effect = Effect.TARGETS
+    may_overlap_step = True
+
+    scales: Mapping[int, float]
+
+    def apply(self, state: EditState, drawing: Drawing) -> EditState:
+        _check_ids("scales", self.scales, state.pins)
+        scales = {pin: as_pin_scale(scale) for pin, scale in self.scales.items()}
+        pins = (replace(pin, scale=scales.get(pin.id, pin.scale)) for pin in state.pins)
+        return replace(state, pins=tuple(pins))
+
+    def to_json(self, drawing: Drawing) -> Json:
+        return {"scales": {str(pin): float(scale) for pin, scale in self.scales.items()}}
+
+    @classmethod
+    def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
+        return cls({int(pin): scale for pin, scale in event["scales"].items()})
+
+
+def as_pin_scale(value: Any) -> float:
+    """``value`` as the scale of a pin. Raises InputError out of range."""
+    return as_number(value, "scale of a pin", MIN_PIN_SCALE, MAX_PIN_SCALE)
 
 
 def _check_ids(name: str, ids: Iterable[int], pins: Sequence[Pin]) -> None:
