@@ -19,6 +19,7 @@ from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.commands.palette import Palette
 from akap_editor.app.commands.registry import PALETTE_ITEMS, SHORTCUTS
+from akap_editor.app.dialogs.clips import ClipsDialog
 from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.app.dialogs.first_steps import FirstSteps
@@ -223,6 +224,24 @@ def keyframes(window: Window) -> None:
     window.state.view.show_pins = False
     window.state.timeline.keyframe_playback.onion_skin.is_shown = True
     window.state.timeline.keyframe_playback.selected = frozenset({0.8})
+
+
+@shot("speed")
+def speed(window: Window) -> None:
+    """The speed graph, with the handles of an easing that overshoots."""
+    add_keyframes(window)
+    playback = window.state.timeline.keyframe_playback
+    playback.selected = frozenset({0.0})
+    playback.set_easing("cubic-bezier(0.4, 0, 0.35, 1.25)")
+    window.state.view.show_speed_graph = True
+    for _ in range(200):  # until all speeds are known
+        window.frame()
+
+
+@shot("clips")
+def clips(window: Window) -> None:
+    """The dialog of clips."""
+    window.state.part(ClipsDialog).open(window.state)
 
 
 @shot("timeline")

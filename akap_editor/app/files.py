@@ -90,20 +90,23 @@ def open_dropped(state: AppState, paths: list[Path]) -> None:
     open_path(state, paths[0], notice)
 
 
-def open_path(state: AppState, path: Path, notice: str = "") -> None:
-    """Open a picture, drawing or recording, after asking about unsaved changes; then show ``notice``."""
+def open_path(state: AppState, path: Path, notice: str = "", then: Callable[[], None] | None = None) -> None:
+    """Open a picture, drawing or recording, after asking about unsaved changes; then show ``notice``.
+
+    then: is called after a picture or drawing was opened.
+    """
 
     def begin() -> None:
         state.notice = ""
         if path.suffix.lower() == RECORDING_SUFFIX:
             _begin_recording(state, path)
         else:
-            _begin_document(state, path, notice)
+            _begin_document(state, path, notice, then)
 
     confirm_unsaved(state, begin)
 
 
-def _begin_document(state: AppState, path: Path, notice: str) -> None:
+def _begin_document(state: AppState, path: Path, notice: str, then: Callable[[], None] | None = None) -> None:
     """Read a picture or drawing in a thread, then show it."""
 
     def show(document: Document) -> None:
@@ -112,6 +115,8 @@ def _begin_document(state: AppState, path: Path, notice: str) -> None:
             state.notice = tr("Opened the first frame of the animation {file}", file=display_name(path))
         remember_file(state, path)
         state.notice = notice or state.notice
+        if then is not None:
+            state.run_after_frame(then)
 
     state.begin_task(
         _opening_task(state, path, partial(open_document, path, mesher=state.preferences.mesher), show)

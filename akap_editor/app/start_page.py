@@ -1,5 +1,7 @@
 """The start page, in place of the canvas while nothing is open: open a file, a bundled or a recent one."""
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +10,15 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from PIL import Image
 
 from ..display_text import display_name, display_text
+from ..editor.animation.clips.clip import Clip
+from ..io.akap.clip import clips_for
 from ..io.images import Picture, read_image
 from ..resources import bundled_drawings, drawing_title
 from ..words import tr
 from . import files, widgets
 from .app_state import AppState
 from .commands.registry import OPEN
+from .dialogs.clips import play_clip
 from .theme import ACCENT, DARK, FRAME, HOVER, PANEL, SECONDARY, STRONG_LINE, TEXT, packed
 
 _WINDOW = (
@@ -28,6 +33,7 @@ _DROP_HEIGHT = 132
 _GAP = 12
 _MARGIN = 12  # around a thumbnail
 _DASH = 7
+_CLIP_BUTTON = 26
 _MIN_RECENT = 3  # files
 
 
@@ -61,7 +67,9 @@ def _draw_bundled(state: AppState, scale: float, column: float, pixels_per_point
     gap = _GAP * scale
     side = round((column - gap * (len(paths) - 1)) / len(paths))
     for path in paths:
+        imgui.begin_group()
         _draw_button(state, path, side, scale, pixels_per_point)
+        imgui.end_group()
         imgui.same_line(0, gap)
     imgui.new_line()
 
@@ -70,6 +78,7 @@ def _draw_button(state: AppState, path: Path, side: int, scale: float, pixels_pe
     """Draw a button that opens a drawing. side: of its square in points."""
     corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
     name_height = imgui.get_text_line_height() + 8 * scale
+    imgui.set_next_item_allow_overlap()
     if imgui.invisible_button(path.stem, ImVec2(side, side + name_height), _BUTTON):
         _open(state, path)
     is_hovered = imgui.is_item_hovered() or imgui.is_item_focused()
@@ -79,9 +88,26 @@ def _draw_button(state: AppState, path: Path, side: int, scale: float, pixels_pe
     state.thumbnails.draw(
         (path, pixels), corner, side, lambda: _scaled_picture(path, pixels), pixels_per_point
     )
+    clips = clips_for(path.stem)
+    if clips:
+        _draw_clip_button(state, path, clips[0], ImVec2(end.x, corner.y), scale)
     name = drawing_title(path)
     name_corner = ImVec2(corner.x + (side - imgui.calc_text_size(name).x) / 2, end.y + 6 * scale)
     draw.add_text(name_corner, packed(TEXT if is_hovered else SECONDARY), name)
+
+
+def _draw_clip_button(state: AppState, path: Path, clip: Clip, corner: ImVec2, scale: float) -> None:
+    """Draw a small button that opens a drawing and plays a clip. corner: at the top right of the drawing."""
+    size = _CLIP_BUTTON * scale
+    low = ImVec2(corner.x - size, corner.y)
+    imgui.set_cursor_screen_pos(low)
+    if imgui.invisible_button(f"{path.stem} clip", ImVec2(size, size), _BUTTON):
+        _open(state, path, partial(play_clip, state, clip))
+    is_hovered = imgui.is_item_hovered() or imgui.is_item_focused()
+    widgets.show_tooltip(tr("Open and play the clip “{clip}”", clip=tr(clip.name)))
+    draw, half = imgui.get_window_draw_list(), imgui.calc_text_size(icons.ICON_FA_PLAY)
+    place = ImVec2(low.x + (size - half.x) / 2, low.y + (size - half.y) / 2)
+    draw.add_text(place, packed(ACCENT if is_hovered else SECONDARY), icons.ICON_FA_PLAY)
 
 
 def _scaled_picture(path: Path, pixels: int) -> Picture:
@@ -91,9 +117,9 @@ def _scaled_picture(path: Path, pixels: int) -> Picture:
     return np.asarray(picture)
 
 
-def _open(state: AppState, path: Path) -> None:
-    """Open a file and give the keyboard focus to the canvas."""
-    files.open_path(state, path)
+def _open(state: AppState, path: Path, then: Callable[[], None] | None = None) -> None:
+    """Open a file and give the keyboard focus to the canvas. then: see `files.open_path`."""
+    files.open_path(state, path, then=then)
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
 

@@ -19,8 +19,9 @@ ABOUT = {
     "picture.",
     "compare": "Replay recordings with several methods and write a report: index.html and comparison.json.",
     "export": "Export FILE, a saved drawing or a picture, for other programs.",
-    "info": "Tell what FILE contains, a picture (also in layers), drawing, pose, recording or mesh, and "
-    "whether it is sound.",
+    "clip": "Apply a clip, a motion of named pins, to a drawing; save one; list the bundled ones.",
+    "info": "Tell what FILE contains, a picture (also in layers), drawing, pose, clip, recording or mesh, "
+    "and whether it is sound.",
     "bench": "Measure deformation methods on this computer: the bundled elephant lifts its trunk, one step "
     "per frame.",
     "mesh": "Make a mesh of each PICTURE, or of all pictures in a folder, and report its quality.",
@@ -52,6 +53,10 @@ def _load_command(name: str) -> click.Command:
         from .export import export_command
 
         return export_command
+    if name == "clip":
+        from .clip import clip_group
+
+        return clip_group
     if name == "info":
         from .info import info
 
@@ -65,10 +70,10 @@ def _load_command(name: str) -> click.Command:
 
         return mesh
     if name == "integrate":
-        from .integrate import integrate_command
+        from .desktop import integrate_command
 
         return integrate_command
-    from .thumbnail import thumbnail
+    from .desktop import thumbnail
 
     return thumbnail
 

@@ -15,8 +15,8 @@ from .options import FILE
 @click.argument("file", type=FILE)
 @click.option("--json", "as_json", is_flag=True, help="Print the facts as JSON.")
 def info(file: Path, as_json: bool) -> None:
-    """Tell what FILE contains, a picture (also in layers), drawing, pose, recording or mesh, and whether it
-    is sound.
+    """Tell what FILE contains, a picture (also in layers), drawing, pose, clip, recording or mesh, and
+    whether it is sound.
 
     The exit code is 1 if it is not sound.
     """

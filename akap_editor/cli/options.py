@@ -149,6 +149,12 @@ def check_png(path: Path) -> None:
         raise FileError("save", path, f"expected a name that ends in .png, got {path.suffix or 'none'}")
 
 
+def check_suffix(path: Path, suffix: str) -> None:
+    """Raise FileError if a name does not end as files of its kind do."""
+    if not path.name.lower().endswith(suffix):
+        raise FileError("save", path, f"expected a name that ends in {suffix}")
+
+
 def make_folder_of(path: Path) -> None:
     """Make the folder for a file that will be written. Raises FileError."""
     try:

@@ -15,6 +15,7 @@ from ..layers.layered_picture import LayeredPicture
 from ..meshing.faint import fitting_threshold
 from ..meshing.picture_mesh import mesh_picture
 from ..words import mark
+from .akap.clip import CLIP_FORMAT, decode_clip
 from .akap.json_records import pairs, parse_record, require
 from .akap.pose import POSE_FORMAT
 from .akap.project import decode_document
@@ -49,8 +50,8 @@ _KIND_OF_SUFFIX = {
 class Inspection:
     """The result of an inspection.
 
-    kind: "picture", "layers", "drawing", "pose", "recording", "mesh" or "unknown"; facts: values by name;
-    problems: one line each, none if the file is sound.
+    kind: "picture", "layers", "drawing", "pose", "clip", "recording", "mesh" or "unknown"; facts: values by
+    name; problems: one line each, none if the file is sound.
     """
 
     kind: str
@@ -96,6 +97,8 @@ def _kind_by_content(data: bytes) -> str | None:
         return "recording"
     if f'"{POSE_FORMAT}"'.encode() in data[:200]:
         return "pose"
+    if f'"{CLIP_FORMAT}"'.encode() in data[:200]:
+        return "clip"
     return "mesh" if data.startswith(b"glTF") else None
 
 
@@ -175,6 +178,12 @@ def _inspect_pose(data: bytes) -> tuple[Facts, list[str]]:
     return facts, []
 
 
+def _inspect_clip(data: bytes) -> tuple[Facts, list[str]]:
+    clip = decode_clip(data)
+    names = ", ".join(clip.names)
+    return {"name": clip.name, "pins": names, "keys": len(clip.keys), "seconds": clip.duration}, []
+
+
 def _inspect_recording(data: bytes) -> tuple[Facts, list[str]]:
     recording = decode_recording(data)
     actions = [event["do"] for event in recording.events]
@@ -208,6 +217,7 @@ _INSPECTORS: dict[str, Callable[[bytes], tuple[Facts, list[str]]]] = {
     "layers": _inspect_layers,
     "drawing": _inspect_drawing,
     "pose": _inspect_pose,
+    "clip": _inspect_clip,
     "recording": _inspect_recording,
     "mesh": _inspect_mesh,
 }

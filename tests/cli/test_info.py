@@ -67,6 +67,13 @@ def test_a_recording(facts):
     assert record["facts"]["events"] > 100
 
 
+def test_a_clip(facts, tmp_path):
+    record = facts(resource("assets", "clips", "nod.clip.json"))
+    assert record["kind"] == "clip"
+    assert record["sound"]
+    assert record["facts"] == {"name": "Nod", "pins": "Body, Chest, Head", "keys": 5, "seconds": 1.1}
+
+
 def test_a_pose(facts, posed, tmp_path):
     save_pose(load(posed), tmp_path / "a.pose.json")
     record = facts("a.pose.json")

@@ -9,6 +9,7 @@ from ...editor.animation.keyframe_times import TIME_STEP
 from ...editor.animation.playback import Playback
 from ...words import mark
 from ..app_state import AppState
+from ..dialogs.clips import ClipsDialog, request_clip_file
 from ..dialogs.export.animation import ExportAnimationDialog
 from ..dialogs.take import TakeDialog
 from ..timeline.timeline import snap_time
@@ -211,6 +212,8 @@ KEYFRAMES_FROM_TAKE = Command(
     icons.ICON_FA_WAND_MAGIC_SPARKLES,
     _has_session_range,
 )
+CLIPS = Command("Clips...", lambda state: state.part(ClipsDialog).open(state), (), "", has_drawing)
+SAVE_CLIP = Command("Save as Clip...", request_clip_file, (), "", has_several_keyframes)
 SELECT_ALL_KEYFRAMES = Command("Select All Keyframes", _on_keyframes(_select_all), (), "", has_keyframes)
 PREVIOUS_KEYFRAME = Command(
     "Previous Keyframe",
@@ -274,7 +277,7 @@ ANIMATION: tuple[Command | None, ...] = (
     *(SET_RANGE_START, SET_RANGE_END, CLEAR_RANGE, None),
     *(ADD_KEYFRAME, DELETE_KEYFRAME, DUPLICATE_KEYFRAME, SELECT_ALL_KEYFRAMES),
     *(COPY_KEYFRAMES, PASTE_KEYFRAMES, PASTE_REVERSED, REVERSE_KEYFRAMES, DUPLICATE_REVERSED, None),
-    *(AUTO_KEY, KEYFRAMES_FROM_TAKE, None),
+    *(AUTO_KEY, KEYFRAMES_FROM_TAKE, CLIPS, SAVE_CLIP, None),
     *(PREVIOUS_KEYFRAME, NEXT_KEYFRAME, MOVE_EARLIER, MOVE_LATER, None),
     *(ONION_SKIN, SPEED_GRAPH, ZOOM_IN_TIMELINE, ZOOM_OUT_TIMELINE),
 )

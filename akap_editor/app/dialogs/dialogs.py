@@ -7,6 +7,7 @@ from ..app_state import AppState
 from ..commands.shortcuts_page import ShortcutsPage
 from . import message, progress
 from .about import AboutDialog
+from .clips import ClipsDialog
 from .export.animation import ExportAnimationDialog
 from .export.pose import ExportPoseDialog
 from .file_dialog import FileDialog
@@ -36,6 +37,7 @@ DIALOGS: tuple[type[Dialog], ...] = (
     ExportPoseDialog,
     ExportAnimationDialog,
     TakeDialog,
+    ClipsDialog,
     ShortcutsPage,
     AboutDialog,
     PreferencesPage,

@@ -11,17 +11,16 @@ from ...words import mark
 from ..document.crossings import draw_order
 from ..document.drawing import Drawing
 from ..document.keyframes import MAX_KEYFRAME_TIME, NO_ANIMATION, Animation, Keyframe, as_keyframe_time
-from ..document.pin import pin_depths
+from ..document.pin import Pin, pin_depths
 from ..document.pin_angles import pins_fixed_at_pose
 from ..gestures import EditContext
-from ..session.edits import DeleteKeyframes, MoveKeyframes, SetEasing, SetLoop
-from ..session.edits.keyframes import KeyframeEdit
+from ..session.edits import DeleteKeyframes, Edit, MoveKeyframes, SetEasing, SetLoop, SetPins
 from ..session.session import Session
 from .auto_key import AutoKey, KeyedValues, key_edits, keyed_values
 from .crossing_blend import CrossingBlend
 from .frames import Frame
 from .keyframe_poses import KeyframePoses, animation_crossings
-from .keyframe_times import EasingDrag, TimesDrag, mirror_times
+from .keyframe_times import EasingDrag, TimesDrag, mirror_times, within_limits
 from .keyframing.group_edits import insert_edits, reverse_edits
 from .keyframing.keyframe_clipboard import KeyframeClipboard
 from .keyframing.onion_skin import OnionSkin
@@ -275,7 +274,7 @@ class KeyframePlayback(Playback):
         times = self._affected_times()
         if times:
             shift = self.duration + _DUPLICATE_GAP - times[0]
-            self._move({time: _within_limits(time + shift) for time in times}, copy=True)
+            self._move({time: within_limits(time + shift) for time in times}, copy=True)
 
     def reverse_keyframes(self, copy: bool = False) -> None:
         """Play the selected keyframes, or all, backwards; copy: after the last one, and the others stay."""
@@ -284,7 +283,7 @@ class KeyframePlayback(Playback):
         if len(times) < 2:
             return
         start = self.duration + _DUPLICATE_GAP if copy else times[0]
-        moves = {old: _within_limits(new) for old, new in mirror_times(times, start).items()}
+        moves = {old: within_limits(new) for old, new in mirror_times(times, start).items()}
         self._edit(
             _counted("Duplicate" if copy else "Reverse", times), *reverse_edits(animation, moves, copy)
         )
@@ -292,9 +291,15 @@ class KeyframePlayback(Playback):
         if self.is_previewing:
             self._show()
 
-    def insert_keyframes(self, label: str, keyframes: Sequence[Keyframe]) -> None:
-        """Add keyframes in one gesture, instead of those in their time, and select them."""
-        self._edit(label, *insert_edits(self.animation, keyframes))
+    def insert_keyframes(
+        self, label: str, keyframes: Sequence[Keyframe], pins: tuple[Pin, ...] | None = None
+    ) -> None:
+        """Add keyframes in one gesture, instead of those in their time, and select them.
+
+        pins: replace those of the drawing.
+        """
+        changes = [] if pins is None else [SetPins(pins)]
+        self._edit(label, *changes, *insert_edits(self.animation, keyframes))
         self.selected = frozenset(each.time for each in keyframes)
         self.scrub(keyframes[0].time)
 
@@ -320,11 +325,11 @@ class KeyframePlayback(Playback):
         times = self._affected_times()
         if times:
             shift = max(by, -times[0])
-            self._move({time: _within_limits(time + shift) for time in times})
+            self._move({time: within_limits(time + shift) for time in times})
 
     def move_keyframe(self, old: float, new: float) -> None:
         """Move the keyframe at the time ``old`` to ``new``."""
-        self._move({old: _within_limits(new)})
+        self._move({old: within_limits(new)})
 
     def set_easing(self, easing: str | None) -> None:
         """Set the easing after the selected keyframes, or the one at the playhead; None: the default."""
@@ -341,7 +346,7 @@ class KeyframePlayback(Playback):
 
         moves: old times to new ones; copy: whether the keyframes also stay at the old times.
         """
-        self._show_drag(TimesDrag({old: _within_limits(new) for old, new in moves.items()}, copy))
+        self._show_drag(TimesDrag({old: within_limits(new) for old, new in moves.items()}, copy))
 
     def drag_easing(self, time: float, easing: str) -> None:
         """Show the animation with another easing after a keyframe; `drop_keyframes` makes it an edit."""
@@ -380,7 +385,7 @@ class KeyframePlayback(Playback):
             if self.is_previewing:
                 self._show()
 
-    def _edit(self, label: str, *edits: KeyframeEdit) -> None:
+    def _edit(self, label: str, *edits: Edit) -> None:
         session = self._editor.session
         if session is None or self._editor.is_busy:
             return
@@ -388,10 +393,6 @@ class KeyframePlayback(Playback):
         self._editor.apply(label, *edits)
         if self.is_previewing:
             self._show()
-
-
-def _within_limits(time: float) -> float:
-    return as_keyframe_time(min(max(time, 0.0), MAX_KEYFRAME_TIME))
 
 
 def _counted(verb: str, times: Collection[float]) -> str:

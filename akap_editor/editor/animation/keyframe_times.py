@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ..document.easing import mirrored_easing
-from ..document.keyframes import Animation
+from ..document.keyframes import MAX_KEYFRAME_TIME, Animation, as_keyframe_time
 
 TIME_STEP = 0.05  # seconds: times snap to multiples of it, and keys move by it
 
@@ -46,6 +46,11 @@ def stretch_times(times: Iterable[float], dragged: float, to: float) -> dict[flo
     scale = (to - fixed) / span if span else 1.0
     min_scale = TIME_STEP / max(abs(span), TIME_STEP)
     return {time: fixed + max(scale, min_scale) * (time - fixed) for time in ascending}
+
+
+def within_limits(time: float) -> float:
+    """The nearest time that a keyframe may have, seconds."""
+    return as_keyframe_time(min(max(time, 0.0), MAX_KEYFRAME_TIME))
 
 
 def mirror_times(times: Iterable[float], start: float) -> dict[float, float]:

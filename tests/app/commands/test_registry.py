@@ -14,6 +14,7 @@ from akap_editor.app.commands.palette import Palette
 from akap_editor.app.commands.registry import COMMANDS, MENUS
 from akap_editor.app.commands.shortcuts_page import ShortcutsPage
 from akap_editor.app.dialogs.about import AboutDialog
+from akap_editor.app.dialogs.clips import ClipsDialog
 from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.app.dialogs.preferences_page import PreferencesPage
@@ -252,6 +253,8 @@ CASES = {
     "Move Keyframe Later": (keyed, lambda ui: times(ui) == (0.0, 1.05)),
     "Speed Graph": (nothing, lambda ui: ui.state.timeline.is_shown and ui.state.view.show_speed_graph),
     "Keyframes from Take...": (lambda ui: ui.bend(), lambda ui: ui.state.part(TakeDialog).is_open),
+    "Clips...": (nothing, lambda ui: ui.state.part(ClipsDialog).is_open),
+    "Save as Clip...": (keyed, lambda ui: ui.file_request is not None and ui.file_request.saving),
     "Copy Keyframes": (keyed, lambda ui: ui.state.timeline.keyframe_playback.can_paste()),
     "Paste Keyframes": (copied, lambda ui: times(ui) == (0.0, 1.0, 2.0)),
     "Paste Keyframes Reversed": (copied, lambda ui: times(ui) == (0.0, 1.0, 2.0)),

@@ -1,0 +1,1 @@
+"""Clips: motions of named pins, which are applied to other drawings."""
