@@ -1,5 +1,6 @@
 """Looking up words, and the stored translations: with the fields of their texts, read as Babel reads them."""
 
+import ast
 import re
 import string
 from pathlib import Path
@@ -7,6 +8,9 @@ from pathlib import Path
 import pytest
 
 from akap_editor import words
+from akap_editor.app.commands import registry
+from akap_editor.app.commands.menu_bar import access_letters
+from akap_editor.app.panels import history
 from akap_editor.words import LANGUAGES, po_path, read_translations, tr, tr_in, tr_plural, use_language
 from tools import translations
 
@@ -124,6 +128,34 @@ def test_files_are_read_as_babel_reads_them(language):
             assert read.gettext(message.id) == message.string
 
 
+@pytest.mark.parametrize("language", TRANSLATED)
+def test_names_of_commands_differ(language):
+    """ImGui and the palette tell the lines of a menu apart by their names."""
+    use_language(language)
+    try:
+        for name, items in registry.MENUS:
+            names = [item.text for item in items if item is not None]
+            assert len(set(names)) == len(names), name
+        assert len({command.name for command in registry.COMMANDS}) == len(
+            {command.label.rstrip(".") for command in registry.COMMANDS}
+        )
+        assert all(access_letters([tr(name) for name, _ in registry.MENUS]))
+    finally:
+        use_language("en")
+
+
+@pytest.mark.parametrize("label", ["Drag 12 Pins", "Delete 3 Keyframes", "Apply Drag 3 Pins", "Move Pin"])
+def test_labels_of_the_history_are_translated(label):
+    use_language("de")
+    try:
+        shown = history.shown_label(label)
+    finally:
+        use_language("en")
+    assert shown != label
+    assert re.findall(r"\d+", shown) == re.findall(r"\d+", label)
+    assert history.shown_label(label) == label
+
+
 def test_texts_of_the_code_are_found():
     found = {message.id for message in translations.template()}
     assert {"Open...", "Pin Tool", "Bending", "Language", "System ({language})"} <= found
@@ -134,3 +166,133 @@ def test_no_text_is_an_f_string():
     pattern = re.compile(r"\b(?:tr|tr_in|tr_plural|mark)\(\s*f[\"']")
     package = Path(words.__file__).parent
     assert [path for path in package.rglob("*.py") if pattern.search(path.read_text("utf-8"))] == []
+
+
+# -- no text is forgotten ------------------------------------------------------------------------------------
+
+PACKAGE = Path(words.__file__).parent
+# Rooms whose errors an artist can cause by files and gestures; the others check arguments of programs.
+SHOWN = ("app", "editor", "io", "layers", "meshing")
+DRAWING = frozenset(
+    [
+        "imgui.text",
+        "text_colored",
+        "text_unformatted",
+        "text_wrapped",
+        "button",
+        "small_button",
+        "checkbox",
+        "radio_button",
+        "selectable",
+        "menu_item",
+        "menu_item_simple",
+        "begin_menu",
+        "set_tooltip",
+        "tree_node_ex",
+        "input_int",
+        "input_float",
+        "drag_int",
+        "drag_float",
+        "switch",
+        "radio",
+        "row",
+        "label",
+        "switch_label",
+        "paragraph",
+        "secondary_text",
+        "show_tooltip",
+        "icon_switch",
+        "draw_label",
+        "announce",
+        "announced",
+        "background_task",
+        "Task",
+        "Progress",
+        "FileRequest",
+        "ReplaceQuestion",
+        "InputError",
+        "FileError",
+        "SolverError",
+        "DisplayError",
+        "GraphicsError",
+        "NoOutlineError",
+        "Cancelled",
+    ]
+)
+HISTORY = frozenset(
+    ["edit", "apply", "begin", "rename", "set_layers", "set_joints", "set_pose", "CutsRequest"]
+)
+STATES = frozenset(("notice", "error", "hint", "press_hint", "keyboard_hint"))  # variables that are shown
+# Units, names and signs that are the same in each language
+SAME = re.compile(
+    r"^(%[^ ]*|[-+\d., ×÷°()%:/]|px|fps|ms|s|GB|MB|kB|E_area|E_angle|akap-editor|F2|OK|X|Y|K)*$"
+)
+
+
+def bare_words(node: ast.expr) -> str:
+    """What a string or an f-string would show by itself; empty if that is the same in each language."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        shown = node.value
+    elif isinstance(node, ast.JoinedStr):
+        shown = "".join(str(part.value) for part in node.values if isinstance(part, ast.Constant))
+    else:
+        return ""
+    shown = shown.partition("##")[0].strip()
+    is_sentence = " " in shown or shown[:1].isupper()
+    return shown if is_sentence and not SAME.match(shown) else ""
+
+
+def forgotten_texts(path: Path) -> list[str]:
+    found = []
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Call):
+            name = ast.unparse(node.func)
+            last = name.rpartition(".")[2]
+            is_drawing = last in DRAWING or name == "imgui.text"
+            is_label = last in HISTORY and not name.startswith("imgui.")
+            values = [*node.args, *(keyword.value for keyword in node.keywords)]
+            labels = [each for each in values if is_label and not is_template(each)]
+            shown = values if is_drawing else labels
+            if name == "widgets.icon_switch":
+                shown = shown[3:4]  # after the icon, its id, and whether it is on
+        elif isinstance(node, ast.Assign):
+            targets = {getattr(target, "attr", getattr(target, "id", "")) for target in node.targets}
+            shown = [node.value] if targets & STATES else []
+        elif isinstance(node, ast.FunctionDef) and node.name in STATES:
+            shown = [each.value for each in ast.walk(node) if isinstance(each, ast.Return) and each.value]
+        else:
+            continue
+        branches = [branch for each in shown for branch in _branches(each)]
+        texts = [(each.lineno, bare_words(each)) for each in branches]
+        found += [f"{path.relative_to(PACKAGE)}:{line}: {text}" for line, text in texts if text]
+    return found
+
+
+def is_template(node: ast.expr) -> bool:
+    """Whether a label of the history with a field has its template in the History section."""
+    branches = [each for each in _branches(node) if isinstance(each, ast.JoinedStr)]
+    templates = {re.sub(r"{\w+}", "", template).strip() for template in history._TEMPLATES}
+    return bool(branches) and {bare_words(each) for each in branches} <= templates
+
+
+def _branches(node: ast.expr) -> list[ast.expr]:
+    """Both values of a conditional expression, or the operands of "or"."""
+    if isinstance(node, ast.IfExp):
+        return [*_branches(node.body), *_branches(node.orelse)]
+    if isinstance(node, ast.BoolOp):
+        return [each for value in node.values for each in _branches(value)]
+    return [node]
+
+
+def test_no_text_is_drawn_without_being_looked_up():
+    assert [
+        text for room in SHOWN for path in (PACKAGE / room).rglob("*.py") for text in forgotten_texts(path)
+    ] == []
+
+
+def test_forgotten_texts_are_found(monkeypatch):
+    source = 'imgui.text("Add Pins")\nwidgets.row("Size", f"{w} × {h} px")\nstate.notice = f"Saved {name}"\n'
+    path = PACKAGE / "made_up.py"
+    monkeypatch.setattr(Path, "read_text", lambda *_: source)
+    found = sorted(text.partition(": ")[2] for text in forgotten_texts(path))
+    assert found == ["Add Pins", "Saved", "Size"]

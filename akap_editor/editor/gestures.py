@@ -213,7 +213,7 @@ def move_layer(editor: EditContext, layer: int, place: int) -> None:
 
 def show_group(editor: EditContext, path: Sequence[str], visible: bool) -> None:
     """Open or close the eye of a group of layers, see `ShowGroup`. Raises InputError."""
-    editor.apply("Show Group" if visible else "Hide Group", ShowGroup(tuple(path), visible))
+    editor.apply(mark("Show Group") if visible else mark("Hide Group"), ShowGroup(tuple(path), visible))
 
 
 def key_layers(editor: EditContext, layers: Iterable[int], visible: bool) -> None:

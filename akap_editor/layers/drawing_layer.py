@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..display_text import display_text
 from ..errors import InputError
 from ..geometry.validation import Ints, as_choice, as_number, as_picture, as_switch, freeze
+from ..words import tr
 from .composite import composite
 from .layered_picture import BLEND_MODES, MAX_NAME, Layer, LayeredPicture
 
@@ -66,7 +67,13 @@ class DrawingLayer:
         object.__setattr__(self, "slot", display_text(self.slot)[:MAX_NAME])
         closed = tuple(sorted(set(self.closed_groups)))
         if any(type(index) is not int or not 0 <= index < len(groups) for index in closed):
-            raise InputError(f"closed_groups: expected indices of {len(groups)} groups, got {closed!r:.60}")
+            raise InputError(
+                tr(
+                    "closed_groups: expected indices of {count} groups, got {closed!r:.60}",
+                    count=len(groups),
+                    closed=closed,
+                )
+            )
         object.__setattr__(self, "closed_groups", closed)
         for name in ("visible", "solo", "locked"):
             object.__setattr__(self, name, as_switch(getattr(self, name), name))

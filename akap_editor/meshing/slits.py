@@ -17,6 +17,7 @@ from scipy.sparse.csgraph import connected_components
 from ..errors import InputError
 from ..geometry.mesh import signed_areas
 from ..geometry.validation import Floats, Ints, as_points
+from ..words import tr
 
 Cut = tuple[tuple[float, float], ...]  # points of a stroke, pixels of the picture
 
@@ -33,11 +34,13 @@ _ON_LINE = 1e-6  # pixels from a line within which a vertex is on it
 def check_cuts(cuts: Sequence[Sequence[Sequence[float]]]) -> tuple[Cut, ...]:
     """Strokes as tuples of points. Raises InputError on too many, too long or bad ones."""
     if len(cuts) > MAX_CUTS:
-        raise InputError(f"cuts: expected at most {MAX_CUTS}, got {len(cuts)}")
+        raise InputError(tr("cuts: expected at most {most}, got {count}", most=MAX_CUTS, count=len(cuts)))
     result = []
     for cut in cuts:
         if not 2 <= len(cut) <= MAX_CUT_POINTS:
-            raise InputError(f"cuts: expected 2 to {MAX_CUT_POINTS} points, got {len(cut)}")
+            raise InputError(
+                tr("cuts: expected 2 to {most} points, got {count}", most=MAX_CUT_POINTS, count=len(cut))
+            )
         points = as_points(cut, "cuts", len(cut))
         result.append(tuple((float(x), float(y)) for x, y in points.tolist()))
     return tuple(result)

@@ -116,7 +116,7 @@ def _draw_angle(state: AppState, pin: Pin) -> None:
     degrees = 0.0 if abs(degrees) < 0.05 else degrees  # not -0.0°
     new_degrees = _number_field(state, pin, tr("Angle"), degrees, "%.1f°")
     widgets.show_tooltip(tr("Rotation of the drawing around the pin, clockwise."))
-    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + _LABEL_WIDTH * imgui.get_font_size())
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + _label_width())
     is_clicked, is_held = widgets.switch(
         tr("Hold angle"), pin.angle is not None, tr("Off: the drawing can rotate freely around the pin.")
     )
@@ -143,6 +143,13 @@ def _draw_scale(state: AppState, pin: Pin) -> None:
         state.run_reporting_errors(lambda: gestures.set_pin_scale(state.editor, pin.id, scale))
 
 
+def _label_width() -> float:
+    """The width of the column of labels, in points."""
+    font_size = imgui.get_font_size()
+    longest = max(imgui.calc_text_size(tr(label)).x for label in ("Depth", "Angle", "Scale"))
+    return float(max(_LABEL_WIDTH * font_size, longest + 0.5 * font_size))
+
+
 def _number_field(state: AppState, pin: Pin, name: str, value: float, text_format: str) -> float | None:
     """Draw a label and a field; return the new value in the frame in which its edit ends.
 
@@ -156,7 +163,7 @@ def _number_field(state: AppState, pin: Pin, name: str, value: float, text_forma
 
 def _field(state: AppState, pin: Pin, name: str, value: T, item: Callable[[T], tuple[bool, T]]) -> T | None:
     """Draw a label and a field; return the new value in the frame in which its edit ends."""
-    widgets.label(name, imgui.get_style().window_padding.x + _LABEL_WIDTH * imgui.get_font_size())
+    widgets.label(name, imgui.get_style().window_padding.x + _label_width())
     return state.part(PendingValues).edit((pin.id, name), value, item)
 
 

@@ -27,8 +27,7 @@ _TEMPLATES = (
     mark("Apply {name}"),
     mark("Rename {name}"),
 )
-_OTHERS = (  # those that are made of a verb and a noun, and one of the session
-    mark("Go Back in Time"),
+_SINGLE = (  # made of a verb and a noun
     mark("Delete Keyframe"),
     mark("Duplicate Keyframe"),
     mark("Reverse Keyframe"),

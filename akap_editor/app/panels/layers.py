@@ -21,7 +21,7 @@ from .rig.slots import SlotPickers, switch_to
 LAYER_PAYLOAD = "LAYER"  # of drag and drop: the number of a layer
 _ROWS = 8  # layers that are visible at once
 _ICON_WIDTH = 1.7  # times the font size
-_LABEL_WIDTH = 4.6  # times the font size
+_LABEL_WIDTH = 5.2  # times the font size
 _INDENT = 0.9  # of what is in a group, times the font size
 
 
@@ -102,7 +102,9 @@ class LayerList:
         middle = top + (side - imgui.get_text_line_height()) / 2
         imgui.set_cursor_pos(ImVec2(indent, middle))
         eye = icons.ICON_FA_EYE if is_open else icons.ICON_FA_EYE_SLASH
-        if widgets.icon_switch(eye, f"eye of group {index}", is_open, "Show or hide the group", _ICON_WIDTH):
+        if widgets.icon_switch(
+            eye, f"eye of group {index}", is_open, tr("Show or hide the group"), _ICON_WIDTH
+        ):
             state.notice = ""
             state.run_reporting_errors(lambda: gestures.show_group(state.editor, path, not is_open))
         imgui.set_cursor_pos(ImVec2(indent + _ICON_WIDTH * font_size, top))

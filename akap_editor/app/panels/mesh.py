@@ -142,11 +142,12 @@ def _draw_cuts(state: AppState, meshing: Meshing) -> None:
     for index, cut in enumerate(meshing.cuts):
         length = sum(math.dist(*pair) for pair in pairwise(cut))
         size = ImVec2(width - 2.0 * imgui.get_font_size(), 0)
-        imgui.selectable(f"Cut {index + 1}, {length:,.0f} px###cut {index}", False, size=size)
+        shown = tr("Cut {number}, {length:,.0f} px", number=index + 1, length=length)
+        imgui.selectable(f"{shown}###cut {index}", False, size=size)
         if imgui.is_item_hovered() or imgui.is_item_focused():
             knife.highlighted = index
         imgui.same_line(width - 1.7 * imgui.get_font_size())
-        if widgets.icon_switch(icons.ICON_FA_TRASH, f"remove cut {index}", True, "Remove this cut", 1.7):
+        if widgets.icon_switch(icons.ICON_FA_TRASH, f"remove cut {index}", True, tr("Remove this cut"), 1.7):
             knife.remove(index)
     imgui.end_child()
 

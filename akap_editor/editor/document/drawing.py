@@ -140,7 +140,13 @@ class Drawing:
         if view is None or view == self.layer_view:
             return self
         if not view.fits(len(self.layers)):
-            raise InputError(f"layers: expected a view of {len(self.layers)} layers, got {view!r:.60}")
+            raise InputError(
+                tr(
+                    "layers: expected a view of {count} layers, got {view!r:.60}",
+                    count=len(self.layers),
+                    view=view,
+                )
+            )
         layers = (
             layer if layer.visible is visible else replace(layer, visible=visible)
             for layer, visible in zip(self.layers, view.visible, strict=True)

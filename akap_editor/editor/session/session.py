@@ -13,6 +13,7 @@ from ...deform.deformer import StepResult
 from ...deform.methods import get_method
 from ...errors import SolverError
 from ...geometry.validation import Floats
+from ...words import mark
 from ..document.crossings import crossings_in_pose
 from ..document.document import Document, EditState
 from ..document.drawing import Drawing
@@ -248,7 +249,7 @@ class Session:
         preview = self._preview
         self.end_preview()
         if preview is not None and preview.line is not None and preview.shown is not self.state:
-            self.history.begin("Go Back in Time", preview.present)
+            self.history.begin(mark("Go Back in Time"), preview.present)
             self._record("begin", label="Go Back in Time")
             self.return_to(preview.shown, preview.line)
             self.history.commit()

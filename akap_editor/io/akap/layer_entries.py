@@ -203,9 +203,15 @@ def read_layer_view(record: Json) -> LayerView | None:
     visible, order = require(value, "visible", list), require(value, "order", list)
     count = len(order)
     if count > MAX_LAYERS or any(type(number) is not int for number in [*visible, *order]):
-        raise InputError(f"expected numbers of at most {MAX_LAYERS} layers, got {reprlib.repr(value)}")
+        raise InputError(
+            tr(
+                "expected numbers of at most {most} layers, got {value}",
+                most=MAX_LAYERS,
+                value=reprlib.repr(value),
+            )
+        )
     if sorted(order) != list(range(count)) or any(not 0 <= number < count for number in visible):
-        raise InputError(f"expected each layer once in the order, got {reprlib.repr(order)}")
+        raise InputError(tr("expected each layer once in the order, got {value}", value=reprlib.repr(order)))
     shown = set(visible)
     return LayerView(tuple(number in shown for number in range(count)), tuple(order))
 

@@ -169,7 +169,9 @@ def _check(document: Document) -> None:
     for keyframe in state.animation.keyframes:
         if count and keyframe.layers is not None and not keyframe.layers.fits(count):
             actual = len(keyframe.layers.order)
-            raise InputError(f"keyframes: expected {count} layers in each, got {actual}")
+            raise InputError(
+                tr("keyframes: expected {count} layers in each, got {actual}", count=count, actual=actual)
+            )
 
 
 def _check_meshing(meshing: Meshing) -> None:
@@ -382,7 +384,7 @@ def _read_cuts(records: list[Any]) -> tuple[Cut, ...]:
     """The strokes of the knife. Raises InputError on values of other kinds."""
     for record in records:
         if type(record) is not list or any(type(point) is not list or len(point) != 2 for point in record):
-            raise InputError(f"cuts: expected lists of points, got {reprlib.repr(record)}")
+            raise InputError(tr("cuts: expected lists of points, got {value}", value=reprlib.repr(record)))
     return check_cuts([[numbers(point, "cuts").tolist() for point in record] for record in records])
 
 

@@ -122,11 +122,20 @@ def layer_view_from_json(value: Json) -> LayerView:
     count = len(order)
     for name, numbers in (("visible", visible), ("order", order)):
         if any(type(number) is not int or not 0 <= number < count for number in numbers):
-            raise InputError(f"{name}: expected numbers of {count} layers, got {numbers!r:.60}")
+            raise InputError(
+                tr(
+                    "{name}: expected numbers of {count} layers, got {numbers!r:.60}",
+                    name=name,
+                    count=count,
+                    numbers=numbers,
+                )
+            )
     chosen = set(visible)
     view = LayerView(tuple(number in chosen for number in range(count)), tuple(order))
     if not view.fits(count):
-        raise InputError(f"order: expected each of {count} layers once, got {order!r:.60}")
+        raise InputError(
+            tr("order: expected each of {count} layers once, got {order!r:.60}", count=count, order=order)
+        )
     return view
 
 

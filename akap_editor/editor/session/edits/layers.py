@@ -117,7 +117,9 @@ class ShowGroup(Edit):
         path, visible = tuple(self.path), as_switch(self.visible, "visible")
         index = len(path) - 1
         if index < 0 or not any(layer.groups[: len(path)] == path for layer in drawing.layers):
-            raise InputError(f"group: expected the names of one around layers, got {list(path)!r:.60}")
+            raise InputError(
+                tr("group: expected the names of one around layers, got {path!r:.60}", path=list(path))
+            )
 
         def changed(layer: DrawingLayer) -> DrawingLayer:
             if layer.groups[: len(path)] != path or (index not in layer.closed_groups) is visible:
