@@ -299,7 +299,7 @@ class Window:
     def _build_interface(self) -> None:
         """Build ImGui's part of the frame, take in the input, and step the drawing."""
         state = self.state
-        state.frame_delay = math.inf
+        state.frame_delay, state.offscreen_renderer.is_smooth = math.inf, state.view.smooth_bends
         self._watch_focus()
         while self._dropped and not state.is_waiting:
             files.open_dropped(state, self._dropped.pop(0))

@@ -64,7 +64,7 @@ def compare_command(
     click.echo("Drawing the report ...")
     from ..render.offscreen import OffscreenRenderer
 
-    with OffscreenRenderer() as renderer:
+    with OffscreenRenderer(is_smooth=False) as renderer:
         page = report.to_html(models, renderer)
     write_atomic(page_path, page.encode("utf-8"))
     write_atomic(numbers_path, report.to_json(models).encode("utf-8"))

@@ -63,11 +63,13 @@ class OffscreenRenderer:
     """Renders drawings to arrays. Use it as a context manager, or call `release` in the end.
 
     context: an OpenGL context that is current in all calls, for example the window's. By default it makes its
-    own one on first use, which needs no display server.
+    own one on first use, which needs no display server. is_smooth: whether faces of bent poses are curved,
+    see `refinement`; off for comparisons with the mesh itself.
     """
 
-    def __init__(self, context: moderngl.Context | None = None) -> None:
+    def __init__(self, context: moderngl.Context | None = None, is_smooth: bool = True) -> None:
         self._context = context
+        self.is_smooth = is_smooth
         self._owns_context = context is None
         self._renderer: Renderer | None = None
         self._targets: dict[tuple[int, int], _Targets] = {}  # by size in pixels
@@ -119,7 +121,7 @@ class OffscreenRenderer:
             self._context = standalone_context()
         with self._current():
             renderer = self._prepared_renderer(self._context)
-            renderer.show(drawing, pose, order)
+            renderer.show(drawing, pose, order, self.is_smooth)
             side = min(TILE_SIZE, renderer.max_texture_size)
             picture = np.empty((height, width, 4), dtype=np.uint8)
             for top in range(0, height, side):

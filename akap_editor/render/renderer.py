@@ -15,7 +15,9 @@ from ..layers.drawing_layer import shown_layers
 from ..overlap.seams import CutMesh
 from .layer_runs import BLEND_PASSES, OVER, LayerRun, layer_runs
 from .overlays import NO_OVERLAYS, FaceColorPainter, LinePainter, Overlays, Reference, Rgba
+from .refinement import MAX_PARTS, suitable_parts
 from .shaders import View, load_program
+from .smooth_mesh import SmoothMesh
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,7 @@ class Background:
 TRANSPARENT = Background()
 CANVAS = Background(color=(0.094, 0.098, 0.110), checker=((0.165, 0.169, 0.184), (0.192, 0.196, 0.212)))
 _SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swiftshader", "gdi generic", "software")
+SOFTWARE_PARTS = 2  # of an edge in the window, where the processor draws
 NO_TINT = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -48,7 +51,9 @@ class Renderer:
 
     def __init__(self, ctx: moderngl.Context, *, precise: bool = False, sharp: bool | None = None) -> None:
         self._ctx = ctx
-        sharp = not _is_software(ctx) if sharp is None else sharp
+        is_software = _is_software(ctx)
+        sharp = not is_software if sharp is None else sharp
+        self._most_parts = SOFTWARE_PARTS if is_software and not precise else MAX_PARTS
         self._texture_dtype = "f2" if precise else "f1"
         self.max_texture_size: int = ctx.info["GL_MAX_TEXTURE_SIZE"]
         self._premultiply = load_program(ctx, "fullscreen.vert", "premultiply.frag")
@@ -66,17 +71,26 @@ class Renderer:
         self._order: Ints | None = None
         self._cut: CutMesh | None = None
         self._cut_positions: Floats | None = None
+        self._smooth: SmoothMesh | None = None
+        self._shows_smooth = False
         self._cut_objects: list[moderngl.Buffer | moderngl.VertexArray] = []
         self._drawing_objects: list[moderngl.Buffer | moderngl.Texture | moderngl.VertexArray] = []
         self._reference: Reference | None = None
         self._reference_objects: list[moderngl.Buffer | moderngl.Texture | moderngl.VertexArray] = []
 
-    def show(self, drawing: Drawing, positions: Floats, order: Ints | CutMesh | None = None) -> None:
+    def show(
+        self,
+        drawing: Drawing,
+        positions: Floats,
+        order: Ints | CutMesh | None = None,
+        smooth: bool = False,
+    ) -> None:
         """Upload the drawing in the pose ``positions``, (n, 2) float64 in drawing units.
 
         order: (m,) the faces in drawing order, the last one in front, or the mesh cut along seams; by default
-        the order of the mesh. Arguments are compared by identity with those of the last call, and only what
-        changed is uploaded. Raises InputError if the shape of ``positions`` does not fit the drawing.
+        the order of the mesh; smooth: draw curved faces, see `refinement`, unless the pose is that of rest or
+        cut along seams. Arguments are compared by identity with those of the last call, and only what changed
+        is uploaded. Raises InputError if the shape of ``positions`` does not fit the drawing.
         """
         expected = drawing.mesh.vertices.shape
         if positions.shape != expected:
@@ -99,6 +113,12 @@ class Renderer:
         if order is not self._order or drawing is not self._drawing or cut is not None:
             self._arrange_layers(drawing, order, cut)
         self._order, self._drawing = order, drawing
+        is_smooth = smooth and cut is None and self._parts > 1
+        self._shows_smooth = is_smooth and not np.array_equal(positions, drawing.mesh.vertices)
+        if self._shows_smooth:
+            if self._smooth is None:
+                self._smooth = SmoothMesh(self._ctx, self._mesh_program, drawing, self._parts)
+            self._smooth.show(positions, order)
 
     def _has_uploaded(self, drawing: Drawing) -> bool:
         """Whether mesh and texture are those of a drawing; its layer list may differ."""
@@ -177,6 +197,9 @@ class Renderer:
             self._draw_textured(self._onion_mesh, pose.opacity, view, pose.tint, self._runs)
         if overlays.face_colors is not None:
             self._face_colors.draw(self._face_color_mesh, overlays.face_colors, self._order, view)
+        elif self._shows_smooth and self._smooth is not None:
+            runs = self._smooth.runs(self._runs)
+            self._draw_textured(self._smooth.vertex_array, 1.0, view, runs=runs)
         elif self._cut is None:
             self._draw_textured(self._mesh, 1.0, view, runs=self._runs)
         else:
@@ -270,6 +293,7 @@ class Renderer:
     def _upload_drawing(self, drawing: Drawing) -> None:
         self._release_drawing()
         ctx, mesh = self._ctx, drawing.mesh
+        self._parts = suitable_parts(mesh, self._most_parts)
         self._texture = self._make_texture(drawing.image)
         self._position_buffer = ctx.buffer(reserve=mesh.vertices.size * 4, dynamic=True)
         self._onion_buffer = ctx.buffer(reserve=mesh.vertices.size * 4, dynamic=True)
@@ -302,6 +326,9 @@ class Renderer:
             item.release()
         self._drawing_objects = []
         self._release_cut()
+        if self._smooth is not None:
+            self._smooth.release()
+        self._smooth, self._shows_smooth = None, False
         self._drawing = self._positions = self._order = None
 
     def _make_texture(self, image: NDArray[np.uint8]) -> moderngl.Texture:

@@ -73,7 +73,7 @@ def test_a_limb_folded_shut_shows_its_sheets_and_nothing_else(elbow: float) -> N
     assert order is not None, "the arm overlaps itself"
     (left, top), (right, bottom) = np.floor(pose.min(axis=0) - 4), np.ceil(pose.max(axis=0) + 4)
     box = int(left), int(top), int(right), int(bottom)
-    with OffscreenRenderer() as renderer:
+    with OffscreenRenderer(is_smooth=False) as renderer:  # as the mesh itself, which is compared
         shown = renderer.render(drawing, pose, box, SCALE, (1.0, 1.0, 1.0), order)[..., :3].astype(float)
     expected = composed(drawing.image, drawn_faces(drawing, pose, order), box)
     assert np.abs(shown - expected).max() < 90, "a line would differ by 150 or more"
@@ -92,7 +92,7 @@ def test_a_gap_in_a_fold_is_one_of_the_bent_outline(elbow: float) -> None:
     mesh, pose = session.drawing.mesh, session.state.positions
     (left, top), (right, bottom) = np.floor(pose.min(axis=0) - 4), np.ceil(pose.max(axis=0) + 4)
     box = int(left), int(top), int(right), int(bottom)
-    with OffscreenRenderer() as renderer:
+    with OffscreenRenderer(is_smooth=False) as renderer:  # as the mesh itself, which is compared
         shown = renderer.render(session.drawing, pose, box, SCALE, None, session.document.draw_order)
     is_clear = shown[..., 3] < 128
     parts, count = label(is_clear)

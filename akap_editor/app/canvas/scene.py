@@ -27,7 +27,7 @@ class PosedDrawing:
     """A drawing in a pose.
 
     positions: (n, 2); order: (m,) faces in drawing order, None for that of the mesh; region: see
-    `Renderer.draw`.
+    `Renderer.draw`; is_smooth: see `Renderer.show`.
     """
 
     drawing: Drawing
@@ -35,6 +35,7 @@ class PosedDrawing:
     order: Ints | CutMesh | None
     view: View
     region: tuple[int, int, int, int] | None = None
+    is_smooth: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,12 +89,12 @@ class Scene:
             renderer.hide()
             renderer.draw(target, content.size, (1.0, 1.0, 0.0, 0.0), background=content.background)
             return
-        renderer.show(main.drawing, main.positions, main.order)
+        renderer.show(main.drawing, main.positions, main.order, main.is_smooth)
         renderer.draw(
             target, content.size, main.view, background=content.background, overlays=content.overlays
         )
         if comparison is not None:
-            renderer.show(comparison.drawing, comparison.positions, comparison.order)
+            renderer.show(comparison.drawing, comparison.positions, comparison.order, comparison.is_smooth)
             renderer.draw(
                 target,
                 content.size,
@@ -115,7 +116,13 @@ def scene_content(
     if state.view.show_checkerboard:
         background = board_background(document.drawing, state.view.board, CANVAS.cell * scale)
     view = state.editor.camera.view(*window)
-    main = PosedDrawing(document.drawing, document.state.positions, document.draw_order, view)
+    main = PosedDrawing(
+        document.drawing,
+        document.state.positions,
+        document.draw_order,
+        view,
+        is_smooth=state.view.smooth_bends and not state.view.is_split,
+    )
     comparison = _comparison(state, size, window, density)
     return SceneContent(size, background, main, comparison, overlays)
 

@@ -40,6 +40,7 @@ STORED_SWITCHES = {  # name in the preferences: field
     "motion paths": "show_motion_paths",
     "speed graph": "show_speed_graph",
     "show_reference": "show_reference",
+    "smooth bends": "smooth_bends",
 }
 
 
@@ -47,13 +48,15 @@ STORED_SWITCHES = {  # name in the preferences: field
 class ViewOptions:
     """What is shown besides the drawing.
 
-    board: the shade of the checkerboard; is_split: whether a second method is compared; show_vector_fields:
+    board: the shade of the checkerboard; smooth_bends: whether the canvas and exports show curved faces, see
+    `render.refinement`; is_split: whether a second method is compared; show_vector_fields:
     while a pin is dragged; distortion_measure: of the distortion map, None if it is off; distortion_range:
     index in `DISTORTION_RANGES`; reference_path: the file of the reference picture, None if it has none;
     selected_layer: the number of the layer that is selected in the list and outlined, None for none;
     selected_joint: the id of the joint that is selected in the list.
     """
 
+    smooth_bends: bool = True
     show_mesh: bool = False
     show_pins: bool = True
     show_checkerboard: bool = True

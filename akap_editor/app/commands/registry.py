@@ -57,6 +57,7 @@ from .view import (
     SHOW_PINS,
     SHOW_REFERENCE,
     SHOW_TIMELINE,
+    SMOOTH_BENDS,
     ZOOM_IN,
     ZOOM_OUT,
 )
@@ -355,7 +356,7 @@ MENUS: tuple[Menu, ...] = (
         (
             *(FIT, ACTUAL_SIZE, ZOOM_IN, ZOOM_OUT, None),
             *(SHOW_MESH, SHOW_PINS, *OVERLAYS, NEXT_RANGE, None),
-            *(SHOW_CHECKERBOARD, CHOOSE_REFERENCE, SHOW_REFERENCE, None),
+            *(SMOOTH_BENDS, SHOW_CHECKERBOARD, CHOOSE_REFERENCE, SHOW_REFERENCE, None),
             *(SHOW_TIMELINE, COMPARE_METHODS, PANELS, None),
             *(HIDE_PANELS, FULL_SCREEN),
         ),

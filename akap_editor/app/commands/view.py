@@ -96,6 +96,7 @@ SHOW_REST_POSE = _switch("Show Rest Pose", "show_rest_pose", (SHIFT | Key.g,), "
 SHOW_TRAILS = _switch("Show Pin Trails", "show_pin_trails", (SHIFT | Key.l,), "", has_drawing)
 SHOW_MOTION_PATHS = _switch("Show Motion Paths", "show_motion_paths", (), "", has_drawing)
 OVERLAYS = (SHOW_FIELD, SHOW_AREA, SHOW_ANGLE, SHOW_REST_POSE, SHOW_TRAILS, SHOW_MOTION_PATHS)
+SMOOTH_BENDS = _switch("Smooth Bends", "smooth_bends", (), "", has_drawing)
 NEXT_RANGE = Command(
     "Next Distortion Range",
     lambda state: state.view.use_next_distortion_range(),

@@ -305,6 +305,7 @@ CASES = {
     "Zoom Out": (moved_camera, zoom_is(0.8)),
     "Show Mesh": (nothing, lambda ui: ui.state.view.show_mesh),
     "Show Pins": (nothing, lambda ui: not ui.state.view.show_pins),
+    "Smooth Bends": (nothing, lambda ui: not ui.state.view.smooth_bends),
     "Show Checkerboard": (nothing, lambda ui: not ui.state.view.show_checkerboard),
     "Show Vector Field": (nothing, lambda ui: ui.state.view.show_vector_fields),
     "Show Area Distortion": (nothing, lambda ui: ui.state.view.distortion_measure == "area"),
