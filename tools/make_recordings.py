@@ -171,8 +171,53 @@ def alien() -> ScriptedPointer:
     return pointer
 
 
+def cat() -> ScriptedPointer:
+    """Fix the cat's feet and body; wave a paw, swing the tail, lean the head."""
+    pointer = ScriptedPointer("cat")
+    for point in ((415, 912), (590, 912), (800, 912), (640, 600)):
+        pointer.add_pin(*point)
+    head, paw, tail = (pointer.add_pin(*point) for point in ((290, 310), (118, 798), (881, 100)))
+    pointer.drag(paw, swing(-40, -150, 2), 1.4)
+    pointer.drag(tail, swing(-110, 40, 2), 1.4)
+    pointer.drag(head, swing(45, 20, 1), 1.0)
+    return pointer
+
+
+def gingerbread() -> ScriptedPointer:
+    """Fix the gingerbread man's legs; let it wave with both arms and nod."""
+    pointer = ScriptedPointer("gingerbread")
+    for point in ((315, 902), (709, 902), (500, 640)):
+        pointer.add_pin(*point)
+    left, right, head = (pointer.add_pin(*point) for point in ((118, 522), (885, 218), (440, 187)))
+    pointer.drag(right, swing(-110, -30, 2), 1.4)
+    pointer.drag(left, swing(10, -170, 2), 1.4)
+    pointer.drag(head, swing(60, 10, 1), 1.0)
+    return pointer
+
+
+def raptor() -> ScriptedPointer:
+    """Fix the raptor's feet; swing its tail, nod its head."""
+    pointer = ScriptedPointer("raptor")
+    for point in ((342, 757), (609, 757), (517, 388)):
+        pointer.add_pin(*point)
+    tail, head = pointer.add_pin(55, 212), pointer.add_pin(997, 185)
+    pointer.drag(tail, swing(40, 130, 2), 1.4)
+    pointer.drag(head, swing(-40, 90, 2), 1.4)
+    return pointer
+
+
+def rope() -> ScriptedPointer:
+    """Hold the rope in the middle; swing its ends."""
+    pointer = ScriptedPointer("rope")
+    pointer.add_pin(997, 42)
+    left, right = pointer.add_pin(57, 42), pointer.add_pin(1954, 42)
+    pointer.drag(left, swing(90, -420, 1), 1.4)
+    pointer.drag(right, swing(-90, 420, 1), 1.4)
+    return pointer
+
+
 if __name__ == "__main__":
-    for record in (elephant, rearing, bar, alien):
+    for record in (elephant, rearing, bar, alien, cat, gingerbread, raptor, rope):
         path = resource("assets", "recordings") / f"{record.__name__}.akaprec"
         record().save(path)
         print(path)

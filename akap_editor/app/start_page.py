@@ -1,5 +1,6 @@
 """The start page, in place of the canvas while nothing is open: open a file, a bundled or a recent one."""
 
+import math
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -19,6 +20,8 @@ from . import files, widgets
 from .app_state import AppState
 from .commands.registry import OPEN
 from .dialogs.clips import play_clip
+from .jobs.file_thumbnails import FileThumbnails
+from .jobs.tile_motion import FRAMES_PER_SECOND, TileMotions
 from .theme import ACCENT, DARK, FRAME, HOVER, PANEL, SECONDARY, STRONG_LINE, TEXT, packed
 
 _WINDOW = (
@@ -35,6 +38,7 @@ _MARGIN = 12  # around a thumbnail
 _DASH = 7
 _CLIP_BUTTON = 26
 _MIN_RECENT = 3  # files
+_ROW_HEIGHT = 40  # of a recent file
 
 
 def draw(state: AppState, scale: float, pixels_per_point: float) -> None:
@@ -57,7 +61,7 @@ def draw(state: AppState, scale: float, pixels_per_point: float) -> None:
     _draw_heading(tr("Bundled drawings"))
     _draw_bundled(state, scale, column, pixels_per_point)
     _draw_heading(tr("Recent files"))
-    _draw_recent(state, column)
+    _draw_recent(state, column, scale, pixels_per_point)
     imgui.end()
 
 
@@ -85,15 +89,44 @@ def _draw_button(state: AppState, path: Path, side: int, scale: float, pixels_pe
     end = ImVec2(corner.x + side, corner.y + side)
     draw.add_rect_filled(corner, end, packed(HOVER if is_hovered else PANEL), 8 * scale)
     pixels = max(16, round((side - 2 * round(_MARGIN * scale)) * pixels_per_point))
-    state.thumbnails.draw(
-        (path, pixels), corner, side, lambda: _scaled_picture(path, pixels), pixels_per_point
-    )
+    if not (is_hovered and _draw_motion(state, path, corner, side, pixels, pixels_per_point)):
+        state.part(TileMotions).stop(path)
+        state.thumbnails.draw(
+            (path, pixels), corner, side, lambda: _scaled_picture(path, pixels), pixels_per_point
+        )
     clips = clips_for(path.stem)
     if clips:
         _draw_clip_button(state, path, clips[0], ImVec2(end.x, corner.y), scale)
     name = drawing_title(path)
     name_corner = ImVec2(corner.x + (side - imgui.calc_text_size(name).x) / 2, end.y + 6 * scale)
     draw.add_text(name_corner, packed(TEXT if is_hovered else SECONDARY), name)
+
+
+def _draw_motion(
+    state: AppState, path: Path, corner: ImVec2, side: int, pixels: int, pixels_per_point: float
+) -> bool:
+    """Draw the present frame of a drawing that moves; False as long as there is none.
+
+    pixels: of the thumbnail, which the first frame equals; the motion may leave its frame up to the tile's.
+    """
+    frame = state.part(TileMotions).frame(path, state.wake)
+    if frame is None:
+        return False
+    state.frame_delay = min(state.frame_delay, 1 / FRAMES_PER_SECOND)
+    width, height = frame.drawing.size
+    zoom = pixels / max(width, height)
+    reach = round(side * pixels_per_point) / zoom / 2  # of the tile, from the middle of the drawing
+    left, top = math.floor(width / 2 - reach), math.floor(height / 2 - reach)
+    box = left, top, math.ceil(width / 2 + reach), math.ceil(height / 2 + reach)
+    key = ("tile", id(frame.pose), pixels)
+    state.thumbnails.draw(
+        key,
+        corner,
+        side,
+        lambda: state.offscreen_renderer.render(frame.drawing, frame.pose, box, zoom, None, frame.order),
+        pixels_per_point,
+    )
+    return True
 
 
 def _draw_clip_button(state: AppState, path: Path, clip: Clip, corner: ImVec2, scale: float) -> None:
@@ -187,19 +220,46 @@ def _draw_dashed_frame(low: ImVec2, high: ImVec2, scale: float, color: int) -> N
             )
 
 
-def _draw_recent(state: AppState, width: float) -> None:
-    """Draw as many recent files as there is room for, at least three."""
+def _draw_recent(state: AppState, width: float, scale: float, pixels_per_point: float) -> None:
+    """Draw as many recent files as there is room for, at least three; each with a thumbnail."""
     recent = state.preferences.recent
     if not recent:
         widgets.secondary_text(tr("None yet. Files that you open or save are listed here."))
         return
-    room = int(imgui.get_content_region_avail().y / imgui.get_text_line_height_with_spacing())
+    height = round(_ROW_HEIGHT * scale)
+    spacing = imgui.get_style().item_spacing.y
+    room = int((imgui.get_content_region_avail().y + spacing) / (height + spacing))
     for index, path in enumerate(recent[: max(room, _MIN_RECENT)]):
-        name = widgets.as_label(widgets.shortened(display_name(path), 0.4 * width))
-        if imgui.selectable(f"{icons.ICON_FA_FILE_IMAGE}  {name}##recent {index}", False)[0]:
-            _open(state, path)
-        widgets.show_tooltip(display_text(path))
-        folder = widgets.shortened(display_text(path.parent), 0.55 * width, keeps_end=True)
-        right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
-        imgui.same_line(right - imgui.calc_text_size(folder).x)
-        imgui.text_colored(ImVec4(*SECONDARY), folder)
+        _draw_recent_file(state, index, path, width, height, scale, pixels_per_point)
+
+
+def _draw_recent_file(
+    state: AppState,
+    index: int,
+    path: Path,
+    width: float,
+    height: int,
+    scale: float,
+    pixels_per_point: float,
+) -> None:
+    """Draw a row: a thumbnail, the name, and the folder at the right."""
+    corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
+    if imgui.selectable(f"##recent {index}", False, 0, ImVec2(0, height))[0]:
+        _open(state, path)
+    widgets.show_tooltip(display_text(path))
+    pixels = round((height - 4 * scale) * pixels_per_point)
+    picture = state.part(FileThumbnails).picture(path, pixels, state.wake)
+    if picture is not None:
+        key = ("recent", path, id(picture))
+        state.thumbnails.draw(key, corner, height, lambda: picture, pixels_per_point)
+    middle = corner.y + (height - imgui.get_text_line_height()) / 2
+    left = corner.x + height + 10 * scale
+    if picture is None:
+        icon = icons.ICON_FA_FILE_IMAGE
+        at = corner.x + (height - imgui.calc_text_size(icon).x) / 2
+        draw.add_text(ImVec2(at, middle), packed(SECONDARY), icon)
+    name = widgets.shortened(display_name(path), 0.4 * width)
+    draw.add_text(ImVec2(left, middle), packed(TEXT), name)
+    folder = widgets.shortened(display_text(path.parent), 0.45 * width, keeps_end=True)
+    right = corner.x + width - imgui.calc_text_size(folder).x - 6 * scale
+    draw.add_text(ImVec2(right, middle), packed(SECONDARY), folder)

@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from ..desktop.integration import data_folder, integrate, program_command, remove_integration
-from ..desktop.thumbnail import make_thumbnail
 from ..errors import FileError, InputError
+from ..io.file_thumbnail import make_thumbnail
 from ..io.images import write_png
 from ..io.outputs import same_file
 from .options import FILE

@@ -1,5 +1,7 @@
 """The start page, and what the program opens at its start."""
 
+from imgui_bundle import imgui  # isort: skip
+import math
 import sys
 from types import SimpleNamespace
 
@@ -7,6 +9,8 @@ import numpy as np
 import pytest
 
 from akap_editor.app.commands.command import CTRL, Key
+from akap_editor.app.jobs.file_thumbnails import FileThumbnails
+from akap_editor.app.jobs.tile_motion import FRAMES_PER_SECOND, TileMotions
 from akap_editor.cli.edit import edit
 from akap_editor.errors import InputError
 from akap_editor.io.images import read_image, write_png
@@ -88,13 +92,47 @@ def test_recent_files_are_listed_and_opened(closed, tmp_path, image):
     write_png(path, image)
     closed.state.preferences.add_recent(path)
     closed.settle()
-    closed.do(lambda hand: hand.item_click(f"{START}\uf1c5  seen before.png##recent 0"))
+    closed.do(lambda hand: hand.item_click(f"{START}##recent 0"))
     closed.settle()
     assert closed.document.drawing.name == "seen before"
     closed.key(CTRL | Key.w)
     closed.menu("File", "Open Recent", "###0")
     closed.settle()
     assert closed.document.drawing.name == "seen before"
+
+
+def test_a_tile_moves_while_the_pointer_is_over_it(closed):
+    (path,) = (each for each in bundled_drawings() if each.stem == "raptor")
+    tiles = closed.state.part(TileMotions)
+    seen = []
+
+    def rest_on_it(hand):
+        hand.mouse_move(START + path.stem)
+        while tiles.frame(path, closed.window.wake) is None:
+            hand.yield_()
+        hand.yield_(2)
+        seen.append(closed.state.frame_delay)
+        hand.mouse_move_to_pos(imgui.ImVec2(640.0, 60.0))
+        hand.yield_(2)
+        seen.append(closed.state.frame_delay)
+
+    closed.do(rest_on_it)
+    assert seen == [1 / FRAMES_PER_SECOND, math.inf]
+
+
+def test_a_recent_file_has_a_thumbnail(closed, tmp_path, image):
+    path = tmp_path / "seen.png"
+    write_png(path, image)
+    plain = closed.screenshot()
+    closed.state.preferences.add_recent(path)
+    closed.settle()
+    thumbnails = closed.state.part(FileThumbnails)
+    closed.frame_until(lambda: thumbnails.picture(path, 36, closed.window.wake) is not None)
+    found = []
+    closed.do(lambda hand: found.append(hand.item_info(f"{START}##recent 0").rect_full))
+    low = found[0].min
+    area = np.s_[round(low.y) + 4 : round(low.y) + 36, round(low.x) + 4 : round(low.x) + 36]
+    assert (closed.screenshot()[area] != plain[area]).any(axis=2).mean() > 0.2
 
 
 def test_a_picture_dropped_on_the_start_page_opens(closed, tmp_path, image):

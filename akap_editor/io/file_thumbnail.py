@@ -6,12 +6,12 @@ import numpy as np
 from PIL import Image
 
 from ..errors import InputError, file_errors
-from ..io.akap.archive import Archive
-from ..io.akap.layer_entries import MAX_PICTURE_BYTES
-from ..io.akap.project import PROJECT_SUFFIX, THUMBNAIL_ENTRY
-from ..io.akap.recording import RECORDING_SUFFIX, bundled_drawing, decode_recording, drawing_inside
-from ..io.atomic import read_file
-from ..io.images import Picture, decode_image
+from .akap.archive import Archive
+from .akap.layer_entries import MAX_PICTURE_BYTES
+from .akap.project import PROJECT_SUFFIX, THUMBNAIL_ENTRY
+from .akap.recording import RECORDING_SUFFIX, bundled_drawing, decode_recording, drawing_inside
+from .atomic import read_file
+from .images import Picture, decode_image
 
 
 def make_thumbnail(path: Path, side: int) -> Picture:

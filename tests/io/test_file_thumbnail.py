@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from akap_editor.desktop.thumbnail import make_thumbnail
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.session.recording import Recording, drawing_header
 from akap_editor.errors import InputError
 from akap_editor.io.akap.project import save
 from akap_editor.io.akap.recording import write_recording
+from akap_editor.io.file_thumbnail import make_thumbnail
 from akap_editor.resources import resource
 from tests.support.pictures import bar_picture
 
