@@ -6,6 +6,7 @@ import numpy as np
 from PIL import Image
 
 from ..errors import InputError, file_errors
+from ..words import tr
 from .akap.archive import Archive
 from .akap.layer_entries import MAX_PICTURE_BYTES
 from .akap.project import PROJECT_SUFFIX, THUMBNAIL_ENTRY
@@ -27,7 +28,9 @@ def make_thumbnail(path: Path, side: int) -> Picture:
             case str(suffix) if suffix == RECORDING_SUFFIX:
                 image = _drawing_of_recording(data)
             case suffix:
-                raise InputError(f"expected a drawing or recording, got {suffix or 'no ending'}")
+                raise InputError(
+                    tr("expected a drawing or recording, got {suffix}", suffix=suffix or tr("no ending"))
+                )
     picture = Image.fromarray(image)
     picture.thumbnail((side, side))
     return np.asarray(picture)
