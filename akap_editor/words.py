@@ -57,6 +57,11 @@ def mark(text: str) -> str:
     return text
 
 
+def mark_in(context: str, text: str) -> str:
+    """`mark` for a text that is translated by `tr_in`, with the same context."""
+    return text
+
+
 def use_language(language: str = "") -> None:
     """Choose the language, one of `LANGUAGES`; empty: the system's, or else English."""
     global _translations, _language

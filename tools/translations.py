@@ -29,6 +29,7 @@ KEYWORDS = {
     "tr": None,
     "mark": None,
     "tr_in": ((1, "c"), 2),
+    "mark_in": ((1, "c"), 2),
     "tr_plural": (1, 2),
     "Command": None,
     "_tool": None,

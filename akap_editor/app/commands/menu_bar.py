@@ -6,7 +6,7 @@ from string import ascii_lowercase
 from imgui_bundle import imgui
 
 from ...display_text import display_text
-from ...words import tr
+from ...words import tr_in
 from .. import files, widgets
 from ..app_state import AppState
 from .command import ALT, CommandGroup, MenuItem, Submenu
@@ -25,14 +25,14 @@ def draw(state: AppState) -> None:
         return
     requested = _requested_by_key()
     for name, items in MENUS:
-        if imgui.begin_menu(tr(name)):
+        if imgui.begin_menu(tr_in("menu", name)):
             takes_arrows = [_draw_item(state, item) for item in items]
             if not any(takes_arrows) and imgui.is_window_focused():
                 requested = _neighbor_by_key(name)
             imgui.end_menu()
     if requested:
         imgui.internal.nav_move_request_cancel()  # otherwise ImGui would leave the menus
-        imgui.open_popup(tr(requested))
+        imgui.open_popup(tr_in("menu", requested))
         imgui.set_nav_cursor_visible(True)  # otherwise Enter would not run the first line
     imgui.end_main_menu_bar()
 
@@ -43,7 +43,7 @@ def _requested_by_key() -> str:
         return ""
     if imgui.is_key_pressed(imgui.Key.f10, False) and not imgui.get_io().key_shift:  # opens context menus
         return _NAMES[0]
-    letters = access_letters([tr(name) for name in _NAMES])
+    letters = access_letters([tr_in("menu", name) for name in _NAMES])
     for name, letter in zip(_NAMES, letters, strict=True):
         if letter and imgui.is_key_chord_pressed(ALT | imgui.Key[letter]):
             return name

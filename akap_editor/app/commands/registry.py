@@ -13,7 +13,7 @@ from ...editor.session.edits import SetStiffness
 from ...editor.tools.base import IdleTool
 from ...editor.tools.suggested_pins import suggest_pins
 from ...resources import bundled_drawings, drawing_title
-from ...words import mark, tr
+from ...words import mark, mark_in, tr
 from .. import file_commands, files
 from ..app_state import AppState
 from ..dialogs.about import AboutDialog
@@ -329,7 +329,7 @@ ARRANGE = CommandGroup("Align Pins", (*ALIGN_PINS, None, *DISTRIBUTE_PINS))
 
 MENUS: tuple[Menu, ...] = (
     (
-        mark("File"),
+        mark_in("menu", "File"),
         (
             *(OPEN, OPEN_RECENT, OPEN_BUNDLED, RELOAD, CUT_OUT, MERGE_LAYERS, CLOSE, None),
             *(SAVE, SAVE_AS, None),
@@ -339,7 +339,7 @@ MENUS: tuple[Menu, ...] = (
         ),
     ),
     (
-        mark("Edit"),
+        mark_in("menu", "Edit"),
         (
             *(UNDO, REDO, None),
             *(COPY_PICTURE, COPY_POSE, PASTE, None),
@@ -352,7 +352,7 @@ MENUS: tuple[Menu, ...] = (
         ),
     ),
     (
-        mark("View"),
+        mark_in("menu", "View"),
         (
             *(FIT, ACTUAL_SIZE, ZOOM_IN, ZOOM_OUT, None),
             *(SHOW_MESH, SHOW_PINS, *OVERLAYS, NEXT_RANGE, None),
@@ -361,8 +361,8 @@ MENUS: tuple[Menu, ...] = (
             *(HIDE_PANELS, FULL_SCREEN),
         ),
     ),
-    (mark("Animation"), ANIMATION),
-    (mark("Help"), (PALETTE, SHORTCUTS, ABOUT)),
+    (mark_in("menu", "Animation"), ANIMATION),
+    (mark_in("menu", "Help"), (PALETTE, SHORTCUTS, ABOUT)),
 )
 COMMANDS = (
     *(item for _, items in MENUS for item in commands_and_files(items) if isinstance(item, Command)),

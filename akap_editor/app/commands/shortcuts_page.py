@@ -1,10 +1,11 @@
 """The page of shortcuts: all keys, and what the mouse does."""
 
+import re
 from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from ...words import mark, tr
+from ...words import mark, tr, tr_in
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACTIVE, SECONDARY, TEXT, packed
@@ -43,6 +44,11 @@ _TOOLS_INDEX = 3  # among the groups: there, all columns have about the same hei
 _SCROLL_LINES = {Key.up_arrow: -1, Key.down_arrow: 1, Key.page_up: -10, Key.page_down: 10}
 
 
+def _menu_title(name: str) -> str:
+    """The name of a menu without the letter that opens it, which some languages add in parentheses."""
+    return re.sub(r"\(\w\)$", "", tr_in("menu", name))
+
+
 def groups(menus: Sequence[Menu], commands: Sequence[Command]) -> list[Group]:
     """The groups of the page: mouse, one for each menu, and the commands that are in no menu."""
     listed = [(tr("Mouse"), [(tr(keys), tr(action)) for keys, action in _MOUSE])]
@@ -51,7 +57,7 @@ def groups(menus: Sequence[Menu], commands: Sequence[Command]) -> list[Group]:
         listed_items = commands_and_files(items)
         with_keys = [item for item in listed_items if isinstance(item, Command) and item.active_chords]
         in_menus.update(map(id, with_keys))
-        listed.append((tr(name), [(command.key_name, command.name) for command in with_keys]))
+        listed.append((_menu_title(name), [(command.key_name, command.name) for command in with_keys]))
     listed[-1][1].extend((tr(keys), tr(action)) for keys, action in _FOCUS)
     others = [command for command in commands if command.active_chords and id(command) not in in_menus]
     listed.insert(_TOOLS_INDEX, (tr("Tools"), [(command.key_name, command.name) for command in others]))
