@@ -130,13 +130,16 @@ def _draw_motion(
 
 
 def _draw_clip_button(state: AppState, path: Path, clip: Clip, corner: ImVec2, scale: float) -> None:
-    """Draw a small button that opens a drawing and plays a clip. corner: at the top right of the drawing."""
+    """Draw a small button that opens a drawing and plays a clip. corner: at the top right of the drawing.
+
+    Arrow keys pass it by, so that they go from tile to tile; the menu has the clips for the keyboard.
+    """
     size = _CLIP_BUTTON * scale
     low = ImVec2(corner.x - size, corner.y)
     imgui.set_cursor_screen_pos(low)
-    if imgui.invisible_button(f"{path.stem} clip", ImVec2(size, size), _BUTTON):
+    if imgui.invisible_button(f"{path.stem} clip", ImVec2(size, size)):
         _open(state, path, partial(play_clip, state, clip))
-    is_hovered = imgui.is_item_hovered() or imgui.is_item_focused()
+    is_hovered = imgui.is_item_hovered()
     widgets.show_tooltip(tr("Open and play the clip “{clip}”", clip=tr(clip.name)))
     draw, half = imgui.get_window_draw_list(), imgui.calc_text_size(icons.ICON_FA_PLAY)
     place = ImVec2(low.x + (size - half.x) / 2, low.y + (size - half.y) / 2)
