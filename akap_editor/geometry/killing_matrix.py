@@ -4,6 +4,7 @@ The matrices are symmetric, 2n × 2n, with interleaved unknowns: 2 i and 2 i + 1
 2 × 2 block of a vertex couples its own x and y; the block of an edge couples those of its two vertices.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,15 @@ class Slots(NamedTuple):  # numba's caches on disk refer to this name: renamed, 
     face_edges: Indices
 
 
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """Part of a mesh, which need be no mesh itself: vertices (v, 2), faces (q, 3), edges (e, 2), sorted."""
+
+    vertices: Floats
+    faces: Ints
+    edges: Ints
+
+
 class VertexBlocks:
     """The sparsity pattern: one block for each vertex and each edge of a mesh, and for each of its links.
 
@@ -37,7 +47,7 @@ class VertexBlocks:
     rows, columns: (z,) int32 of the nonzeros; slots: where a face adds to them.
     """
 
-    def __init__(self, mesh: TriMesh, links: Ints | None = None) -> None:
+    def __init__(self, mesh: TriMesh | Triangles, links: Ints | None = None) -> None:
         n, pairs = len(mesh.vertices), mesh.edges.astype(np.int64)
         if links is not None and len(links):
             keys = np.unique(np.concatenate([pairs, links]) @ np.array([n, 1], dtype=np.int64))
@@ -77,7 +87,7 @@ class KillingMatrix:
     links: see `VertexBlocks`. blocks: the sparsity pattern of K.
     """
 
-    def __init__(self, mesh: TriMesh, links: Ints | None = None) -> None:
+    def __init__(self, mesh: TriMesh | Triangles, links: Ints | None = None) -> None:
         self.blocks = VertexBlocks(mesh, links)
         self._faces = mesh.faces.astype(np.uint32)
         self._ones, self._zeros = np.ones(len(mesh.faces)), np.zeros(len(mesh.faces))

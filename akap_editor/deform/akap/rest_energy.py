@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...geometry.jit import compiled
-from ...geometry.killing_matrix import Slots, VertexBlocks, add_face
+from ...geometry.killing_matrix import Slots, Triangles, VertexBlocks, add_face
 from ...geometry.mesh import TriMesh
 from ...geometry.operators import hat_gradients
 from ...geometry.validation import Complexes, Floats, Indices
@@ -28,7 +28,7 @@ class SymmetricDirichlet:
     derivative by x, then the one by y.
     """
 
-    def __init__(self, mesh: TriMesh, stiffness: Floats | None = None) -> None:
+    def __init__(self, mesh: TriMesh | Triangles, stiffness: Floats | None = None) -> None:
         dx, dy, areas = hat_gradients(mesh.vertices, mesh.faces)
         self._faces = mesh.faces.astype(np.uint32)
         self._hats = dx + 1j * dy  # gradients of the hat functions, (m, 3)
