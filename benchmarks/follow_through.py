@@ -33,13 +33,14 @@ def main() -> None:
             prepared = time.thread_time() - start
             state, times = follow.start(mesh.vertices), []
             for k in range(60):
-                pose = mesh.vertices + [0.05 * mesh.length * np.sin(0.6 * k), 0.0]
+                pose = mesh.vertices + 0.05 * mesh.length * np.sin(0.6 * k) * np.array([1.0, 0.0])
                 start = time.thread_time()
                 state = follow.step(state, pose)
                 follow.shown(state, pose)
                 times.append(time.thread_time() - start)
             row.append(1000 * float(np.median(times[5:])))
-        print(f"{len(mesh.vertices):8} {follow.free_count:5} {1000 * prepared:8.1f} {row[0]:20.2f} {row[1]:11.2f}")
+        counts = f"{len(mesh.vertices):8} {follow.free_count:5} {1000 * prepared:8.1f}"
+        print(f"{counts} {row[0]:20.2f} {row[1]:11.2f}")
 
 
 if __name__ == "__main__":

@@ -5,10 +5,12 @@ import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from time import monotonic
 from typing import Any, TypeVar
 
 from ..display_text import display_name
 from ..editor import gestures
+from ..editor.animation.loose_motion import LooseCanvas
 from ..editor.background_remesh import BackgroundRemesh
 from ..editor.comparison import MethodComparison
 from ..editor.document.document import Document
@@ -86,6 +88,7 @@ class AppState:
     thumbnails: Thumbnails = field(default_factory=Thumbnails)
     _new_jobs: list[Callable[[], None]] = field(default_factory=list)
     _due_jobs: list[Callable[[], None]] = field(default_factory=list)
+    loose_canvas: LooseCanvas = field(default_factory=lambda: LooseCanvas(monotonic))
     _measured: tuple[Floats, Distortion] | None = None
     _parts: dict[type, Any] = field(default_factory=dict)
 
@@ -144,7 +147,8 @@ class AppState:
     def needs_frame(self) -> bool:
         """Whether the next frame changes something without an event: deferred jobs, a task, playback."""
         can_task_advance = self.task is not None and not self.task.progress.is_blocked
-        return bool(self._new_jobs or self._due_jobs) or can_task_advance or self.timeline.playback.is_playing
+        is_moving = self.timeline.playback.is_playing or self.loose_canvas.is_moving
+        return bool(self._new_jobs or self._due_jobs) or can_task_advance or is_moving
 
     @property
     def is_waiting(self) -> bool:

@@ -10,7 +10,7 @@ import click
 
 from ..display_text import display_text
 from ..editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
-from ..editor.animation.keyframe_poses import KeyframePoses, animation_frame
+from ..editor.animation.loose_motion import AnimationFrames
 from ..editor.animation.motion import Motion, shorten_pauses
 from ..editor.document.easing import EASINGS
 from ..editor.document.settings import Settings
@@ -289,14 +289,14 @@ def _open_recording(
 
 
 def _open_keyframes(path: Path) -> _Source:
-    document, poses = open_document(path), KeyframePoses()
+    document = open_document(path)
     animation = document.state.animation
     if not animation.keyframes:
         raise FileError("replay", path, "the drawing has no keyframes; add some, or replay a recording")
     return _Source(
         animation.duration,
         0 if animation.loop else 1,
-        lambda times: (animation_frame(document, poses, time) for time in times),
+        lambda times: map(AnimationFrames(document).frame, times),
     )
 
 

@@ -12,6 +12,7 @@ which flips no face. The masses m follow from the speed at which each part is to
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import eigsh
@@ -57,7 +58,9 @@ class FollowThrough:
     part some vertex must be held, by an anchor or by faces that are not loose; else it does not swing.
     """
 
-    def __init__(self, mesh: TriMesh, loose: Ints, anchors: Ints, speed: float, bounce: float) -> None:
+    def __init__(
+        self, mesh: TriMesh, loose: NDArray[np.bool_], anchors: Ints, speed: float, bounce: float
+    ) -> None:
         self._count = len(mesh.vertices)
         self._longest_jump = _LONGEST_JUMP * mesh.length
         is_held = np.zeros(self._count, dtype=bool)

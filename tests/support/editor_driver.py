@@ -57,7 +57,10 @@ def bits(state: EditState) -> tuple[Any, ...]:
         for joint in state.joints
     )
     rig = joints, state.mirror
-    return pose, pins, state.settings, mesh_bits, layer_list, rig, stiffness, poses, animation
+    loose = state.loose
+    loose_bits = None if loose is None else (loose.faces.tobytes(), loose.speed, loose.bounce)
+    factors = stiffness, loose_bits
+    return pose, pins, state.settings, mesh_bits, layer_list, rig, factors, poses, animation
 
 
 def _layer_bits(layer: DrawingLayer) -> tuple[Any, ...]:

@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 import moderngl
 
+from ...editor.animation.loose_motion import Crossed, shown_frame
+from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
 from ...overlap.seams import CutMesh
@@ -118,13 +120,31 @@ def scene_content(
     view = state.editor.camera.view(*window)
     main = PosedDrawing(
         document.drawing,
-        document.state.positions,
-        document.draw_order,
+        *_shown_pose(state, document),
         view,
         is_smooth=state.view.smooth_bends and not state.view.is_split,
     )
     comparison = _comparison(state, size, window, density)
     return SceneContent(size, background, main, comparison, overlays)
+
+
+def _shown_pose(state: AppState, document: Document) -> tuple[Floats, Ints | CutMesh | None]:
+    """The pose (n, 2) of the document with its loose parts where they are now, and what is drawn of it."""
+    shown, session, timeline = document.state, state.editor.session, state.timeline
+    if shown.loose is None or session is None:
+        state.loose_canvas.is_moving = False
+        return shown.positions, document.draw_order
+    pose: Floats | None
+    if timeline.shows_another_time:
+        state.loose_canvas.is_moving = False
+        pose = timeline.playback.loose_pose(timeline.playback.playhead)
+    else:
+        pose = state.loose_canvas.pose(document.drawing, shown, session.discontinuities)
+    if pose is None or pose is shown.positions:
+        return shown.positions, document.draw_order
+    crossed = Crossed(shown.pins, shown.positions, shown.crossings)
+    frame = shown_frame(document.drawing, crossed, pose)
+    return frame.pose, frame.order
 
 
 def scene_overlays(state: AppState, scale: float) -> Overlays:

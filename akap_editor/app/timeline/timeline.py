@@ -35,6 +35,13 @@ class Timeline:
         return self.keyframe_playback if self.mode == "keyframes" else self.session_playback
 
     @property
+    def shows_another_time(self) -> bool:
+        """Whether the canvas shows the pose at the playhead instead of the present one."""
+        if self.mode == "keyframes":
+            return self.keyframe_playback.is_previewing
+        return self.session_playback.time is not None
+
+    @property
     def shows_keyframes(self) -> bool:
         """Whether the panel is visible and shows keyframes."""
         return self.is_shown and self.mode == "keyframes"

@@ -24,6 +24,7 @@ from .keyframe_times import EasingDrag, TimesDrag, mirror_times, within_limits
 from .keyframing.group_edits import insert_edits, reverse_edits
 from .keyframing.keyframe_clipboard import KeyframeClipboard
 from .keyframing.onion_skin import OnionSkin
+from .loose_motion import Crossed, Instant
 from .playback import Playback, VisibleRange
 
 _DUPLICATE_GAP = 0.5  # seconds between the last keyframe and duplicates
@@ -110,18 +111,11 @@ class KeyframePlayback(Playback):
             return None
         return self._poses.moment(session.drawing.mesh, animation, time).pose
 
-    def _pose_and_crossings(self, time: float) -> tuple[Floats, Ints] | None:
-        """The pose (n, 2) at a time and its crossings (s, 2); None without keyframes."""
-        session, animation = self._editor.session, self.animation
-        if session is None or not animation.keyframes:
-            return None
-        mesh, pins = session.drawing.mesh, session.present.pins
-        return animation_crossings(self._poses, self._crossings, mesh, pins, animation, time)
-
     @property
     def content(self) -> tuple[object, ...]:
         """What the poses depend on; equal as long as they are the same."""
-        return self._editor.session, self.animation
+        session = self._editor.session
+        return session, self.animation, None if session is None else session.present.loose
 
     def pose_at(self, time: float) -> tuple[Drawing, Floats]:
         """The drawing and its pose (n, 2) at a time; there must be keyframes."""
@@ -134,14 +128,21 @@ class KeyframePlayback(Playback):
         """The drawing with the layers that are visible at a time."""
         return self._poses.drawing(session.present_document.drawing, self.animation, time)
 
-    def frame(self, time: float) -> Frame:
-        """The frame at a time; there must be keyframes."""
-        session, pose = self._editor.session, self._pose_and_crossings(time)
+    def instant(self, time: float) -> Instant:
+        session, (drawing, pose) = self._editor.session, self.pose_at(time)
         assert session is not None
-        assert pose is not None, "expected keyframes"
-        drawing = self._drawing(session, time)
-        pins = self.animation.pins_at(session.present.pins, time)
-        return Frame(drawing, pose[0], draw_order(drawing, pins, *pose))
+        return Instant(drawing, session.present, pose)
+
+    def crossed(self, time: float) -> Crossed:
+        session, animation = self._editor.session, self.animation
+        assert session is not None
+        mesh, pins = session.drawing.mesh, session.present.pins
+        pose, crossings = animation_crossings(self._poses, self._crossings, mesh, pins, animation, time)
+        return Crossed(animation.pins_at(pins, time), pose, crossings)
+
+    def plain_frame(self, time: float) -> Frame:
+        drawing, crossed = self.pose_at(time)[0], self.crossed(time)
+        return Frame(drawing, crossed.positions, draw_order(drawing, *crossed))
 
     def onion_poses(self) -> tuple[list[Floats], list[Floats]]:
         """The poses of the onion skin before and after the playhead, the nearest ones first."""
@@ -203,21 +204,20 @@ class KeyframePlayback(Playback):
         self._show()
 
     def _show(self) -> None:
-        session, pose = self._editor.session, self._pose_and_crossings(self.time)
+        session = self._editor.session
         if session is None or session.history.is_open:
             return
-        if pose is None:
+        if not self.animation.keyframes:
             self.show_present()
             return
-        present = session.present
+        present, crossed = session.present, self.crossed(self.time)
         self._present = keyed_values(session)
-        keyed_pins = self.animation.pins_at(present.pins, self.time)
-        pins = pins_fixed_at_pose(session.drawing.mesh, keyed_pins, pose[0])
+        pins = pins_fixed_at_pose(session.drawing.mesh, crossed.pins, crossed.positions)
         drawing, current = self._drawing(session, self.time), session.present_document.drawing
         shown = replace(
             present,
-            positions=pose[0],
-            crossings=pose[1],
+            positions=crossed.positions,
+            crossings=crossed.crossings,
             pins=pins,
             drawing=present.drawing if drawing is current else drawing,
         )

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...deform.deformer import StepResult
+from ...deform.follow_through import STEP_SECONDS, FollowThrough, SwingState
 from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.validation import Floats, as_number
 from ..document.crossings import crossings_in_pose, draw_order
@@ -17,7 +18,9 @@ from ..document.drawing import Drawing
 from ..session.recording import MAX_TIME, Recording
 from ..session.replay import ReplayedEvent
 from .frames import Frame
+from .loose_motion import Crossed, Swings, shown_frame
 
+_SAME_TIME = 1e-6  # seconds
 MAX_MOVE_SECONDS = 0.25  # a motion between two recorded times takes at most this long
 
 
@@ -79,13 +82,50 @@ class Motion:
         rest = Frame(drawing, drawing.mesh.vertices)
         self._segment = _Segment(0.0, 0.0, rest, (), rest, None)
         self._interpolation = InterpolationCache()
+        self._swings, self._next_step = Swings(), 0
+        self._swing: tuple[FollowThrough | None, SwingState | None] = None, None
 
     def frames(self, times: Iterable[float]) -> Iterator[Frame]:
-        """The frame at each of ``times``, in seconds, ascending."""
+        """The frame at each of ``times``, in seconds, ascending; loose parts swing from the first one on."""
         for time in times:
-            while time > self._segment.end and (group := next(self._groups, None)) is not None:
-                self._segment = self._next_segment(group)
-            yield self._frame(time)
+            while self._next_step * STEP_SECONDS < time - _SAME_TIME:
+                self._swing_to(self._next_step * STEP_SECONDS)
+                self._next_step += 1
+            self._go_to(time)
+            yield self._swinging(self._frame(time), time)
+
+    def _go_to(self, time: float) -> None:
+        """Replay until the segment of a time."""
+        while time > self._segment.end and (group := next(self._groups, None)) is not None:
+            self._segment = self._next_segment(group)
+
+    def _swing_to(self, time: float) -> None:
+        """Let loose parts swing to the next step."""
+        self._go_to(time)
+        segment = self._segment
+        if segment.state is None or segment.state.loose is None:
+            self._swing = None, None
+            return
+        frame = self._frame(time)
+        follow = self._swings.of(frame.drawing.mesh, segment.state)
+        before, state = self._swing
+        if follow is None or follow is not before or state is None:
+            self._swing = follow, None if follow is None else follow.start(frame.pose)
+        else:
+            self._swing = follow, follow.step(state, frame.pose)
+
+    def _swinging(self, frame: Frame, time: float) -> Frame:
+        """A frame with its loose parts where they are at its time, which is less than a step after theirs."""
+        (follow, swing), state = self._swing, self._segment.state
+        if follow is None or swing is None or state is None:
+            return frame
+        if follow is not self._swings.of(frame.drawing.mesh, state):
+            return frame
+        swing = follow.step(swing, frame.pose, time - (self._next_step - 1) * STEP_SECONDS)
+        if swing.is_settled:
+            return frame
+        crossed = Crossed(state.pins, state.positions, state.crossings)
+        return shown_frame(frame.drawing, crossed, follow.shown(swing, frame.pose))
 
     def _next_segment(self, group: list[ReplayedEvent]) -> _Segment:
         """The segment to a group of events that have the same time."""

@@ -6,6 +6,8 @@ from time import monotonic
 
 from ...geometry.validation import Floats
 from ..document.drawing import Drawing
+from .frames import Frame
+from .loose_motion import Crossed, Instant, LooseMotion, shown_frame
 
 MIN_VISIBLE_SECONDS = 0.5
 
@@ -65,6 +67,7 @@ class Playback(ABC):
         self._clock = clock
         self.time: float | None = None
         self.marked_range: tuple[float, float] | None = None
+        self._loose: tuple[tuple[object, ...], LooseMotion] | None = None  # with the content that it is of
         self._last_update: float | None = None  # the clock at the last update while it plays
 
     @property
@@ -80,6 +83,31 @@ class Playback(ABC):
     @abstractmethod
     def pose_at(self, time: float) -> tuple[Drawing, Floats]:
         """The drawing and its pose (n, 2) at a time; there must be a motion."""
+
+    @abstractmethod
+    def instant(self, time: float) -> Instant:
+        """What is shown at a time without follow-through; there must be a motion."""
+
+    @abstractmethod
+    def crossed(self, time: float) -> Crossed:
+        """A pose near that at a time, with its crossings; there must be a motion."""
+
+    @abstractmethod
+    def plain_frame(self, time: float) -> Frame:
+        """The frame at a time without follow-through; there must be a motion."""
+
+    def loose_pose(self, time: float) -> Floats | None:
+        """The pose (n, 2) at a time with follow-through; None if nothing swings then."""
+        if self._loose is None or self._loose[0] != self.content:
+            self._loose = self.content, LooseMotion(self.instant)
+        return self._loose[1].pose(time)
+
+    def frame(self, time: float) -> Frame:
+        """The frame at a time, with follow-through; there must be a motion."""
+        pose = self.loose_pose(time)
+        if pose is None:
+            return self.plain_frame(time)
+        return shown_frame(self.instant(time).drawing, self.crossed(time), pose)
 
     @abstractmethod
     def scrub(self, time: float) -> None:

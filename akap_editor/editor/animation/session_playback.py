@@ -12,6 +12,7 @@ from ..document.document import EditState
 from ..document.drawing import Drawing
 from ..session.session import Session
 from .frames import Frame
+from .loose_motion import Crossed, Instant
 from .motion import MAX_MOVE_SECONDS
 from .playback import Playback, VisibleRange
 
@@ -136,7 +137,7 @@ class SessionPlayback(Playback):
         self.visible_range.reveal(self.time)
         snapshot = self.snapshot_at(self.time)
         if self.is_playing:
-            self._session.preview(snapshot.state, snapshot.line, self.frame(self.time).pose)
+            self._session.preview(snapshot.state, snapshot.line, self._pose(self.time))
         elif snapshot.state is not self._session.state:
             self._session.preview(snapshot.state, snapshot.line)
 
@@ -169,7 +170,15 @@ class SessionPlayback(Playback):
         snapshot = self.snapshot_at(time)
         return snapshot.drawing, self._pose(time)
 
-    def frame(self, time: float) -> Frame:
+    def instant(self, time: float) -> Instant:
+        snapshot = self.snapshot_at(time)
+        return Instant(snapshot.drawing, snapshot.state, self._pose(time))
+
+    def crossed(self, time: float) -> Crossed:
+        state = self.snapshot_at(time).state
+        return Crossed(state.pins, state.positions, state.crossings)
+
+    def plain_frame(self, time: float) -> Frame:
         """The frame at a time; between two snapshots each edge rotates and grows at a constant rate.
 
         After a long pause the motion takes only its last `MAX_MOVE_SECONDS`. A pose that no step led to

@@ -15,6 +15,7 @@ from .keyframes import NO_ANIMATION, Animation
 from .named_poses import NamedPose
 from .pin import Pin, pin_points
 from .rig.joint import Joint
+from .rig.loose_parts import LooseParts
 from .rig.mirror import Mirror
 from .settings import Settings
 
@@ -28,7 +29,8 @@ class EditState:
     session, None if it never was; poses: the named ones; stiffness: factors of the faces, (m,) float64 (see
     `stiffness`), None is 1 everywhere; animation: the keyframes; crossings: which part passes in front
     where the pose overlaps itself, (s, 2) int32 upper and lower faces (see `overlap.overlaps.Overlaps`);
-    joints: between layers; mirror: its axis and pairs of pins, None until it is used.
+    joints: between layers; mirror: its axis and pairs of pins, None until it is used; loose: parts that
+    swing about the pose, None without any.
     """
 
     pins: tuple[Pin, ...]
@@ -41,6 +43,7 @@ class EditState:
     crossings: Ints = field(default_factory=no_crossings)
     joints: tuple[Joint, ...] = ()
     mirror: Mirror | None = None
+    loose: LooseParts | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positions", as_floats(self.positions, "positions"))

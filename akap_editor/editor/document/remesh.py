@@ -151,6 +151,7 @@ def transfer_state(
         ),
         crossings=map_crossings(state, positions),
         joints=_transfer_joints(state.joints, mesh, new_mesh, origins),
+        loose=None if state.loose is None else state.loose.on_faces(faces),
     )
 
 

@@ -25,6 +25,7 @@ from .edits import (
     SetJoints,
     SetKeyframe,
     SetLoop,
+    SetLoose,
     SetMirror,
     SetPins,
     SetPose,
@@ -99,6 +100,9 @@ def opening_edits(document: Document) -> list[Edit]:
     edits: list[Edit] = [SetSettings(state.settings)]
     if state.stiffness is not None:
         edits.append(SetStiffness(state.stiffness))
+    if state.loose is not None:
+        loose = state.loose
+        edits.append(SetLoose(np.flatnonzero(loose.faces), loose.speed, loose.bounce))
     if not np.array_equal(state.positions, mesh.vertices):
         edits.append(SetPose(state.positions))
     if state.joints:

@@ -44,6 +44,7 @@ from .layer_entries import (
     read_joints,
     read_layers,
 )
+from .loose_entries import describe_loose, loose_entries, read_loose
 from .pose_entries import keyframe_entries, named_pose_entries, read_keyframes, read_named_poses
 from .state_records import (
     check_crossings,
@@ -135,6 +136,7 @@ def encode_document(document: Document, more: Sequence[ArchiveEntry] = ()) -> by
         ("mesh/uv", drawing.uv.astype("<f4").tobytes(), True),
         ("pose/positions", document.state.positions.astype("<f8").tobytes(), True),
         *_stiffness_entries(document.state),
+        *loose_entries(document.state),
         *_picture_entries(drawing),
         *named_pose_entries(document.state.poses),
         *keyframe_entries(document.state.animation),
@@ -273,6 +275,7 @@ def _describe(document: Document) -> Json:
         **({"joints": [joint.to_json() for joint in state.joints]} if state.joints else {}),
         **write_crossings(document.state.crossings),
         **({"mirror": state.mirror.to_json()} if state.mirror is not None else {}),
+        **describe_loose(document.state),
     }
 
 
@@ -340,11 +343,12 @@ def _decode(archive: Archive) -> Document:
         crossings = read_crossings(record)
     stiffness = archive.read_array(STIFFNESS_ENTRY, "<f8", m, 1)[:, 0] if STIFFNESS_ENTRY in archive else None
     poses, animation = read_named_poses(archive, n), read_keyframes(archive, n)
+    loose = read_loose(archive, record, m)
     with error_context("document.json"):
         mirror = (
             Mirror.from_json(record["mirror"]).of_pins(pin.id for pin in pins) if "mirror" in record else None
         )
-    state = EditState(pins, positions, settings, None, poses, stiffness, animation, crossings, mirror=mirror)
+    state = EditState(pins, positions, settings, None, poses, stiffness, animation, crossings, mirror=mirror, loose=loose)
     vertices = archive.read_array("mesh/vertices", "<f8", n, 2)
     _check_vertices(vertices)
     faces, uv = archive.read_array("mesh/faces", "<i4", m, 3), archive.read_array("mesh/uv", "<f4", n, 2)

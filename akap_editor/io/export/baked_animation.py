@@ -7,7 +7,8 @@ import numpy as np
 
 from ...editor.animation.crossing_blend import CrossingBlend
 from ...editor.animation.keyframe_poses import KeyframePoses, animation_crossings
-from ...editor.document.crossings import depth_order, overlaps_of
+from ...editor.animation.loose_motion import AnimationFrames
+from ...editor.document.crossings import crossings_in_pose, depth_order, overlaps_of
 from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
@@ -67,9 +68,12 @@ def bake_animation(document: Document) -> BakedAnimation | None:
     collected = _Orders(document)
     times = _sample_times(document)
     poses, blend, interpolation = [], CrossingBlend(), KeyframePoses()
-    numbers = []
+    loose, numbers = AnimationFrames(document), []
     for time in times:
         pose, crossings = animation_crossings(interpolation, blend, mesh, state.pins, animation, time)
+        if (swinging := loose.pose(time)) is not None:
+            crossings = crossings_in_pose(mesh, state.pins, pose, crossings, swinging)
+            pose = swinging
         overlaps = overlaps_of(mesh, animation.pins_at(state.pins, time), pose, crossings)
         shown = interpolation.drawing(drawing, animation, time)
         numbers.append(collected.number_for(shown, overlaps, is_keyframe=time in animation.times))

@@ -17,6 +17,7 @@ from akap_editor.editor.session.edits import (
     Edit,
     KeyLayers,
     OrderLayers,
+    PaintLoose,
     Remesh,
     RenamePose,
     ReorderPoses,
@@ -43,7 +44,7 @@ from tests.support.meshers import pretend_installed
 from tests.support.puppets import puppet
 
 CASES = {**EDIT_EXAMPLES, "another method": lambda _: SetSettings(Settings.parse("arap:iterations=3"))}
-ONE_MESH = {"stiffness", "pose", "crossings"}  # edits with arrays that belong to vertices or faces
+ONE_MESH = {"stiffness", "loose", "pose", "crossings"}  # edits with arrays that belong to vertices or faces
 
 
 @pytest.fixture
@@ -61,7 +62,7 @@ def finer(drawing: Drawing, image: Picture) -> Drawing:
 
 @pytest.fixture
 def session(drawing: Drawing) -> Session:
-    """A drawing folded over itself, with two pins, two named poses and two keyframes."""
+    """A drawing folded over itself, with two pins, two named poses, two keyframes and a loose end."""
     session = Session(new_document(drawing), Ticks())
     session.begin("Add pins")
     add_pin(session, (80.0, 150.0) if drawing.layers else (20.0, 40.0))
@@ -72,6 +73,7 @@ def session(drawing: Drawing) -> Session:
     session.settle()
     session.apply(AddPose("nod off"))
     session.apply(SetKeyframe(1.0))
+    session.apply(PaintLoose([(150.0, 118.0) if drawing.layers else (105.0, 40.0)], 9.0))
     session.commit()
     assert drawing.layers or len(session.state.crossings)
     return session

@@ -46,7 +46,10 @@ class AnimationSize:
             self._content, self._measured, self._box = content, 0, None
         end = self._clock() + _SLICE
         while self._measured < len(times):
-            drawing, pose = state.timeline.playback.pose_at(times[self._measured])
+            playback, time = state.timeline.playback, times[self._measured]
+            drawing, pose = playback.pose_at(time)
+            swinging = playback.loose_pose(time)
+            pose = pose if swinging is None else swinging
             box = frame_box(drawing, [pose])
             self._box = box if self._box is None else union_of_boxes([self._box, box])
             self._measured += 1

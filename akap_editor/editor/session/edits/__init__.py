@@ -4,6 +4,7 @@ from .crossings import OrderLimb, SetCrossings
 from .edit import Edit, Effect, ReplayTarget
 from .keyframes import DeleteKeyframes, MoveKeyframes, SetEasing, SetKeyframe, SetLoop
 from .layers import KeyLayers, OrderLayers, SetJoints, SetLayers, SetLayerView, ShowGroup
+from .loose_parts import PaintLoose, SetLoose, SetSwing
 from .method import PaintStiffness, SetSettings, SetStiffness
 from .named_poses import AddPose, DeletePose, RenamePose, ReorderPoses
 from .pins import SetAngles, SetMirror, SetPins, SetScales, SetTargets
@@ -14,6 +15,7 @@ EDITS: dict[str, type[Edit]] = {
     for edit in (
         *(SetPins, SetTargets, SetAngles, SetScales, SetMirror),
         *(SetSettings, SetStiffness, PaintStiffness),
+        *(PaintLoose, SetLoose, SetSwing),
         *(SetPose, ResetPose, SetRestPose, Remesh, ReloadArtwork),
         *(OrderLimb, SetCrossings),
         *(SetLayers, OrderLayers, SetLayerView, KeyLayers, ShowGroup, SetJoints),
@@ -33,6 +35,7 @@ __all__ = [
     "MoveKeyframes",
     "OrderLayers",
     "OrderLimb",
+    "PaintLoose",
     "PaintStiffness",
     "ReloadArtwork",
     "Remesh",
@@ -48,6 +51,7 @@ __all__ = [
     "SetLayerView",
     "SetLayers",
     "SetLoop",
+    "SetLoose",
     "SetMirror",
     "SetPins",
     "SetPose",
@@ -55,6 +59,7 @@ __all__ = [
     "SetScales",
     "SetSettings",
     "SetStiffness",
+    "SetSwing",
     "SetTargets",
     "ShowGroup",
 ]
