@@ -16,7 +16,6 @@ from PIL import Image
 from ...editor.document.document import Document, EditState
 from ...editor.document.drawing import Drawing, Meshing
 from ...editor.document.rig.joint import check_joints
-from ...editor.document.rig.mirror import Mirror
 from ...errors import FileError, InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
@@ -50,6 +49,7 @@ from .state_records import (
     check_crossings,
     check_state,
     read_crossings,
+    read_mirror,
     read_pins,
     read_settings,
     write_crossings,
@@ -340,15 +340,13 @@ def _decode(archive: Archive) -> Document:
     with error_context("document.json"):
         pins = read_pins(require(record, "pins", list))
         settings = read_settings(require(record, "settings", dict))
-        crossings = read_crossings(record)
+        crossings, mirror = read_crossings(record), read_mirror(record, pins)
     stiffness = archive.read_array(STIFFNESS_ENTRY, "<f8", m, 1)[:, 0] if STIFFNESS_ENTRY in archive else None
     poses, animation = read_named_poses(archive, n), read_keyframes(archive, n)
     loose = read_loose(archive, record, m)
-    with error_context("document.json"):
-        mirror = (
-            Mirror.from_json(record["mirror"]).of_pins(pin.id for pin in pins) if "mirror" in record else None
-        )
-    state = EditState(pins, positions, settings, None, poses, stiffness, animation, crossings, mirror=mirror, loose=loose)
+    state = EditState(
+        pins, positions, settings, None, poses, stiffness, animation, crossings, mirror=mirror, loose=loose
+    )
     vertices = archive.read_array("mesh/vertices", "<f8", n, 2)
     _check_vertices(vertices)
     faces, uv = archive.read_array("mesh/faces", "<i4", m, 3), archive.read_array("mesh/uv", "<f4", n, 2)

@@ -11,6 +11,7 @@ from ...editor.document.crossings import as_crossings
 from ...editor.document.document import EditState
 from ...editor.document.named_poses import as_pose
 from ...editor.document.pin import MAX_PINS, Pin, PinDepths, as_pin_depths, check_pins
+from ...editor.document.rig.mirror import Mirror
 from ...editor.document.settings import Settings
 from ...editor.document.stiffness import as_stiffness
 from ...errors import InputError
@@ -84,6 +85,11 @@ def read_depths(record: Json) -> PinDepths:
 def write_depths(depths: PinDepths) -> Json:
     """The entry of a record for depths of pins; empty if there are none."""
     return {"depths": {str(pin): depth for pin, depth in depths}} if depths else {}
+
+
+def read_mirror(record: Json, pins: tuple[Pin, ...]) -> Mirror | None:
+    """The mirror of a record with pairs of these pins, None if absent. Raises InputError on bad values."""
+    return Mirror.from_json(record["mirror"]).of_pins(pin.id for pin in pins) if "mirror" in record else None
 
 
 def read_settings(record: Json) -> Settings:

@@ -54,7 +54,7 @@ def test_chunks_join_without_a_jump(loose: Document) -> None:
     mesh = loose.drawing.mesh
 
     def at(time: float) -> Instant:
-        return Instant(loose.drawing, loose.state, mesh.vertices + [0.0, 6 * np.sin(9 * time)])
+        return Instant(loose.drawing, loose.state, mesh.vertices + np.array([0.0, 6 * np.sin(9 * time)]))
 
     motion = LooseMotion(at)
     steps = [motion.pose(k * STEP_SECONDS) for k in range(236, 246)]
@@ -69,7 +69,7 @@ def test_the_canvas_swings_until_it_settles_and_not_after_undo(loose: Document) 
     state, mesh = loose.state, loose.drawing.mesh
     assert canvas.pose(loose.drawing, state) is state.positions
     assert not canvas.is_moving
-    moved = replace(state, positions=mesh.vertices + [0.0, 8.0])
+    moved = replace(state, positions=mesh.vertices + np.array([0.0, 8.0]))
     shown = canvas.pose(loose.drawing, moved)
     assert np.abs(shown - moved.positions).max() > 1
     assert canvas.pose(loose.drawing, moved) is shown, "no step is due yet"
