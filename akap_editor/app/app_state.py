@@ -25,6 +25,7 @@ from ..render.offscreen import OffscreenRenderer
 from ..words import tr, use_language
 from .canvas.view_options import ViewOptions
 from .jobs.background_thread import BackgroundThread, Wake, no_window
+from .jobs.engine_preparation import EnginePreparation
 from .jobs.pose_export import PoseExportQueue
 from .jobs.task import Progress, Steps, Task
 from .preferences import Preferences
@@ -53,8 +54,8 @@ class AppState:
     """What panels and dialogs show and commands change.
 
     editor: the open drawing; view: what is shown besides it; timeline: its playback; comparison: the second
-    method in the split view; remesher: makes other meshes; wake: lets the window draw a frame, threads call
-    it when they are done.
+    method in the split view; remesher: makes other meshes; engine: whether its machine code is there; wake:
+    lets the window draw a frame, threads call it when they are done.
 
     notice: text in the status bar until the next edit; error: text that must be read before anything else;
     task: the work whose progress a dialog shows; pose_exports: exports in the background; is_closing: whether
@@ -72,6 +73,7 @@ class AppState:
     timeline: Timeline = field(init=False)
     comparison: MethodComparison = field(default_factory=MethodComparison)
     remesher: BackgroundRemesh = field(init=False)
+    engine: EnginePreparation = field(default_factory=EnginePreparation)
     notice: str = ""
     error: str = ""
     task: Task | None = None

@@ -27,6 +27,7 @@ from .dialogs.replace_files import ReplaceFilesDialog, ReplaceQuestion
 from .dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
 from .jobs.artwork_watch import ArtworkWatch, artwork_path
 from .jobs.background_task import background_task
+from .jobs.engine_preparation import TEXT as PREPARATION_TEXT
 from .jobs.open_recording import ReadRecording, read_for_replay, replay_task
 from .jobs.task import Task
 
@@ -61,6 +62,18 @@ def show_document(state: AppState, document: Document) -> None:
             )
         )
     state.notice = ". ".join(notes)
+
+
+def show_when_prepared(state: AppState, document: Document) -> None:
+    """`show_document` as soon as the engine can take a document. The first start has to wait for that."""
+    if state.engine.can_open:
+        show_document(state, document)
+        return
+
+    def show(_: None) -> None:
+        show_document(state, document)
+
+    state.begin_task(background_task(tr(PREPARATION_TEXT), state.engine.wait_to_open, show, state.wake))
 
 
 def notice_changed_artwork(state: AppState) -> None:
@@ -129,7 +142,11 @@ def _begin_recording(state: AppState, path: Path) -> None:
     def begin_replay(read: ReadRecording) -> None:
         state.begin_task(replay_task(read, partial(_show_recording, state, path)))
 
-    state.begin_task(_opening_task(state, path, partial(read_for_replay, path), begin_replay))
+    def read() -> ReadRecording:
+        state.engine.wait_to_open(and_to_step=True)
+        return read_for_replay(path)
+
+    state.begin_task(_opening_task(state, path, read, begin_replay))
 
 
 def _opening_task(state: AppState, path: Path, read: Callable[[], T], show: Callable[[T], None]) -> Task:
@@ -138,7 +155,14 @@ def _opening_task(state: AppState, path: Path, read: Callable[[], T], show: Call
     def forget() -> None:
         state.preferences.remove_recent(path)
 
-    return background_task(tr("Opening {file}", file=display_name(path)), read, show, state.wake, forget)
+    def read_and_wait() -> T:
+        result = read()
+        state.engine.wait_to_open()
+        return result
+
+    return background_task(
+        tr("Opening {file}", file=display_name(path)), read_and_wait, show, state.wake, forget
+    )
 
 
 def _show_recording(state: AppState, path: Path, session: Session, playback: SessionPlayback) -> None:

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from threading import Event, Lock, Thread
+from threading import Event, Lock
 from typing import Any
 
 import glfw
@@ -45,15 +45,6 @@ SETTLE_FRAMES = 3  # ImGui needs this many frames after an event until every wid
 IDLE_SECONDS, BLINK_SECONDS = 1.0, 0.4  # the longest sleep; half the period of a text caret
 MINIMIZED_SECONDS = 0.25  # between two looks whether a minimized window can be drawn again
 NATIVE_DIALOG_SECONDS = 0.1  # between two looks at a dialog of the system, see `FileDialog.native_is_open`
-
-
-def _precompile() -> None:
-    """Load and compile the engine; in a thread, so that the window appears first."""
-    from ..deform.precompile import precompile
-    from ..overlap.precompile import precompile as precompile_overlaps
-
-    precompile()
-    precompile_overlaps()
 
 
 class Window:
@@ -144,6 +135,7 @@ class Window:
         with self._open_lock:  # a thread that is done later must not call GLFW
             self._is_open = False
         self.remember()
+        self.state.engine.close()
         self.state.pose_exports.close()
         self.state.offscreen_renderer.release()
         self.state.thumbnails.release()
@@ -160,9 +152,9 @@ class Window:
     def run(self, document: Document | None = None) -> None:
         """Show a document, and run the loop until the window is closed."""
         lost_display_handler = rescue_on_lost_display(partial(files.rescue, self.state))
-        Thread(target=_precompile, name="precompile", daemon=True).start()
+        self.state.engine.start(self.wake)
         if document is not None:
-            files.show_document(self.state, document)
+            files.show_when_prepared(self.state, document)
         try:
             with TerminationSignals(self.wake) as signals:
                 while not self.state.is_closing:
@@ -320,10 +312,12 @@ class Window:
         else:
             self._canvas.read_input(state)
             self._canvas.choose_cursor(state)
-        if state.editor.advance():
+        may_step = state.editor.is_moving and state.engine.can_step
+        if may_step and state.editor.advance():
             self._frames_due = SETTLE_FRAMES
         state.notice = state.timeline.follow() or state.notice
-        state.editor.start_next_step()
+        if may_step:
+            state.editor.start_next_step()
         draw_markers(state, self.scale)
         draw_legend(state.view, state.editor, self.scale)
         state.part(WaitingPlate).draw(state, self.scale)

@@ -6,7 +6,8 @@ from ..geometry.mesh import TriMesh
 from .akap.deformer import AkapDeformer
 from .akap.preconditioned_cholesky import MIN_HALF_VERTICES
 
-_SIDE = int(np.sqrt(MIN_HALF_VERTICES)) + 1  # vertices on a side of the larger square
+_SIDE = int(np.sqrt(MIN_HALF_VERTICES)) + 3  # of a square whose interior, too, has factors in half precision
+_SMALL_SIDE = 3  # of a square with factors in double precision; vertices on a side
 
 
 def precompile() -> None:
@@ -15,13 +16,33 @@ def precompile() -> None:
     Takes seconds on a machine's first run, and a fraction of a second later; may run in a thread of its own.
     Without it, the first steps take that time.
     """
-    for side in (3, _SIDE):  # factors in double and in half precision
-        mesh = _square(side)
-        deformer = AkapDeformer(mesh, memory=1.0)
-        deformer.set_pins(mesh.locate([[10.0, 5.0], [60.0, 70.0]]))
-        targets = [[10.0, 5.0], [62.0, 71.0]]
-        moved = deformer.step(mesh.vertices, targets).positions
-        deformer.step(moved, targets)
+    precompile_steps()
+    precompile_steps_of_small_meshes()
+
+
+def precompile_new_mesh() -> None:
+    """Compile only what a new mesh needs."""
+    AkapDeformer(_square(_SMALL_SIDE), memory=1.0)
+
+
+def precompile_steps() -> None:
+    """Compile what steps need if factors have half precision."""
+    _step_square(_SIDE)
+
+
+def precompile_steps_of_small_meshes() -> None:
+    """Compile what steps need if factors have double precision."""
+    _step_square(_SMALL_SIDE)
+
+
+def _step_square(side: int) -> None:
+    """Make two steps of a square with ``side``² vertices."""
+    mesh = _square(side)
+    deformer = AkapDeformer(mesh, memory=1.0)
+    deformer.set_pins(mesh.locate([[10.0, 5.0], [60.0, 70.0]]))
+    targets = [[10.0, 5.0], [62.0, 71.0]]
+    moved = deformer.step(mesh.vertices, targets).positions
+    deformer.step(moved, targets)
 
 
 def _square(side: int) -> TriMesh:

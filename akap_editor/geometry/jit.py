@@ -6,16 +6,23 @@ negative indices, which count from the end.
 """
 
 import platform
-from collections.abc import Callable
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 import numba
 from llvmlite import ir
 from llvmlite.binding import get_host_cpu_features
-from numba.core import types
+from numba.core import event, types
 from numba.extending import intrinsic
 
 F = TypeVar("F", bound=Callable[..., object])
+
+_FAST_SUMS = {"reassoc", "nsz", "contract"}
+_has_cache = threading.Event()
+_has_cache.set()
 
 
 def compiled(function: F) -> F:
@@ -34,16 +41,64 @@ def compiled_with_fast_sums(function: F) -> F:
     compiles it, one of its own and one in the caller that is cached; optimized apart, they may sum in other
     orders. So functions between this one and one that Python calls must be compiled like this, too.
     """
-    return _compile(function, fastmath={"reassoc", "nsz", "contract"}, forceinline=True)
+    return _compile(function, fastmath=_FAST_SUMS, forceinline=True)
+
+
+def inlined(function: F) -> F:
+    """Copy the function's body into the compiled functions that call it, before they are compiled.
+
+    For helpers that are called in one or two places: to compile them, and then their callers with another
+    copy, would double the time that the first run takes. The copies have the options of their callers. Python
+    may call the function, too; then sums may be reordered.
+    """
+    return _compile(function, fastmath=_FAST_SUMS, inline="always")
 
 
 def _compile(function: F, **options: Any) -> F:
-    options |= {"nogil": True, "error_model": "numpy"}
+    options |= {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
     try:
         machine_code: F = numba.njit(function, cache=True, **options)
     except RuntimeError:  # neither the package's folder nor the user's cache is writable
+        _has_cache.clear()
         machine_code = numba.njit(function, **options)
     return machine_code
+
+
+class NotCompiledError(Exception):
+    """A function is not in the cache on disk, and would have to be compiled."""
+
+
+@contextmanager
+def only_compiled() -> Iterator[None]:
+    """Raise NotCompiledError in the block, in this thread, instead of compiling a function."""
+    thread = threading.get_ident()
+
+    class Refusal(event.Listener):
+        def on_start(self, event: event.Event) -> None:
+            if threading.get_ident() == thread:
+                raise NotCompiledError
+
+        def on_end(self, event: event.Event) -> None:
+            pass
+
+    with event.install_listener("numba:compile", Refusal()):
+        yield
+
+
+def keeps_machine_code() -> bool:
+    """Whether there is a folder in which compiled functions are kept for other processes."""
+    return _has_cache.is_set()
+
+
+@contextmanager
+def yielding_lock(seconds: float = 5e-4) -> Iterator[None]:
+    """Let threads that compute in the block pass on Python's lock that soon, so that a window can go on."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(seconds)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(before)
 
 
 _MIN_HALF = 2.0**-14  # smallest half that is not denormal

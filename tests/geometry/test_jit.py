@@ -1,5 +1,8 @@
 """Compiled functions: the same results with and without a cache on disk; numbers kept as halves."""
 
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
 import numba
 import numpy as np
 import pytest
@@ -36,6 +39,23 @@ def test_compiled_loops_give_the_same_numbers_and_divide_by_zero_as_numpy_does()
 
 def test_loops_are_compiled_where_nothing_can_be_kept(unwritable):
     assert jit.compiled(quotients)(ABOVE, BELOW).tolist() == [0.25, -1.5, np.inf]
+
+
+def test_nothing_is_compiled_where_it_must_not_be(unwritable):
+    function = jit.compiled(quotients)
+    with jit.only_compiled(), pytest.raises(jit.NotCompiledError):
+        function(ABOVE, BELOW)
+    with jit.only_compiled(), ThreadPoolExecutor(1) as other_thread:
+        assert other_thread.submit(function, ABOVE, BELOW).result()[0] == 0.25
+    with jit.only_compiled():
+        assert function(ABOVE, BELOW)[0] == 0.25, "it is compiled by now"
+
+
+def test_threads_pass_on_the_lock_sooner_only_for_a_while():
+    before = sys.getswitchinterval()
+    with jit.yielding_lock():
+        assert sys.getswitchinterval() < before
+    assert sys.getswitchinterval() == before
 
 
 @jit.compiled
@@ -102,9 +122,10 @@ def long_sum(values, factors):
     return total
 
 
-def test_calls_are_inlined_so_that_a_first_run_sums_as_later_ones(unwritable):
+@pytest.mark.parametrize("decorate", [jit.compiled_with_fast_sums, jit.inlined])
+def test_calls_are_inlined_so_that_a_first_run_sums_as_later_ones(unwritable, decorate):
     """Otherwise a function has a copy of its own and one in its caller, optimized differently."""
-    called = jit.compiled_with_fast_sums(long_sum)
+    called = decorate(long_sum)
 
     def three_sums(values, factors):
         return called(values, factors) + 2 * called(factors, values) + 3 * called(values, values)

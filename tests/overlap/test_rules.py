@@ -123,7 +123,7 @@ def test_a_brushed_limb_passes_to_the_front_gradually(scene: tuple[Scene, Sessio
         shares.append(turned_area(mesh, session.state.positions, before[0], overlaps))
         before[0] = overlaps
 
-    played(*scene, scene[0].seeds[1], each_step)
+    played(*scene, 14, each_step)  # on this way a hand is brushed whatever the roundings are
     assert 0 < max(shares) <= SEAM_TRAVEL
 
 

@@ -1,4 +1,4 @@
-"""Starts the program of a bundle, or the child process of the meshers in it."""
+"""Starts the program of a bundle, or one of its child processes."""
 
 import sys
 
@@ -6,6 +6,10 @@ if sys.argv[1:] == ["mesher-worker"]:  # `WORKER_COMMAND` of akap_editor.meshing
     import mesher_worker  # without the package around it, which takes a second to load
 
     mesher_worker.main()
+elif sys.argv[1:2] == ["compile-engine"]:  # `COMMAND` of akap_editor.app.jobs.engine_preparation
+    from akap_editor.app.jobs.engine_preparation import compile_part
+
+    compile_part(sys.argv[2])
 else:
     from akap_editor.cli import main
 

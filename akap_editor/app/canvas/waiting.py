@@ -1,4 +1,4 @@
-"""Says on the canvas that it takes no input, because something else is going on."""
+"""Says on the canvas what it waits for."""
 
 import time
 
@@ -6,6 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ...words import tr
 from ..app_state import AppState
+from ..jobs.engine_preparation import TEXT as PREPARATION_TEXT
 from ..jobs.task import LATE_SECONDS
 from ..theme import DARK, TEXT, packed
 
@@ -19,9 +20,11 @@ class WaitingPlate:
         self._since: float | None = None
 
     def draw(self, state: AppState, scale: float) -> None:
-        """Draw one frame; while the canvas waits, the pointer over it is a barred circle."""
+        """Draw one frame; while the canvas takes no input, the pointer over it is a barred circle."""
         if not state.is_canvas_waiting:
             self._since = None
+            if state.editor.is_moving and not state.engine.can_step:
+                _draw_plate(state, tr(PREPARATION_TEXT), scale)
             return
         now = time.perf_counter()
         self._since = now if self._since is None else self._since
@@ -31,10 +34,14 @@ class WaitingPlate:
             imgui.set_mouse_cursor(imgui.MouseCursor_.not_allowed)
         if now < self._since + LATE_SECONDS or state.task is not None:  # the dialog of the task says more
             return
-        text = state.remesher.progress[1] or tr("Making the mesh")
-        size, margin = imgui.calc_text_size(text), 10 * scale
-        x, y = (left + right - size.x) / 2, top + _TOP * scale
-        draw = imgui.get_background_draw_list()
-        low, high = ImVec2(x - margin, y - margin / 2), ImVec2(x + size.x + margin, y + size.y + margin / 2)
-        draw.add_rect_filled(low, high, packed(DARK, 0.85), 5 * scale)
-        draw.add_text(ImVec2(x, y), packed(TEXT), text)
+        _draw_plate(state, state.remesher.progress[1] or tr("Making the mesh"), scale)
+
+
+def _draw_plate(state: AppState, text: str, scale: float) -> None:
+    left, top, right, _ = state.editor.canvas
+    size, margin = imgui.calc_text_size(text), 10 * scale
+    x, y = (left + right - size.x) / 2, top + _TOP * scale
+    draw = imgui.get_background_draw_list()
+    low, high = ImVec2(x - margin, y - margin / 2), ImVec2(x + size.x + margin, y + size.y + margin / 2)
+    draw.add_rect_filled(low, high, packed(DARK, 0.85), 5 * scale)
+    draw.add_text(ImVec2(x, y), packed(TEXT), text)

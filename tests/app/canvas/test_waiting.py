@@ -204,3 +204,24 @@ def test_making_a_mesh_is_cancelled_in_its_dialog_and_the_old_one_stays(pinned, 
     ui.settle()
     assert ui.document.drawing is before.drawing
     assert ui.document.state is before.state
+
+
+def test_a_drag_before_the_engine_is_prepared_says_so_and_follows_later(pinned, monkeypatch):
+    """Only the first start after installation has to wait."""
+    ui = pinned
+    engine = SimpleNamespace(can_step=False, close=lambda: None)
+    monkeypatch.setattr(ui.state, "engine", engine)
+    before, pictures = ui.session.state.positions, [ui.screenshot()]
+    drag(ui, ui.to_screen(ui.pin_position(3)))
+    ui.window.after_draw.append(lambda: pictures.append(ui.window.screenshot()))
+    ui.frame()
+    ui.window.after_draw.clear()
+    assert ui.editor.is_moving
+    assert ui.session.state.positions is before
+    left, top, right, _ = map(int, ui.editor.canvas)
+    plate = slice(top, top + 60), slice((left + right) // 2 - 40, (left + right) // 2 + 40)
+    assert (pictures[0][plate] != pictures[1][plate]).any()
+    engine.can_step = True
+    ui.settle()
+    assert ui.session.state.positions is not before
+    assert not ui.editor.is_moving
