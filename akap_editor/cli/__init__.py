@@ -130,6 +130,10 @@ def main() -> None:
         cli(prog_name="akap-editor", standalone_mode=False)
     except (AkapError, click.ClickException) as error:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
+        if "akap-stream-" in message:
+            from ..io.streams import without_stream_folders
+
+            message = without_stream_folders(message)
         click.echo(f"akap-editor: {display_text(message, keeps_lines=True)}", err=True)
         sys.exit(2)
     except click.Abort:

@@ -17,13 +17,14 @@ from ..geometry.validation import as_number
 from ..io.akap.clip import CLIP_SUFFIX, bundled_clips, bundled_pins, load_clip, save_clip
 from ..io.akap.project import PROJECT_SUFFIX, save
 from ..io.open_document import open_document
-from .options import FILE, check_suffix, make_folder_of, progress_bar
+from ..io.streams import STREAM, written_path
+from .options import FILE, INPUT, check_suffix, make_folder_of, progress_bar, say
 
 if TYPE_CHECKING:
     from click._termui_impl import ProgressBar
 
 
-@click.group("clip")
+@click.group("clip", epilog="Example: akap-editor clip apply Wave posed.akap -o waving.akap")
 def clip_group() -> None:
     """Apply a clip, a motion of named pins, to a drawing; save one; list the bundled ones."""
 
@@ -32,8 +33,8 @@ def clip_group() -> None:
     "apply", epilog="Example: akap-editor clip apply Wave posed.akap -o waving.akap --repeat 2"
 )
 @click.argument("clip")
-@click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, required=True, help="The .akap file to write.")
+@click.argument("file", type=INPUT)
+@click.option("-o", "--output", type=FILE, required=True, help="The .akap file to write; - for stdout.")
 @click.option("--at", type=float, default=0.0, metavar="SECONDS", help="Time of the first keyframe.")
 @click.option("--speed", type=float, default=1.0, metavar="FACTOR", help="2 is twice as fast.")
 @click.option("--repeat", type=int, default=1, metavar="COUNT", help="How often the clip plays.")
@@ -42,7 +43,8 @@ def apply_command(
     clip: str, file: Path, output: Path, at: float, speed: float, repeat: int, mirror: bool
 ) -> None:
     """Make keyframes of CLIP, the name of a bundled clip or a .clip.json file, for the drawing FILE."""
-    check_suffix(output, PROJECT_SUFFIX)
+    if output != STREAM:
+        check_suffix(output, PROJECT_SUFFIX)
     as_number(speed, "--speed", 0.01, 100)
     as_number(repeat, "--repeat", 1, 1000)
     as_number(at, "--at", 0, 3600)
@@ -50,10 +52,11 @@ def apply_command(
     chosen = _find_clip(clip)
     chosen = chosen.mirrored() if mirror else chosen
     document = with_clip(document, chosen, at, speed, repeat)
-    make_folder_of(output)
-    save(document, output)
+    with written_path(output, PROJECT_SUFFIX) as path:
+        make_folder_of(path)
+        save(document, path)
     count = len(document.state.animation.keyframes)
-    click.echo(f"{display_text(output)}: {count} keyframes, {document.state.animation.duration:.2f} s")
+    say(f"{display_text(output)}: {count} keyframes, {document.state.animation.duration:.2f} s", output)
 
 
 def with_clip(document: Document, clip: Clip, start: float, speed: float = 1.0, repeats: int = 1) -> Document:
@@ -95,25 +98,26 @@ def _find_clip(name: str) -> Clip:
 
 
 @clip_group.command("save", epilog="Example: akap-editor clip save walk.akap -o walk.clip.json --to 1")
-@click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, required=True, help="The .clip.json file to write.")
+@click.argument("file", type=INPUT)
+@click.option("-o", "--output", type=FILE, required=True, help="The .clip.json file to write; - for stdout.")
 @click.option("--name", help="Name of the clip; by default that of the output.")
 @click.option("--from", "start", type=float, metavar="SECONDS", help="Leave out earlier keyframes.")
 @click.option("--to", "end", type=float, metavar="SECONDS", help="Leave out later keyframes.")
 def save_command(file: Path, output: Path, name: str | None, start: float | None, end: float | None) -> None:
     """Save the motion of the named pins of FILE through its keyframes as a clip."""
-    check_suffix(output, CLIP_SUFFIX)
+    if output != STREAM:
+        check_suffix(output, CLIP_SUFFIX)
     document = open_document(file)
     animation = document.state.animation
     low, high = start or 0.0, animation.duration if end is None else end
     times = [time for time in animation.times if low <= time <= high]
-    name = name or display_text(output.name).removesuffix(CLIP_SUFFIX)
+    name = name or display_text(file.stem if output == STREAM else output.name).removesuffix(CLIP_SUFFIX)
     clip = clip_from_keyframes(name, document.drawing, document.state, animation, times)
-    make_folder_of(output)
-    save_clip(clip, output)
-    click.echo(
-        f"{display_text(output)}: {len(clip.keys)} keys of {len(clip.pins)} pins, {clip.duration:.2f} s"
-    )
+    with written_path(output, CLIP_SUFFIX) as path:
+        make_folder_of(path)
+        save_clip(clip, path)
+    facts = f"{len(clip.keys)} keys of {len(clip.pins)} pins, {clip.duration:.2f} s"
+    say(f"{display_text(output)}: {facts}", output)
 
 
 @clip_group.command("list")

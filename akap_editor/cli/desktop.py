@@ -12,7 +12,8 @@ from ..errors import FileError, InputError
 from ..io.file_thumbnail import make_thumbnail
 from ..io.images import write_png
 from ..io.outputs import same_file
-from .options import FILE
+from ..io.streams import written_path
+from .options import FILE, INPUT
 
 MAX_SIDE = 2048
 
@@ -33,7 +34,7 @@ def integrate_command(remove: bool) -> None:
 
 
 @click.command(hidden=True)
-@click.argument("file", type=FILE)
+@click.argument("file", type=INPUT)
 @click.argument("output", type=FILE)
 @click.option("--size", default=256, show_default=True, help="Longest side in pixels, at most.")
 def thumbnail(file: Path, output: Path, size: int) -> None:
@@ -43,4 +44,5 @@ def thumbnail(file: Path, output: Path, size: int) -> None:
     picture = make_thumbnail(file, size)
     if same_file(output, file):
         raise FileError("save", output, "it is the file that is read; choose another name")
-    write_png(output, picture)
+    with written_path(output, ".png") as path:
+        write_png(path, picture)

@@ -1,6 +1,7 @@
 """Exports drawings for other programs."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,11 +10,14 @@ import click
 from ..display_text import display_name, display_text
 from ..editor.framing import crop_box, output_size
 from ..errors import InputError
-from ..io.export import EXPORT_FORMATS, ExportOptions, export, format_of
+from ..io.animation.formats import ANIMATION_SUFFIXES
+from ..io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of
 from ..io.open_document import open_document, opening_notes
 from ..io.outputs import refuse_source
+from ..io.streams import STREAM, written_path
 from .options import (
     FILE,
+    INPUT,
     append_formats,
     check_threshold,
     export_options,
@@ -23,7 +27,9 @@ from .options import (
     mesher_option,
     output_files,
     overwrite_option,
+    refuse_stream_of_several,
     refuse_unnamed,
+    say,
     threshold_option,
 )
 
@@ -82,13 +88,18 @@ def export_file(
     return ExportResult(chosen.label, files, size)
 
 
-def print_results(results: list[ExportResult], as_json: bool) -> None:
-    """Print what was written: a line a file, or as JSON an object for one file and a list for several."""
+def print_results(results: list[ExportResult], as_json: bool, output: Path) -> None:
+    """Print what was written: a line a file, or as JSON an object for one file and a list for several.
+
+    output: the value of --output; on standard output there is only the file then.
+    """
+    if output == STREAM:
+        results = [replace(result, files=[STREAM]) for result in results]
     if as_json:
         facts = [result.facts for result in results]
-        click.echo(json.dumps(facts if len(facts) > 1 else facts[0], indent=2))
+        say(json.dumps(facts if len(facts) > 1 else facts[0], indent=2), output)
     else:
-        click.echo("\n".join(result.text for result in results))
+        say("\n".join(result.text for result in results), output)
 
 
 @click.command(
@@ -97,20 +108,20 @@ def print_results(results: list[ExportResult], as_json: bool) -> None:
     "Example: akap-editor export posed.akap -o cat.png --scale 2 --crop pose\n\n"
     "Example: akap-editor export *.akap -o meshes --format .glb",
 )
-@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=FILE)
+@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=INPUT)
 @click.option(
     "-o",
     "--output",
     type=FILE,
     required=True,
     help="File to write, or to replace; its ending sets the format. With --format, a folder for one file of "
-    "each FILE.",
+    "each FILE, or - for stdout.",
 )
 @click.option(
     "--format",
     "suffix",
-    type=click.Choice([each.suffix for each in EXPORT_FORMATS]),
-    help="Ending of the files in the folder.",
+    type=click.Choice([*(each.suffix for each in EXPORT_FORMATS), *ANIMATION_SUFFIXES]),
+    help="Ending of the files in the folder, or format on stdout.",
 )
 @framing_options
 @threshold_option
@@ -142,27 +153,76 @@ def export_command(
     as_json: bool,
 ) -> None:
     """Export FILE, a saved drawing or a picture, for other programs."""
-    if suffix is None and (len(files) > 1 or output.is_dir()):
-        raise InputError("--format: expected the ending of the files in the folder, got none")
-    outputs = [output] if suffix is None else output_files(files, output, suffix)
-    chosen = format_of(outputs[0])
-    if suffix is not None and chosen.suffix != suffix:
-        raise InputError(f"--format: expected {chosen.suffix}, as the output's name ends, got {suffix}")
-    given = {"--scale": scale, "--background": background, "--crop": crop}
-    for name, value in given.items():
-        if value is not None and not chosen.uses_framing:
+    if suffix is None and (len(files) > 1 or output.is_dir() or output == STREAM):
+        raise InputError("--format: expected the ending of the files in the folder, or on stdout, got none")
+    refuse_stream_of_several(files, output)
+    given = {"--scale": scale, "--crop": crop, "--rest": rest or None, "--textured": textured or None}
+    if (suffix or output.suffix.lower()) in ANIMATION_SUFFIXES:
+        _refuse_options({**given, "--z-order": z_order, "--threshold": threshold, "--mesher": mesher})
+        _export_animations(files, output, suffix, background, overwrite, as_json)
+        return
+    with written_path(output, suffix or "") as target:
+        outputs = [target] if suffix is None else output_files(files, target, suffix)
+        chosen = format_of(outputs[0])
+        if suffix is not None and chosen.suffix != suffix:
+            raise InputError(f"--format: expected {chosen.suffix}, as the output's name ends, got {suffix}")
+        _check_options(chosen, {**given, "--background": background}, z_order)
+        options = replace(export_options(scale, background, crop, rest), textured=textured, z_order=z_order)
+        refuse_unnamed(outputs, target, files, overwrite)
+        results = [
+            export_file(file, path, options, threshold, overwrite, mesher, merge_layers)
+            for file, path in zip(files, outputs, strict=True)
+        ]
+    print_results(results, as_json, output)
+
+
+def _check_options(chosen: ExportFormat, given: Mapping[str, object], z_order: bool | None) -> None:
+    """Raise InputError if an option is given that the format does not have."""
+    for name in ("--scale", "--background", "--crop"):
+        if given[name] is not None and not chosen.uses_framing:
             raise InputError(f"{name}: expected a picture or an outline as output, got {chosen.suffix}")
-    if textured and not chosen.can_be_textured:
+    if given["--textured"] and not chosen.can_be_textured:
         raise InputError(f"--textured: expected an output that ends in .svg, got {chosen.suffix}")
     if z_order is not None and chosen.z_order is None:
         raise InputError(f"--z-order: expected an output that ends in .obj or .glb, got {chosen.suffix}")
-    options = replace(export_options(scale, background, crop, rest), textured=textured, z_order=z_order)
-    refuse_unnamed(outputs, output, files, overwrite)
-    results = [
-        export_file(file, target, options, threshold, overwrite, mesher, merge_layers)
-        for file, target in zip(files, outputs, strict=True)
-    ]
-    print_results(results, as_json)
 
 
-append_formats(export_command, [(each.suffix, each.label) for each in EXPORT_FORMATS])
+def _refuse_options(given: Mapping[str, object]) -> None:
+    for name, value in given.items():
+        if value is not None:
+            raise InputError(f"{name}: expected a pose as output, got an animation; `replay` has its options")
+
+
+def _export_animations(
+    files: tuple[Path, ...],
+    output: Path,
+    suffix: str | None,
+    background: str | None,
+    overwrite: bool,
+    as_json: bool,
+) -> None:
+    """Write the keyframes of drawings as animations, as `replay` does by default."""
+    from .replay import replay_recording
+
+    with written_path(output, suffix or output.suffix) as target:
+        outputs = [target] if suffix is None else output_files(files, target, suffix)
+        refuse_unnamed(outputs, target, files, overwrite)
+        for file, path in zip(files, outputs, strict=True):
+            replay_recording(
+                file,
+                None,
+                path,
+                background=background,
+                overwrite=overwrite,
+                as_json=as_json,
+                to_stderr=output == STREAM,
+            )
+
+
+append_formats(
+    export_command,
+    [
+        *((each.suffix, each.label) for each in EXPORT_FORMATS),
+        (", ".join(ANIMATION_SUFFIXES), "the keyframes as an animation, see `replay`"),
+    ],
+)

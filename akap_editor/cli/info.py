@@ -8,11 +8,12 @@ import click
 
 from ..display_text import display_text
 from ..io.inspection import inspect
-from .options import FILE
+from ..io.streams import named_path
+from .options import INPUT
 
 
 @click.command(epilog="Example: akap-editor info posed.akap --json")
-@click.argument("file", type=FILE)
+@click.argument("file", type=INPUT)
 @click.option("--json", "as_json", is_flag=True, help="Print the facts as JSON.")
 def info(file: Path, as_json: bool) -> None:
     """Tell what FILE contains, a picture (also in layers), drawing, pose, clip, recording or mesh, and
@@ -23,7 +24,7 @@ def info(file: Path, as_json: bool) -> None:
     inspection = inspect(file)
     if as_json:
         record = {
-            "file": str(file),
+            "file": str(named_path(file)),
             "kind": inspection.kind,
             "sound": inspection.sound,
             "problems": inspection.problems,
@@ -33,7 +34,12 @@ def info(file: Path, as_json: bool) -> None:
     else:
         verdict = "sound" if inspection.sound else "not sound"
         click.echo(
-            "\n".join([f"{display_text(file)}: {inspection.kind}, {verdict}", *_fact_lines(inspection.facts)])
+            "\n".join(
+                [
+                    f"{display_text(named_path(file))}: {inspection.kind}, {verdict}",
+                    *_fact_lines(inspection.facts),
+                ]
+            )
         )
         for problem in inspection.problems:
             click.echo(f"  {display_text(problem)}")

@@ -4,7 +4,7 @@ import json
 import sys
 import time
 from collections import Counter
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from ..io.layers.open_layers import LAYER_SUFFIXES
 from ..io.mesh_files.obj_off import write_obj
 from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note, read_picture
 from ..io.outputs import refuse_replacing, refuse_source
+from ..io.streams import named_path, written_path
 from ..meshing.faint import faint_share, fitting_threshold
 from ..meshing.mesher_process import MESHER_PROCESS
 from ..meshing.meshers import check_mesher
@@ -29,10 +30,13 @@ from ..meshing.quality import mesh_quality
 from ..meshing.triangulate import MAX_VERTICES, MIN_VERTICES
 from .options import (
     FILE,
+    INPUT,
     check_threshold,
     make_folder_of,
     mesher_option,
     overwrite_option,
+    refuse_stream_of_several,
+    say,
     threshold_option,
 )
 
@@ -78,9 +82,12 @@ class MeshRow:
 
 
 @click.command(epilog="Example: akap-editor mesh drawings/*.png -o meshes --vertices 3000")
-@click.argument("pictures", type=FILE, nargs=-1, required=True, metavar="PICTURE...")
+@click.argument("pictures", type=INPUT, nargs=-1, required=True, metavar="PICTURE...")
 @click.option(
-    "-o", "--output", type=FILE, help="OBJ file to write, or to replace; for several pictures, a folder."
+    "-o",
+    "--output",
+    type=FILE,
+    help="OBJ file to write, or to replace; for several pictures, a folder; - for stdout.",
 )
 @click.option("--vertices", default=Meshing.vertices, show_default=True, help="Number of vertices.")
 @click.option(
@@ -117,9 +124,12 @@ def mesh(
     options = MeshOptions(vertices, expand, check_threshold(threshold), check_mesher(mesher))
     if len(pictures) == 1 and not pictures[0].is_dir():
         MESHER_PROCESS.start()
-        row = measure(pictures[0], output, options, mask, overwrite)
-        click.echo(json.dumps([asdict(row)], indent=2) if as_json else _describe(row))
+        with written_path(output or Path(), ".obj") as path:
+            row = measure(pictures[0], path if output else None, options, mask, overwrite)
+        row = replace(row, mesh=None if row.mesh is None else str(output))
+        say(json.dumps([asdict(row)], indent=2) if as_json else _describe(row), output)
         return
+    refuse_stream_of_several(pictures, output or Path())
     if mask is not None:
         raise InputError("--mask: expected one picture, got several")
     paths = _expand_folders(pictures)
@@ -167,7 +177,7 @@ def measure(
     faint = faint_share(alpha, meshed.mesh, threshold)
     visible = meshed.mesh.rest_areas.sum() * (1 - quality.outside) / quality.covered
     return MeshRow(
-        picture=str(picture),
+        picture=str(named_path(picture)),
         specks=meshed.specks,
         speck_share=meshed.speck_area / visible,
         cut_out=has_transparency(image),

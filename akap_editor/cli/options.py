@@ -17,6 +17,7 @@ from ..io.atomic import os_error_reason
 from ..io.export import ExportOptions
 from ..io.images import write_png
 from ..io.outputs import refuse_replacing, refuse_source
+from ..io.streams import STREAM, read_stream, stream_folder
 from ..meshing.meshers import MESHERS
 from ..resources import bundled_drawings
 
@@ -24,6 +25,24 @@ if TYPE_CHECKING:
     from click._termui_impl import ProgressBar
 
 FILE = click.Path(path_type=Path)
+
+
+class InputFile(click.Path):
+    """A file to read, as a path; - reads standard input, which is a file while the command runs."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path, allow_dash=True)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        path = super().convert(value, param, ctx)
+        if path != STREAM or ctx is None:
+            return path
+        folder = stream_folder()
+        ctx.call_on_close(folder.cleanup)
+        return read_stream(Path(folder.name))
+
+
+INPUT = InputFile()
 T = TypeVar("T")
 
 _FRAMING = (
@@ -143,6 +162,11 @@ def parse_color(text: str | None) -> Color | None:
     return red / 255, green / 255, blue / 255
 
 
+def say(text: str, output: Path | None = None) -> None:
+    """Print a result; on stderr if ``output`` is standard output, which then holds the file."""
+    click.echo(text, err=output == STREAM)
+
+
 def check_png(path: Path) -> None:
     """Raise FileError if a name does not end in .png."""
     if path.suffix.lower() != ".png":
@@ -181,6 +205,12 @@ def output_files(files: Sequence[Path], output: Path, suffix: str) -> list[Path]
             f"expected files of different names, got {count} that would become {display_text(name)}{suffix}"
         )
     return [output / f"{file.stem}{suffix}" for file in files]
+
+
+def refuse_stream_of_several(files: Sequence[Path], output: Path) -> None:
+    """Raise InputError if the results of several files are to go to standard output."""
+    if output == STREAM and len(files) > 1:
+        raise InputError(f"--output: expected a folder for the results of {len(files)} files, got -")
 
 
 def refuse_unnamed(outputs: Sequence[Path], output: Path, sources: Sequence[Path], overwrite: bool) -> None:

@@ -20,6 +20,7 @@ from ..io.akap.project import PROJECT_SUFFIX
 from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.animation.formats import (
     ANIMATION_FORMATS,
+    ANIMATION_SUFFIXES,
     MAX_PLAYS,
     Shot,
     animation_format,
@@ -30,9 +31,11 @@ from ..io.animation.formats import (
 from ..io.atomic import noted_reads
 from ..io.open_document import open_document
 from ..io.outputs import refuse_replacing, refuse_source, same_file
+from ..io.streams import STREAM, written_path
 from ..progress import listening
 from .options import (
     FILE,
+    INPUT,
     append_formats,
     check_png,
     json_option,
@@ -64,15 +67,18 @@ _FORMATS = [
     epilog="Example: akap-editor replay wave.akaprec --drawing cat.png -o wave.webp\n\n"
     "Example: akap-editor replay walk.akap -o walk.gif",
 )
-@click.argument("recording", type=FILE)
+@click.argument("recording", type=INPUT)
 @click.option(
     "-o",
     "--output",
     type=FILE,
     required=True,
-    help="File to write, or to replace, or folder/ for the frames; its ending sets the format.",
+    help="File to write, or to replace, or folder/ for the frames; its ending sets the format. - for stdout.",
 )
-@click.option("--drawing", type=FILE, help="Replay on this drawing instead of the recorded one.")
+@click.option(
+    "--format", "suffix", type=click.Choice([*ANIMATION_SUFFIXES, ".png"]), help="Format on stdout."
+)
+@click.option("--drawing", type=INPUT, help="Replay on this drawing instead of the recorded one.")
 @click.option(
     "--method", metavar="METHOD", help="Replay with another method: akap, arap, mls, ..., arap:converge, ..."
 )
@@ -115,14 +121,23 @@ _FORMATS = [
 @json_option
 @overwrite_option
 def replay_command(
-    recording: Path, output: Path, drawing: Path | None, pose: Path | None, **options: object
+    recording: Path,
+    output: Path,
+    suffix: str | None,
+    drawing: Path | None,
+    pose: Path | None,
+    **options: object,
 ) -> None:
     """Replay a recording, or the keyframes of a drawing saved as .akap, as an animation or a picture.
 
     No window is needed. Between recorded steps the drawing moves along its trajectories, so that any frame
     rate is smooth.
     """
-    replay_recording(recording, drawing, output, pose, **options)  # type: ignore[arg-type]
+    if (suffix is None) == (output == STREAM):
+        raise InputError("--format: expected the format of an output -, which is stdout, and of no other")
+    with written_path(output, suffix or "") as path:
+        options["to_stderr"] = output == STREAM
+        replay_recording(recording, drawing, path, pose, **options)  # type: ignore[arg-type]
 
 
 append_formats(replay_command, _FORMATS)
@@ -151,8 +166,12 @@ def replay_recording(
     hover: bool = False,
     overwrite: bool = False,
     as_json: bool = False,
+    to_stderr: bool = False,
 ) -> None:
-    """Do what the command does. Raises InputError before anything is written."""
+    """Do what the command does. Raises InputError before anything is written.
+
+    to_stderr: whether the result is told there, because the output goes to standard output.
+    """
     from ..render.offscreen import OffscreenRenderer
 
     _check_number("--fps", fps, 1, 120)
@@ -175,8 +194,8 @@ def replay_recording(
     refuse_replacing(output, replaced_files(output, sheet), overwrite)
     with noted_reads() as read:
         source = _open_source(path, drawing_path, method, variant, pause)
-    for written_path in filter(None, [output, pose]):
-        refuse_source(written_path, read, overwrite)
+    for written_file in filter(None, [output, pose]):
+        refuse_source(written_file, read, overwrite)
     plays = source.plays if plays is None else plays
     first, last = _range(source.duration, start, end)
     times = [last] if chosen.is_still else frame_times(first, last, fps, speed, ease)
@@ -185,7 +204,7 @@ def replay_recording(
     is_loop = plays != 1 and loops_seamlessly(frames[0], frames[-1])
     end_frame, frames = frames[-1], playing_order(frames, ping_pong, is_loop)
     make_folder_of(output)
-    written_files = [output]
+    written_files = [STREAM if to_stderr else output]
     with OffscreenRenderer() as renderer:
         shots = animation_shots(chosen, frames, renderer, size, background_color)
         with _writing_bar(shots, len(frames), chosen.encoding_share) as counted:
@@ -200,11 +219,12 @@ def replay_recording(
             written_files.append(pose)
     if as_json:
         facts = {"format": chosen.label, "frames": len(frames), "fps": fps, "plays": plays}
-        click.echo(json.dumps({**facts, "files": list(map(str, written_files))}, indent=2))
+        click.echo(json.dumps({**facts, "files": list(map(str, written_files))}, indent=2), err=to_stderr)
         return
     if pose is not None:
-        click.echo(f"Wrote {display_text(pose)}, the last pose")
-    click.echo(f"Wrote {display_text(output)}, {len(frames)} frames, {written}")
+        click.echo(f"Wrote {display_text(pose)}, the last pose", err=to_stderr)
+    name = STREAM if to_stderr else output
+    click.echo(f"Wrote {display_text(name)}, {len(frames)} frames, {written}", err=to_stderr)
 
 
 @contextmanager

@@ -29,7 +29,9 @@ class WindowLoop:
         self._polls, self._first_frame, self._most_sleeps = 0, 0, 0
         self._wait_for_wake = ui.window.wait_for_events
         patch.setattr(ui.window, "wait_for_events", self._sleep)
-        patch.setattr(ui.state.engine, "start", lambda wake: None)  # it is loaded, and steps may start at once
+        patch.setattr(
+            ui.state.engine, "start", lambda wake: None
+        )  # it is loaded, and steps may start at once
         patch.setattr(glfw, "poll_events", self._poll)
         patch.setattr(window_module, "time", SimpleNamespace(perf_counter=lambda: self.now))
 

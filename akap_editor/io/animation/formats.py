@@ -132,6 +132,12 @@ ANIMATION_FORMATS = (
 )
 
 
+# Endings of the formats that are one file and no picture.
+ANIMATION_SUFFIXES = tuple(
+    each.suffix for each in ANIMATION_FORMATS if each.suffix and not each.is_sheet and not each.is_still
+)
+
+
 def animation_format(path: str | Path, sheet: bool = False) -> AnimationFormat:
     """The format for a file name's ending; for .png the last frame, or a sprite sheet if ``sheet``.
 
