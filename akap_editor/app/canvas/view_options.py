@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ...editor.document.rig.loose_parts import LooseParts
 from ...editor.document.stiffness import MAX_STIFFNESS
 from ...editor.editor import Editor
 from ...editor.session.session import Session
@@ -26,6 +27,7 @@ Measure = Literal["area", "angle"]
 DISTORTION_SCALES: dict[Measure, Floats] = {"area": diverging(), "angle": sequential()}
 DISTORTION_RANGES = (1.1, 1.25, 1.5, 2.0, 4.0)  # ratios at the end of the scale
 STIFFNESS_COLOR = (0.62, 0.36, 1.0)
+LOOSE_COLOR, _LOOSE_LEVEL = (0.05, 0.72, 0.55), 0.7  # and how much of it covers the picture
 TRAIL_COLOR: Rgba = (0.95, 0.95, 0.95, 1.0)
 REST_POSE_OPACITY, REFERENCE_OPACITY = 0.3, 0.5
 BEFORE_TINT: Rgba = (0.34, 0.71, 0.91, 0.88)  # blue and orange, which all common color vision tells apart
@@ -76,7 +78,7 @@ class ViewOptions:
     selected_joint: int | None = None
     _arrows: VectorFieldArrows = field(default_factory=VectorFieldArrows)
     _distortion_map: tuple[Distortion, Measure, int, FaceColors] | None = None
-    _stiffness_map: tuple[Floats, FaceColors] | None = None
+    _painted_map: tuple[Floats | LooseParts, FaceColors] | None = None
 
     def set_reference(self, image: NDArray[np.uint8], path: Path | None = None) -> None:
         """Show another reference picture, (h, w, 4) uint8."""
@@ -148,7 +150,7 @@ class ViewOptions:
         return Overlays(
             mesh_lines=mesh_lines,
             rest_pose_opacity=REST_POSE_OPACITY if self.show_rest_pose else 0.0,
-            face_colors=self._stiffness_colors(editor) or self._distortion_colors(distortion),
+            face_colors=self._painted_colors(editor) or self._distortion_colors(distortion),
             lines=tuple(lines),
             reference=self.reference if self.show_reference else None,
         )
@@ -158,16 +160,19 @@ class ViewOptions:
         """Whether vector fields are being computed."""
         return self._arrows.is_computing
 
-    def _stiffness_colors(self, editor: Editor) -> FaceColors | None:
-        """Colors of the stiffness that the tool shows; one object for each stiffness."""
-        stiffness = editor.tool.shown_stiffness
-        if stiffness is None:
+    def _painted_colors(self, editor: Editor) -> FaceColors | None:
+        """Colors of the stiffness or loose parts that the tool shows; one object for each."""
+        stiffness, loose = editor.tool.shown_stiffness, editor.tool.shown_loose
+        painted = loose if stiffness is None else stiffness
+        if painted is None:
             return None
-        if self._stiffness_map is None or self._stiffness_map[0] is not stiffness:
-            levels = np.log(stiffness) / np.log(MAX_STIFFNESS)
-            colors = FaceColors(levels, np.array([STIFFNESS_COLOR, STIFFNESS_COLOR]), translucent=True)
-            self._stiffness_map = stiffness, colors
-        return self._stiffness_map[1]
+        if self._painted_map is None or self._painted_map[0] is not painted:
+            if isinstance(painted, LooseParts):
+                levels, color = np.where(painted.faces, _LOOSE_LEVEL, 0.0), LOOSE_COLOR
+            else:
+                levels, color = np.log(painted) / np.log(MAX_STIFFNESS), STIFFNESS_COLOR
+            self._painted_map = painted, FaceColors(levels, np.array([color, color]), translucent=True)
+        return self._painted_map[1]
 
     def _distortion_colors(self, distortion: Distortion | None) -> FaceColors | None:
         """Colors of the distortion map; one object for each pose, so that it is uploaded once."""

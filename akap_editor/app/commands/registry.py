@@ -9,7 +9,7 @@ from ...deform.methods import get_method
 from ...display_text import display_name
 from ...editor import gestures
 from ...editor.editor import Editor
-from ...editor.session.edits import SetStiffness
+from ...editor.session.edits import SetLoose, SetStiffness
 from ...editor.tools.base import IdleTool
 from ...editor.tools.suggested_pins import suggest_pins
 from ...resources import bundled_drawings, drawing_title
@@ -180,6 +180,10 @@ def _has_stiffness(state: AppState) -> bool:
     return state.editor.session is not None and state.editor.session.state.stiffness is not None
 
 
+def _has_loose(state: AppState) -> bool:
+    return state.editor.session is not None and state.editor.session.state.loose is not None
+
+
 UNDO = Command(
     "Undo",
     _on_editor(Editor.undo),
@@ -256,6 +260,11 @@ CLEAR_STIFFNESS = Command(
     (),
     "",
     _has_stiffness,
+)
+CLEAR_LOOSE = Command(
+    "Clear Loose Parts",
+    _on_editor(lambda editor: editor.apply(mark("Clear Loose Parts"), SetLoose(()))),
+    enabled=_has_loose,
 )
 
 # -- Help ---------------------------------------------------------------------------------------------------
@@ -347,7 +356,8 @@ MENUS: tuple[Menu, ...] = (
             *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, FINISH, None),
             *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE),
             *(ARRANGE, CommandGroup("Mirror", MIRROR), None),
-            *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS, CLEAR_STIFFNESS, None),
+            *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS),
+            *(CLEAR_STIFFNESS, CLEAR_LOOSE, None),
             PREFERENCES,
         ),
     ),

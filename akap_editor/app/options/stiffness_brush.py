@@ -1,19 +1,25 @@
 """The options of the stiffness brush, in the options bar while it is the current tool."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 from imgui_bundle import ImVec4, imgui
 
+from ...deform.follow_through import MAX_BOUNCE, MAX_SPEED, MIN_SPEED
 from ...deform.methods import get_method
 from ...editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
+from ...editor.session.edits import SetSwing
 from ...editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS
 from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
-from ..commands.registry import CLEAR_STIFFNESS, ERASE
+from ..commands.registry import CLEAR_LOOSE, CLEAR_STIFFNESS, ERASE
+from ..pending_values import PendingValues
 from ..theme import ACCENT
 from .items import Item, command_button, draw_label, text
+
+T = TypeVar("T")
 
 _SLIDER_WIDTH = 8.4  # times the font size
 
@@ -24,13 +30,59 @@ def is_shown(state: AppState) -> bool:
 
 
 def items(state: AppState) -> Sequence[Item]:
-    """Strength, size, eraser, and what removes all stiffness."""
+    """What it paints and how, its size, eraser, and what removes all that was painted."""
     assert state.document is not None
-    listed = [Item("strength", _draw_strength), Item("size", _draw_size), Item("erase", _draw_erase)]
-    listed.append(command_button(CLEAR_STIFFNESS))
+    kind, size, erase = Item("kind", _draw_kind), Item("size", _draw_size), Item("erase", _draw_erase)
+    if state.editor.brush_tool.brush.paints == "loose":
+        swing = Item("speed", _draw_speed), Item("bounce", _draw_bounce)
+        return (kind, *swing, size, erase, command_button(CLEAR_LOOSE))
+    listed = [kind, Item("strength", _draw_strength), size, erase, command_button(CLEAR_STIFFNESS)]
     if not get_method(state.document.state.settings.method).deformer.takes_stiffness:
         listed.insert(0, text("ignored", tr("The current method ignores stiffness.")))
     return listed
+
+
+def _draw_kind(state: AppState) -> None:
+    """Draw the switch between stiffness and loose parts."""
+    brush = state.editor.brush_tool.brush
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + widgets.switch_offset())
+    if widgets.radio(tr("Stiff") + "###Stiff", brush.paints == "stiff"):
+        state.editor.brush_tool.brush = replace(brush, paints="stiff")
+    widgets.show_tooltip(tr("Paint areas that bend less"))
+    imgui.same_line(0, 0.6 * imgui.get_font_size())
+    if widgets.radio(tr("Loose") + "###Loose", brush.paints == "loose"):
+        state.editor.brush_tool.brush = replace(brush, paints="loose")
+    widgets.show_tooltip(tr("Paint ears, tails or hair that swing when the drawing moves"))
+
+
+def _draw_speed(state: AppState) -> None:
+    speed, bounce = _swing(state)
+    tooltip = tr("How many times a second loose parts swing. Long hair is slow, a short ear is fast.")
+    new = _pending_slider(state, mark("Speed"), speed, (MIN_SPEED, MAX_SPEED), "%.1f Hz", tooltip)
+    if new is not None:
+        _set_swing(state, round(new, 2), bounce)
+
+
+def _draw_bounce(state: AppState) -> None:
+    speed, bounce = _swing(state)
+    tooltip = tr("How much of a swing is left for the next one. At 0 loose parts lag, but do not overshoot.")
+    new = _pending_slider(state, mark("Bounce"), 100 * bounce, (0.0, 100 * MAX_BOUNCE), "%.0f %%", tooltip)
+    if new is not None:
+        _set_swing(state, speed, round(new) / 100)
+
+
+def _swing(state: AppState) -> tuple[float, float]:
+    """Speed and bounce of the drawing's loose parts, or of those that the brush is to paint."""
+    assert state.document is not None
+    shown = state.document.state.loose or state.editor.brush_tool.brush
+    return shown.speed, shown.bounce
+
+
+def _set_swing(state: AppState, speed: float, bounce: float) -> None:
+    editor = state.editor
+    editor.brush_tool.brush = replace(editor.brush_tool.brush, speed=speed, bounce=bounce)
+    if editor.session is not None and editor.session.state.loose is not None:
+        state.run_reporting_errors(lambda: editor.apply(mark("Change Swing"), SetSwing(speed, bounce)))
 
 
 def _draw_strength(state: AppState) -> None:
@@ -54,12 +106,35 @@ def _draw_erase(state: AppState) -> None:
 
 
 def _slider(label: str, value: float, limits: tuple[float, float], text_format: str, tooltip: str) -> float:
-    """Draw a label (English) and a logarithmic slider of a fixed width; return its value."""
+    """Draw a label (English) and a logarithmic slider; return its value."""
+    flags = imgui.SliderFlags_.always_clamp | imgui.SliderFlags_.logarithmic
+    return _labeled(
+        label, tooltip, lambda: imgui.slider_float(f"##{label}", value, *limits, text_format, flags)[1]
+    )
+
+
+def _pending_slider(
+    state: AppState, label: str, value: float, limits: tuple[float, float], text_format: str, tooltip: str
+) -> float | None:
+    """Draw a label (English) and a slider; return the new value in the frame in which its edit ends."""
+    flags = imgui.SliderFlags_.always_clamp
+    return _labeled(
+        label,
+        tooltip,
+        lambda: state.part(PendingValues).edit(
+            (label, "of the brush"),
+            value,
+            lambda shown: imgui.slider_float(f"##{label}", shown, *limits, text_format, flags),
+        ),
+    )
+
+
+def _labeled(label: str, tooltip: str, draw: Callable[[], T]) -> T:
+    """Draw a label (English) and a slider of a fixed width; return what ``draw`` returns."""
     draw_label(tr(label), tooltip)
-    clamp = imgui.SliderFlags_.always_clamp | imgui.SliderFlags_.logarithmic
     imgui.set_next_item_width(_SLIDER_WIDTH * imgui.get_font_size())
     imgui.push_style_color(imgui.Col_.slider_grab, ImVec4(*ACCENT[:3], 0.45))  # the number is over it
-    _, value = imgui.slider_float(f"##{label}", value, *limits, text_format, clamp)
+    value = draw()
     imgui.pop_style_color()
     widgets.show_tooltip(tooltip)
-    return float(value)
+    return value

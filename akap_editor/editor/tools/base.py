@@ -9,6 +9,7 @@ import numpy as np
 from ...geometry.validation import Floats
 from ...words import tr
 from ..camera import Camera, Point
+from ..document.rig.loose_parts import LooseParts
 from ..events import BUTTONS, KeyEvent, PointerEvent, ScrollEvent
 from ..gestures import EditContext
 from ..pin_trails import Trails
@@ -178,6 +179,12 @@ class Tool:
         """(m,) stiffness of the faces that the canvas shows, None for none; by default the chosen tool's."""
         chosen = self.context.chosen_tool
         return None if chosen is self else chosen.shown_stiffness
+
+    @property
+    def shown_loose(self) -> LooseParts | None:
+        """The loose parts that the canvas shows, None for none; by default the chosen tool's."""
+        chosen = self.context.chosen_tool
+        return None if chosen is self else chosen.shown_loose
 
     def press(self, event: PointerEvent) -> None:
         """Handle a button that went down."""

@@ -1,18 +1,21 @@
-"""The stiffness brush: it paints areas that bend less."""
+"""The stiffness brush: it paints areas that bend less, or loose ones, which swing about the pose."""
 
 import math
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
+from ...deform.follow_through import DEFAULT_BOUNCE, DEFAULT_SPEED
 from ...geometry.mesh import MeshPoints
 from ...geometry.validation import Floats
 from ...words import mark, tr
 from ..camera import Point
 from ..document.drawing import visible_point
+from ..document.rig.loose_parts import LooseParts, painted_loose
 from ..document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS, apply_stroke, stroke_coverage
 from ..events import PointerEvent
-from ..session.edits import PaintStiffness
+from ..session.edits import PaintLoose, PaintStiffness, SetSwing
 from .base import BrushCircle, Cursor, IdleTool, Markers, Tool, ToolContext
 
 MIN_RADIUS, MAX_RADIUS = 4.0, 400.0  # points of the design
@@ -25,12 +28,16 @@ class Brush:
     """The options of the brush.
 
     radius: in points of the design, at any zoom; factor: by which painted areas are stiffer; erasing: whether
-    it removes stiffness.
+    it removes what it paints; paints: what that is; speed, bounce: of the first loose parts of a drawing, see
+    `LooseParts`.
     """
 
     radius: float = 32.0
     factor: float = 100.0
     erasing: bool = False
+    paints: Literal["stiff", "loose"] = "stiff"
+    speed: float = DEFAULT_SPEED
+    bounce: float = DEFAULT_BOUNCE
 
     @classmethod
     def within_limits(cls, radius: float, factor: float) -> "Brush":
@@ -55,6 +62,10 @@ class BrushIdle(IdleTool):
 
     @property
     def press_hint(self) -> str:
+        if self.brush.paints == "loose":
+            if self.brush.erasing:
+                return tr("Drag over loose parts so that they no longer swing, E to paint")
+            return tr("Paint ears, tails or hair that should swing, right-drag to erase")
         if self.brush.erasing:
             return tr("Drag over areas to erase their stiffness, E to paint")
         return tr(
@@ -64,6 +75,8 @@ class BrushIdle(IdleTool):
 
     @property
     def keyboard_hint(self) -> str:
+        if self.brush.paints == "loose":
+            return tr("Enter uses the brush in the circle, [ and ] change its size, arrows move it, Esc ends")
         if self.brush.erasing:
             return tr(
                 "Enter erases stiffness in the circle, [ and ] change its size, arrows move it, Esc ends"
@@ -90,7 +103,12 @@ class BrushIdle(IdleTool):
     @property
     def shown_stiffness(self) -> Floats | None:
         session = self.context.session
-        return None if session is None else session.state.stiffness
+        return None if session is None or self.brush.paints != "stiff" else session.state.stiffness
+
+    @property
+    def shown_loose(self) -> LooseParts | None:
+        session = self.context.session
+        return None if session is None or self.brush.paints != "loose" else session.state.loose
 
     def press(self, event: PointerEvent) -> None:
         if self.context.session is not None:
@@ -109,7 +127,7 @@ class Painting(Tool):
         super().__init__(context)
         session, brush = self.session, idle_tool.brush
         erases = brush.erasing or event.button == "right"
-        self._idle_tool = idle_tool
+        self._idle_tool, self._brush, self._erases = idle_tool, brush, erases
         self._button, self._last = event.button, event.position
         if event.shift and idle_tool.last_end is not None:
             self._last = context.camera.to_screen(idle_tool.last_end)
@@ -119,15 +137,19 @@ class Painting(Tool):
         self._dabs: list[Floats] = []
         self._layer: int | None = None
         self._coverage = np.zeros(len(session.drawing.mesh.faces))
-        self._stiffness = session.state.stiffness
-        session.begin(mark("Erase Stiffness") if erases else mark("Paint Stiffness"))
+        self._stiffness, self._loose = session.state.stiffness, session.state.loose
+        if self._is_loose:
+            session.begin(mark("Erase Loose Parts") if erases else mark("Paint Loose Parts"))
+        else:
+            session.begin(mark("Erase Stiffness") if erases else mark("Paint Stiffness"))
         self.move(event)
 
     @property
     def hint(self) -> str:
         """What the stroke does."""
-        erases = self._factor == MIN_STIFFNESS
-        return tr("Release to erase, Esc to cancel") if erases else tr("Release to paint, Esc to cancel")
+        return (
+            tr("Release to erase, Esc to cancel") if self._erases else tr("Release to paint, Esc to cancel")
+        )
 
     @property
     def markers(self) -> Markers:
@@ -137,7 +159,16 @@ class Painting(Tool):
     @property
     def shown_stiffness(self) -> Floats | None:
         """(m,) stiffness with the stroke so far; None is 1 everywhere."""
-        return self._stiffness
+        return None if self._is_loose else self._stiffness
+
+    @property
+    def shown_loose(self) -> LooseParts | None:
+        """The loose parts with the stroke so far."""
+        return self._loose if self._is_loose else None
+
+    @property
+    def _is_loose(self) -> bool:
+        return self._brush.paints == "loose"
 
     def move(self, event: PointerEvent) -> None:
         start, end = np.array(self._last), np.array(event.position)
@@ -150,7 +181,11 @@ class Painting(Tool):
             self._dabs += dabs
             coverage = stroke_coverage(self.session.drawing.mesh, dabs, self._radius, self._layer)
             self._coverage = np.maximum(self._coverage, coverage)
-            self._stiffness = apply_stroke(self.session.state.stiffness, self._coverage, self._factor)
+            before = self.session.state
+            if self._is_loose:
+                self._loose = painted_loose(before.loose, self._coverage, self._erases)
+            else:
+                self._stiffness = apply_stroke(before.stiffness, self._coverage, self._factor)
 
     def _at_rest(self, position: Point) -> Floats | None:
         """The point (2,) of the rest pose that is seen at a point of the screen; None outside the drawing.
@@ -175,9 +210,19 @@ class Painting(Tool):
         if event.button == self._button:
             if self._dabs:
                 self._idle_tool.last_end = self.context.camera.to_drawing(self._last)
-                self.session.apply(PaintStiffness(self._dabs, self._radius, self._factor, self._layer))
+                self._apply()
             self.session.commit()
             self.context.return_to_idle()
+
+    def _apply(self) -> None:
+        session = self.session
+        if not self._is_loose:
+            session.apply(PaintStiffness(self._dabs, self._radius, self._factor, self._layer))
+            return
+        is_first = session.state.loose is None
+        session.apply(PaintLoose(self._dabs, self._radius, self._erases, self._layer))
+        if is_first and session.state.loose is not None:
+            session.apply(SetSwing(self._brush.speed, self._brush.bounce))
 
     def cancel(self) -> None:
         self.session.abort()

@@ -25,7 +25,7 @@ from akap_editor.editor import gestures, mirroring
 from akap_editor.editor.camera import Camera
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.events import PinRequest
-from akap_editor.editor.session.edits import PaintStiffness, SetTargets
+from akap_editor.editor.session.edits import PaintLoose, PaintStiffness, SetTargets
 from akap_editor.editor.tools.stiffness_brush import Brush
 from tests.support.clipboards import FakeClipboard
 from tests.support.puppets import puppet
@@ -106,6 +106,10 @@ def with_tool(name):
 
 def stiffened(ui):
     ui.editor.apply("Paint Stiffness", PaintStiffness([(50.0, 80.0)], 30.0, 100.0))
+
+
+def loosened(ui):
+    ui.editor.apply("Paint Loose Parts", PaintLoose([(50.0, 80.0)], 30.0))
 
 
 def moved_camera(ui):
@@ -376,6 +380,7 @@ CASES = {
         with_tool("brush_tool"),
         lambda ui: ui.editor.brush_tool.brush.radius > Brush().radius,
     ),
+    "Clear Loose Parts": (loosened, lambda ui: ui.session.state.loose is None),
     "Clear Stiffness": (stiffened, lambda ui: ui.session.state.stiffness is None),
     "Hold Angle": (one_selected, lambda ui: [pin.angle is None for pin in ui.pins] == [True, False, True]),
 }

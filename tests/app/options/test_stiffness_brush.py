@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.app.commands import registry as commands
-from akap_editor.editor.session.edits import PaintStiffness
+from akap_editor.editor.session.edits import PaintLoose, PaintStiffness
 
 
 def test_the_options_of_the_brush(pinned):
@@ -42,3 +42,28 @@ def test_the_bar_leaves_the_canvas_where_it_is_and_is_never_out_of_sight(pinned)
     assert right < 1280, "the bar is as wide as the window"
     pinned.tool_button(commands.PIN_TOOL)
     assert not pinned.editor.brush_tool.brush.erasing
+
+
+def test_the_options_of_loose_parts(pinned):
+    pinned.tool_button(commands.BRUSH_TOOL)
+    pinned.do(lambda hand: hand.item_click("//Options/Loose"))
+    assert pinned.editor.brush_tool.brush.paints == "loose"
+
+    def type_into(label, text):
+        def slide(hand):
+            hand.item_input(f"//Options/##{label}")
+            hand.key_chars_replace_enter(text)
+
+        pinned.do(slide)
+
+    type_into("Speed", "2")
+    assert pinned.editor.brush_tool.brush.speed == 2.0
+    assert pinned.session.state.loose is None
+    pinned.editor.apply("Paint Loose Parts", PaintLoose([(50.0, 80.0)], 30.0))
+    type_into("Bounce", "20")
+    assert pinned.session.state.loose.bounce == 0.2
+    assert pinned.session.history.undo_label == "Change Swing"
+    pinned.do(lambda hand: hand.item_click(f"//Options/{commands.CLEAR_LOOSE.label}"))
+    assert pinned.session.state.loose is None
+    pinned.do(lambda hand: hand.item_click("//Options/Stiff"))
+    assert pinned.editor.brush_tool.brush.paints == "stiff"

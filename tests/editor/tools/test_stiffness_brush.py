@@ -209,3 +209,56 @@ def test_a_stroke_paints_the_layer_where_it_begins_and_no_other():
     assert (stiffness[layers == SKULL] == 1).all()
     *_, last = replay(driver.session.recording, drawing)
     np.testing.assert_array_equal(last.state.stiffness, stiffness)
+
+
+def loosened(d: Driver, place: tuple[float, float]) -> bool:
+    """Whether the face at a place of the rest pose is loose."""
+    loose, found = d.state.loose, d.session.drawing.mesh.find(place)
+    return loose is not None and bool(loose.faces[found.faces[0]])
+
+
+def test_a_stroke_paints_loose_parts_and_is_one_entry(pinned):
+    brush_tool = pinned.editor.brush_tool
+    brush_tool.brush = replace(brush_tool.brush, paints="loose", speed=2.0, bounce=0.3)
+    before, pose, drawing = bits(pinned.state), pinned.state.positions, pinned.session.drawing
+    stroke(pinned, (70.0, 40.0), (95.0, 40.0), release=False)
+    assert pinned.editor.tool.shown_loose.faces.any()
+    assert pinned.editor.tool.shown_stiffness is None
+    pinned.handle(PointerEvent("release", pinned.editor.camera.to_screen((95.0, 40.0))))
+    assert loosened(pinned, NECK)
+    assert not loosened(pinned, HEAD)
+    assert (pinned.state.loose.speed, pinned.state.loose.bounce) == (2.0, 0.3)
+    assert pinned.state.positions is pose
+    assert pinned.state.stiffness is None
+    assert pinned.session.history.undo_label == "Paint Loose Parts"
+    after = bits(pinned.state)
+    pinned.undo()
+    assert bits(pinned.state) == before
+    pinned.redo()
+    assert bits(pinned.state) == after
+    *_, last = replay(pinned.session.recording, drawing)
+    assert bits(last.state) == after
+
+
+def test_a_further_stroke_keeps_how_loose_parts_swing(pinned):
+    brush_tool = pinned.editor.brush_tool
+    brush_tool.brush = replace(brush_tool.brush, paints="loose", speed=2.0)
+    stroke(pinned, NECK)
+    brush_tool.brush = replace(brush_tool.brush, speed=5.0)
+    stroke(pinned, HEAD)
+    assert loosened(pinned, HEAD)
+    assert pinned.state.loose.speed == 2.0
+
+
+def test_the_right_button_erases_loose_parts_and_escape_leaves_them(pinned):
+    brush_tool = pinned.editor.brush_tool
+    brush_tool.brush = replace(brush_tool.brush, paints="loose")
+    stroke(pinned, NECK)
+    painted = bits(pinned.state)
+    stroke(pinned, NECK, release=False, button="right")
+    assert pinned.editor.tool.shown_loose is None
+    pinned.editor.tool.cancel()
+    assert bits(pinned.state) == painted
+    stroke(pinned, NECK, button="right")
+    assert pinned.state.loose is None
+    assert pinned.session.history.undo_label == "Erase Loose Parts"
