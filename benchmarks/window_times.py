@@ -29,7 +29,7 @@ from akap_editor.resources import resource
 from tests.support.running_program import RunningProgram
 from tests.support.x_server import x_server
 
-STARTS, MOVES, IDLE_SECONDS = 5, 40, 15.0
+STARTS, MOVES, IDLE_SECONDS = 5, 20, 15.0
 SIZES = (2_000, 10_000)
 LARGE = 6_000  # pixels a side
 HOLDS, GRAB = ((430, 420), (650, 420)), (540, 330)  # on the elephant's body, points of the window
