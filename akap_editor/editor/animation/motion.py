@@ -48,7 +48,7 @@ class _Segment:
     """The motion between two recorded times.
 
     Until ``start`` the frame is ``before``, then ``steps`` lead to ``after`` at ``end``. A step takes a share
-    of the time that is proportional to how far it moves. state: the one at ``end``.
+    of the time that is proportional to how far it moves. previous, state: those at ``start`` and ``end``.
     """
 
     start: float
@@ -56,7 +56,12 @@ class _Segment:
     before: Frame
     steps: tuple[_TimedStep, ...]
     after: Frame
+    previous: EditState | None
     state: EditState | None
+
+    def state_at(self, time: float) -> EditState | None:
+        """The state whose pins and loose parts count at a time: the one at the end from the motion to it on."""
+        return self.state if time > self.start or time >= self.end else self.previous
 
 
 def _state_frame(drawing: Drawing, state: EditState, pose: Floats) -> Frame:
@@ -80,7 +85,7 @@ class Motion:
         self._drawing = drawing
         self._groups = (list(group) for _, group in groupby(events, key=attrgetter("time")))
         rest = Frame(drawing, drawing.mesh.vertices)
-        self._segment = _Segment(0.0, 0.0, rest, (), rest, None)
+        self._segment = _Segment(0.0, 0.0, rest, (), rest, None, None)
         self._interpolation = InterpolationCache()
         self._swings, self._next_step = Swings(), 0
         self._swing: tuple[FollowThrough | None, SwingState | None] = None, None
@@ -102,12 +107,12 @@ class Motion:
     def _swing_to(self, time: float) -> None:
         """Let loose parts swing to the next step."""
         self._go_to(time)
-        segment = self._segment
-        if segment.state is None or segment.state.loose is None:
+        state_then = self._segment.state_at(time)
+        if state_then is None or state_then.loose is None:
             self._swing = None, None
             return
         frame = self._frame(time)
-        follow = self._swings.of(frame.drawing.mesh, segment.state)
+        follow = self._swings.of(frame.drawing.mesh, state_then)
         before, state = self._swing
         if follow is None or follow is not before or state is None:
             self._swing = follow, None if follow is None else follow.start(frame.pose)
@@ -116,7 +121,7 @@ class Motion:
 
     def _swinging(self, frame: Frame, time: float) -> Frame:
         """A frame with its loose parts where they are at its time, which is less than a step after theirs."""
-        (follow, swing), state = self._swing, self._segment.state
+        (follow, swing), state = self._swing, self._segment.state_at(time)
         if follow is None or swing is None or state is None:
             return frame
         if follow is not self._swings.of(frame.drawing.mesh, state):
@@ -133,7 +138,7 @@ class Motion:
         drawing = last.state.drawing or self._drawing
         after = _state_frame(drawing, last.state, last.state.positions)
         if drawing is not before.drawing or any(event.is_jump for event in group):
-            return _Segment(last.time, last.time, before, (), after, last.state)
+            return _Segment(last.time, last.time, before, (), after, self._segment.state, last.state)
         pose = before.pose
         moves: list[tuple[Floats, StepResult, float]] = []
         for event in group:
@@ -143,7 +148,7 @@ class Motion:
         total = sum(length for *_, length in moves)
         steps = tuple(_TimedStep(pose, step, length / total) for pose, step, length in moves if length)
         start = max(self._segment.end, last.time - MAX_MOVE_SECONDS) if steps else last.time
-        return _Segment(start, last.time, before, steps, after, last.state)
+        return _Segment(start, last.time, before, steps, after, self._segment.state, last.state)
 
     def _frame(self, time: float) -> Frame:
         segment = self._segment

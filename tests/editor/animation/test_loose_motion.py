@@ -85,6 +85,28 @@ def test_the_canvas_swings_until_it_settles_and_not_after_undo(loose: Document) 
     assert not canvas.is_moving
 
 
+def test_a_swing_goes_on_until_the_moment_at_which_a_pin_is_added(drawing) -> None:
+    """A recording has no events in the pause before it."""
+    ticks = Ticks()
+    session = Session(new_document(drawing), ticks)
+    session.begin("Drag")
+    add_pin(session, (20.0, 40.0))
+    session.apply(PaintLoose([(100.0, 40.0), (110.0, 40.0)], 20.0))
+    session.apply(SetTargets({1: (20.0, 70.0)}))
+    session.settle()
+    session.commit()
+    end = session.recording.duration
+    ticks.now += 2.0
+    add_pin(session, (40.0, 40.0))
+    recording, times = session.recording, end + np.arange(0.05, 0.3, 0.05)
+    plain = session.state.positions
+    lags = [
+        np.abs(frame.pose - plain).max()
+        for frame in Motion(drawing, replay(recording, drawing)).frames(times)
+    ]
+    assert min(lags) > 0.02
+
+
 def test_a_recording_is_replayed_with_its_loose_parts(drawing) -> None:
     session = Session(new_document(drawing), Ticks())
     session.begin("Drag")
