@@ -3,7 +3,7 @@
 Run from the project's root: python tools/make_recordings.py
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.edits import SetTargets
+from akap_editor.editor.tools.stiffness_brush import Brush
 from akap_editor.io.akap.recording import write_recording
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
@@ -43,6 +44,18 @@ class ScriptedPointer:
         assert pin is not None
         self.pause(0.1)
         return pin
+
+    def paint_loose(self, points: Sequence[tuple[float, float]], radius: float, speed: float) -> None:
+        """Paint a stroke of loose parts through points of the drawing, where ``radius`` is in pixels, too."""
+        editor, to_screen = self.editor, self.editor.camera.to_screen
+        brush = Brush(radius * editor.camera.zoom, paints="loose", speed=speed)
+        editor.chosen_tool, editor.brush_tool.brush = editor.brush_tool, brush
+        editor.handle_event(PointerEvent("press", to_screen(points[0])))
+        for point in points[1:]:
+            editor.handle_event(PointerEvent("move", to_screen(point)))
+        editor.handle_event(PointerEvent("release", to_screen(points[-1])))
+        editor.chosen_tool = editor.pins_tool
+        self.pause(0.1)
 
     def drag(self, pin: int, curve: Curve, seconds: float) -> None:
         """Drag a pin; ``curve(t)``, t from 0 to 1, is its offset from where it is now."""
@@ -96,17 +109,26 @@ def swing(dx: float, dy: float, times: int) -> Curve:
 
 
 def elephant() -> ScriptedPointer:
-    """Fix the elephant's feet; swing its trunk, wag its tail, nod its head, lift its trunk over the head."""
+    """Fix the elephant's feet; swing its trunk, wag its tail, shake and nod its head, lift its trunk.
+
+    Its ear, its tail and the hair on its head are loose.
+    """
     pointer = ScriptedPointer("elephant")
+    hair = [(500, 75), (545, 95), (565, 60), (605, 70), (570, 115)]
+    ear = [(430, 330), (480, 330), (430, 400), (490, 400), (430, 460), (470, 520)]
+    for stroke, radius in ((hair, 40), (ear, 75), ([(50, 240), (50, 290), (65, 335)], 60)):
+        pointer.paint_loose(stroke, radius, 3.0)
     for foot in ((135, 800), (285, 795), (445, 795), (625, 800)):
         pointer.add_pin(*foot)
     pointer.add_pin(260, 420)
     trunk = pointer.add_pin(915, 180)
     pointer.drag(trunk, line(30, 170), 1.0)
     pointer.drag(trunk, swing(60, 70, 2), 1.2)
-    tail = pointer.add_pin(65, 290)
-    pointer.drag(tail, swing(70, -30, 2), 1.2)
+    tail = pointer.add_pin(85, 370)
+    pointer.drag(tail, swing(18, -8, 2), 1.2)
+    pointer.pause(0.6)
     head = pointer.add_pin(560, 170)
+    pointer.drag(head, swing(50, 15, 2), 1.0)
     pointer.drag(head, line(40, 60), 0.7)
     pointer.drag(head, line(-70, -75), 0.8)
     pointer.drag(trunk, line(-310, -270), 1.5)
@@ -158,14 +180,25 @@ def rearing() -> ScriptedPointer:
 
 
 def alien() -> ScriptedPointer:
-    """Fix the alien's feet; throw up its hands, lean its head, bend an antenna."""
+    """Fix the alien's feet; throw up its hands, shake and lean its head, bend an antenna.
+
+    Its antennae are loose.
+    """
     pointer = ScriptedPointer("alien")
+    for antenna_points in (
+        [(285, 122), (345, 135), (370, 165)],
+        [(627, 85), (570, 120), (555, 160)],
+    ):
+        pointer.paint_loose(antenna_points, 65, 2.5)
     for point in ((390, 925), (670, 925), (515, 700)):
         pointer.add_pin(*point)
     left, right = pointer.add_pin(110, 660), pointer.add_pin(880, 430)
-    head, antenna = pointer.add_pin(500, 260), pointer.add_pin(655, 60)
+    head = pointer.add_pin(500, 260)
     pointer.drag(left, lambda t: (-60 * np.sin(np.pi * t) + 20 * t, -330 * ease(t)), 1.2)
     pointer.drag(right, lambda t: (70 * np.sin(np.pi * t) - 20 * t, 330 * ease(t)), 1.2)
+    pointer.drag(head, swing(90, 0, 2), 1.2)
+    pointer.pause(1.2)
+    antenna = pointer.add_pin(640, 70)
     pointer.drag(head, line(-60, 25), 0.8)
     pointer.drag(antenna, line(120, 120), 1.0)
     return pointer
