@@ -60,7 +60,7 @@ class _Segment:
     state: EditState | None
 
     def state_at(self, time: float) -> EditState | None:
-        """The state whose pins and loose parts count at a time: the one at the end from the motion to it on."""
+        """The state whose pins and loose parts count: that at the end once the motion to it has begun."""
         return self.state if time > self.start or time >= self.end else self.previous
 
 
