@@ -196,11 +196,11 @@ def alien() -> ScriptedPointer:
     head = pointer.add_pin(500, 260)
     pointer.drag(left, lambda t: (-60 * np.sin(np.pi * t) + 20 * t, -330 * ease(t)), 1.2)
     pointer.drag(right, lambda t: (70 * np.sin(np.pi * t) - 20 * t, 330 * ease(t)), 1.2)
-    pointer.drag(head, swing(90, 0, 2), 1.2)
+    pointer.drag(head, swing(45, 0, 2), 1.2)
     pointer.pause(1.2)
     antenna = pointer.add_pin(640, 70)
     pointer.drag(head, line(-60, 25), 0.8)
-    pointer.drag(antenna, line(120, 120), 1.0)
+    pointer.drag(antenna, line(90, 100), 1.0)
     return pointer
 
 
