@@ -6,8 +6,9 @@ from .words import mark, tr
 
 _TITLES = (
     *(mark("Alien"), mark("Bar"), mark("Cat"), mark("Elephant"), mark("Gingerbread")),
-    *(mark("Raptor"), mark("Rope")),
+    *(mark("Raptor"), mark("Robot"), mark("Rope")),
 )
+PUPPET_SUFFIX = ".ora"  # of drawings in layers
 _PACKAGE = Path(__file__).resolve().parent
 
 
@@ -27,6 +28,16 @@ def resource(*parts: str) -> Path:
 def bundled_drawings() -> list[Path]:
     """The paths of the bundled drawings, PNG files, in alphabetical order."""
     return sorted(resource("assets", "drawings").glob("*.png"))
+
+
+def bundled_puppets() -> list[Path]:
+    """The paths of the bundled puppets, OpenRaster files with layers, in alphabetical order."""
+    return sorted(resource("assets", "drawings").glob(f"*{PUPPET_SUFFIX}"))
+
+
+def bundled_files() -> list[Path]:
+    """The paths of all bundled drawings and puppets, in alphabetical order of their names."""
+    return sorted([*bundled_drawings(), *bundled_puppets()], key=lambda path: path.stem)
 
 
 def drawing_title(path: Path) -> str:

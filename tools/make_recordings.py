@@ -4,19 +4,22 @@ Run from the project's root: python tools/make_recordings.py
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
-from akap_editor.editor.document.drawing import make_drawing
+from akap_editor.editor.document.drawing import Drawing, make_drawing
+from akap_editor.editor.document.rig.suggestion import suggest_joints
 from akap_editor.editor.editor import Editor
 from akap_editor.editor.events import PointerEvent
 from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.tools.stiffness_brush import Brush
 from akap_editor.io.akap.recording import write_recording
 from akap_editor.io.images import read_image
+from akap_editor.io.layers.open_layers import open_layers
 from akap_editor.resources import resource
 
 MOVES_PER_SECOND = 30
@@ -29,6 +32,14 @@ class ScriptedPointer:
     def __init__(self, name: str) -> None:
         self.now = 0.0
         self.editor = Editor(clock=lambda: self.now)
+        self.puppet: Drawing | None = None
+        path = resource("assets", "drawings") / f"{name}.ora"
+        if path.exists():
+            self.puppet = make_drawing(layers=open_layers(path), name=name)
+            document = new_document(self.puppet)
+            joints = tuple(replace(joint, is_proposed=False) for joint in suggest_joints(self.puppet))
+            self.editor.open(document.with_state(replace(document.state, joints=joints)))
+            return
         image = read_image(resource("assets", "drawings", f"{name}.png"))
         self.editor.open(new_document(make_drawing(image, name=name)))
 
@@ -55,6 +66,13 @@ class ScriptedPointer:
             editor.handle_event(PointerEvent("move", to_screen(point)))
         editor.handle_event(PointerEvent("release", to_screen(points[-1])))
         editor.chosen_tool = editor.pins_tool
+        self.pause(0.1)
+
+    def show(self, layer: str) -> None:
+        """Show a layer in place of the others of its slot."""
+        assert self.puppet is not None
+        number = [each.name for each in self.puppet.layers].index(layer)
+        gestures.set_layers(self.editor, "Switch Layer", [number], visible=True)
         self.pause(0.1)
 
     def drag(self, pin: int, curve: Curve, seconds: float) -> None:
@@ -87,7 +105,7 @@ class ScriptedPointer:
     def save(self, path: Path) -> None:
         """Write the recording of the session."""
         assert self.editor.session is not None
-        write_recording(self.editor.session.recording, path)
+        write_recording(self.editor.session.recording, path, self.puppet)
 
 
 def ease(t: float) -> float:
@@ -249,8 +267,29 @@ def rope() -> ScriptedPointer:
     return pointer
 
 
+def robot() -> ScriptedPointer:
+    """Fix the robot's feet; let it wave, pass its arm behind its back, talk, nod, and lift the other arm."""
+    pointer = ScriptedPointer("robot")
+    for point in ((396, 880), (604, 880), (500, 690)):
+        pointer.add_pin(*point)
+    head = pointer.add_pin(420, 160)
+    left, right = pointer.add_pin(846, 390), pointer.add_pin(160, 766)
+    pointer.drag(left, swing(60, 0, 2), 1.2)
+    pointer.show("mouth open")
+    pointer.drag(left, lambda t: (-300 * ease(t), 250 * ease(t) + 60 * np.sin(np.pi * t)), 1.4)
+    pointer.show("mouth round")
+    pointer.drag(head, line(60, 20), 0.8)
+    pointer.show("mouth sad")
+    pointer.drag(left, lambda t: (300 * ease(t), -250 * ease(t) + 60 * np.sin(np.pi * t)), 1.2)
+    pointer.show("mouth smile")
+    pointer.drag(right, lambda t: (-30 * ease(t) - 60 * np.sin(np.pi * t), -430 * ease(t)), 1.3)
+    pointer.drag(head, line(-90, 10), 0.8)
+    pointer.drag(right, swing(50, 20, 2), 1.0)
+    return pointer
+
+
 if __name__ == "__main__":
-    for record in (elephant, rearing, bar, alien, cat, gingerbread, raptor, rope):
+    for record in (elephant, rearing, bar, alien, cat, gingerbread, raptor, robot, rope):
         path = resource("assets", "recordings") / f"{record.__name__}.akaprec"
         record().save(path)
         print(path)

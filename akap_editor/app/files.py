@@ -19,7 +19,7 @@ from ..io.atomic import resolved
 from ..io.images import has_transparency, is_animation
 from ..io.layers.open_layers import LAYER_SUFFIXES
 from ..io.open_document import MESH_SUFFIXES, PICTURE_SUFFIXES, open_document, opening_notes
-from ..resources import bundled_drawings
+from ..resources import bundled_files
 from ..words import tr
 from .app_state import AppState, error_message
 from .dialogs.file_dialog import FileDialog, FileRequest
@@ -181,7 +181,7 @@ def _show_recording(state: AppState, path: Path, session: Session, playback: Ses
 def remember_file(state: AppState, path: Path) -> None:
     """Start the next file dialog in this file's folder, and list the file among the recent ones."""
     state.folder = resolved(path).parent
-    if resolved(path) not in map(resolved, bundled_drawings()):
+    if resolved(path) not in map(resolved, bundled_files()):
         state.preferences.add_recent(path)
         state.save_preferences()  # now, so that it survives a crash
 

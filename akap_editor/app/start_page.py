@@ -14,7 +14,8 @@ from ..display_text import display_name, display_text
 from ..editor.animation.clips.clip import Clip
 from ..io.akap.clip import clips_for
 from ..io.images import Picture, read_image
-from ..resources import bundled_drawings, drawing_title
+from ..io.layers.ora import ora_thumbnail
+from ..resources import PUPPET_SUFFIX, bundled_files, drawing_title
 from ..words import tr
 from . import files, widgets
 from .app_state import AppState
@@ -67,9 +68,9 @@ def draw(state: AppState, scale: float, pixels_per_point: float) -> None:
 
 def _draw_bundled(state: AppState, scale: float, column: float, pixels_per_point: float) -> None:
     """Draw a row of buttons that open the bundled drawings, each with its thumbnail and name."""
-    paths = bundled_drawings()
+    paths = bundled_files()
     gap = _GAP * scale
-    side = round((column - gap * (len(paths) - 1)) / len(paths))
+    side = int((column - gap * (len(paths) - 1)) / len(paths))
     for path in paths:
         imgui.begin_group()
         _draw_button(state, path, side, scale, pixels_per_point)
@@ -148,7 +149,7 @@ def _draw_clip_button(state: AppState, path: Path, clip: Clip, corner: ImVec2, s
 
 def _scaled_picture(path: Path, pixels: int) -> Picture:
     """The picture file, at most ``pixels`` a side."""
-    picture = Image.fromarray(read_image(path))
+    picture = Image.fromarray(ora_thumbnail(path) if path.suffix == PUPPET_SUFFIX else read_image(path))
     picture.thumbnail((pixels, pixels), Image.Resampling.LANCZOS)
     return np.asarray(picture)
 

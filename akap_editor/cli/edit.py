@@ -13,7 +13,7 @@ from ..io.akap.autosave import Autosave
 from ..io.akap.recording import RECORDING_SUFFIX
 from ..io.open_document import open_document
 from ..io.outputs import unused_path
-from ..resources import bundled_drawings, resource
+from ..resources import bundled_files, resource
 from ..words import use_language
 from . import replay
 from .options import FILE, bundled, check_threshold, merge_layers_option, mesher_option, threshold_option
@@ -27,7 +27,7 @@ OUTPUT_FOLDER = Path("out")
 
 def _complete(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """Complete the name of a bundled drawing in the shell."""
-    return [path.stem for path in bundled_drawings() if path.stem.startswith(incomplete)]
+    return [path.stem for path in bundled_files() if path.stem.startswith(incomplete)]
 
 
 @click.command(epilog="Example: akap-editor edit cat.png")

@@ -19,7 +19,7 @@ from ..io.images import write_png
 from ..io.outputs import refuse_replacing, refuse_source
 from ..io.streams import STREAM, read_stream, stream_folder
 from ..meshing.meshers import MESHERS
-from ..resources import bundled_drawings
+from ..resources import bundled_files
 
 if TYPE_CHECKING:
     from click._termui_impl import ProgressBar
@@ -144,7 +144,7 @@ def append_formats(command: click.Command, formats: Sequence[tuple[str, str]]) -
 
 def bundled(name: str) -> Path:
     """The picture file of a bundled drawing. Raises InputError, which lists their names."""
-    names = {path.stem: path for path in bundled_drawings()}
+    names = {path.stem: path for path in bundled_files()}
     if name not in names:
         raise InputError(f"expected the name of a bundled drawing ({', '.join(names)}), got {name!r}")
     return names[name]

@@ -80,7 +80,8 @@ def written_path(output: Path, suffix: str) -> Iterator[Path]:
         if written != [path.name]:
             raise InputError(
                 tr(
-                    "--output: expected a name for {suffix}, which has several files, got - for standard output",
+                    "--output: expected a name for {suffix}, which has several files, "
+                    "got - for standard output",
                     suffix=suffix,
                 )
             )

@@ -4,6 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from .drawing_layer import DrawingLayer
+from .layered_picture import Layer
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,25 @@ def view_with_one_shown(view: LayerView, layers: Sequence[DrawingLayer]) -> Laye
     """A view in which at most one layer of each slot of ``layers`` is visible."""
     seen = [replace(layer, visible=on) for layer, on in zip(layers, view.visible, strict=True)]
     return replace(view, visible=tuple(layer.visible for layer in with_one_shown(seen, view.order)))
+
+
+def group_slots(layers: Sequence[Layer]) -> list[str]:
+    """The slot of each layer of a picture that was just opened, empty for none.
+
+    Artists draw mouths in one group, of which one is visible: a group without further ones inside, of two
+    layers or more of which exactly one is visible, is a slot of its name.
+    """
+    members: dict[int, list[int]] = {}
+    inner = {id(group) for layer in layers for group in layer.groups[:-1]}
+    for number, layer in enumerate(layers):
+        if layer.groups and id(layer.groups[-1]) not in inner:
+            members.setdefault(id(layer.groups[-1]), []).append(number)
+    slots = [""] * len(layers)
+    for numbers in members.values():
+        if len(numbers) > 1 and sum(layers[number].visible for number in numbers) == 1:
+            for number in numbers:
+                slots[number] = layers[number].groups[-1].name
+    return slots
 
 
 def slot_members(layers: Sequence[DrawingLayer]) -> dict[str, list[int]]:

@@ -7,6 +7,7 @@ from akap_editor.errors import InputError
 from akap_editor.io.akap.project import load, save
 from akap_editor.io.images import write_png
 from akap_editor.io.open_document import open_document, opening_notes
+from akap_editor.resources import bundled_puppets
 
 
 def written(path, *boxes):
@@ -73,3 +74,23 @@ def test_nothing_is_said_of_a_sharp_picture(tmp_path):
 def test_a_threshold_needs_a_picture(tmp_path):
     with pytest.raises(InputError, match=r"threshold: expected a picture to cut out, got a\.akap"):
         open_document(tmp_path / "a.akap", threshold=0.2)
+
+
+def test_the_bundled_puppet_opens_with_mouths_to_switch_and_joints():
+    (path,) = bundled_puppets()
+    document = open_document(path)
+    mouths = [layer for layer in document.drawing.layers if layer.slot == "mouth"]
+    assert [layer.name for layer in mouths if layer.visible] == ["mouth smile"]
+    assert len(mouths) == 4
+    limbs = {
+        document.drawing.layers[joint.layers(document.drawing.mesh)[0]].name
+        for joint in document.state.joints
+    }
+    assert limbs >= {
+        "arm upper left",
+        "arm lower left",
+        "arm upper right",
+        "arm lower right",
+        "head",
+        "antenna",
+    }

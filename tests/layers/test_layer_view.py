@@ -2,17 +2,20 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from akap_editor.errors import InputError
 from akap_editor.layers.drawing_layer import shown_layers
 from akap_editor.layers.layer_view import (
     LayerView,
+    group_slots,
     slot_members,
     unused_slot_name,
     view_with_one_shown,
     with_one_shown,
 )
+from akap_editor.layers.layered_picture import Layer, LayerGroup
 from tests.support.puppets import ARM, BODY, EYES, HAT, SKULL, puppet
 
 ORDER = (BODY, ARM, SKULL, EYES, HAT)
@@ -67,3 +70,20 @@ def test_a_closed_group_hides_its_layers_and_their_eyes_stay():
     assert layers[SKULL].visible
     with pytest.raises(InputError, match="closed_groups: expected indices of 0 groups"):
         replace(layers[BODY], closed_groups=(0,))
+
+
+def test_a_group_of_which_one_layer_is_visible_is_a_slot():
+    picture = np.full((2, 2, 4), 255, np.uint8)
+    outer = LayerGroup("head")
+    mouths, eyes, hats = (LayerGroup(name) for name in ("mouths", "eyes", "hats"))
+    layers = [
+        Layer("skull", picture, groups=(outer,)),
+        Layer("ear", picture, groups=(outer,), visible=False),
+        Layer("smile", picture, groups=(outer, mouths)),
+        Layer("sad", picture, groups=(outer, mouths), visible=False),
+        Layer("left", picture, groups=(outer, eyes)),
+        Layer("right", picture, groups=(outer, eyes)),
+        Layer("cap", picture, groups=(hats,)),
+        Layer("sun", picture),
+    ]
+    assert group_slots(layers) == ["", "", "mouths", "mouths", "", "", "", ""]

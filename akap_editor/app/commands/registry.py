@@ -12,7 +12,7 @@ from ...editor.editor import Editor
 from ...editor.session.edits import SetLoose, SetStiffness
 from ...editor.tools.base import IdleTool
 from ...editor.tools.suggested_pins import suggest_pins
-from ...resources import bundled_drawings, drawing_title
+from ...resources import bundled_files, drawing_title
 from ...words import mark, mark_in, tr
 from .. import file_commands, files
 from ..app_state import AppState
@@ -70,7 +70,7 @@ OPEN_RECENT = Submenu(
     "Open Recent", lambda state: [(display_name(path), path) for path in state.preferences.recent]
 )
 OPEN_BUNDLED = Submenu(
-    "Open Bundled Drawing", lambda state: [(drawing_title(path), path) for path in bundled_drawings()]
+    "Open Bundled Drawing", lambda state: [(drawing_title(path), path) for path in bundled_files()]
 )
 CUT_OUT = Command("Cut Out with Mask...", file_commands.choose_mask, (), "", file_commands.can_mask)
 RELOAD = Command("Reload Artwork", file_commands.reload_artwork, (Key.f5,), "", file_commands.can_reload)

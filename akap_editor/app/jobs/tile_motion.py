@@ -16,7 +16,7 @@ from ...editor.session.replay import replay
 from ...errors import AkapError
 from ...io.akap.recording import read_recording
 from ...io.images import read_image
-from ...resources import resource
+from ...resources import PUPPET_SUFFIX, resource
 from .background_thread import BackgroundThread, Wake
 
 VERTICES, FRAMES_PER_SECOND = 300, 24
@@ -38,7 +38,12 @@ class TileMotion:
 
 
 def recorded_motion(path: Path) -> TileMotion:
-    """The motion of the recording that is bundled with a drawing; none if there is no recording."""
+    """The motion of the recording that is bundled with a drawing; none if there is none, or for a puppet.
+
+    A puppet's recording belongs to its own fine mesh, whose replay takes too long for a tile.
+    """
+    if path.suffix == PUPPET_SUFFIX:
+        return TileMotion(())
     try:
         recording = read_recording(resource("assets", "recordings", f"{path.stem}.akaprec"))
     except (FileNotFoundError, AkapError):

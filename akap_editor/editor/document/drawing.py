@@ -13,7 +13,7 @@ from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.validation import Floats, Ints, as_channel, as_instance, as_picture, as_points, freeze
 from ...layers.atlas import pack
 from ...layers.drawing_layer import Artwork, DrawingLayer
-from ...layers.layer_view import LayerView
+from ...layers.layer_view import LayerView, group_slots
 from ...layers.layered_picture import Layer, LayeredPicture
 from ...layers.merging import movable_layers
 from ...meshing.background import remove_background
@@ -260,8 +260,9 @@ def mesh_layered_drawing(layered: LayeredPicture, meshing: Meshing, name: str) -
             layer.opacity,
             layer.blend,
             layer.visible,
+            slot=slot,
         )
-        for layer, artwork in zip(movable, artworks, strict=True)
+        for layer, artwork, slot in zip(movable, artworks, group_slots(movable), strict=True)
     )
     return _mesh_artworks(texture, layers, tuple(range(len(layers))), layered.size, meshing, name)
 

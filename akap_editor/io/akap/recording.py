@@ -9,7 +9,7 @@ from ...editor.document.drawing import Drawing, make_drawing
 from ...editor.session.recording import Recording, mesh_digest, parse_recording
 from ...errors import InputError, file_errors
 from ...meshing.meshers import TRIANGLE, nearest_mesher
-from ...resources import bundled_drawings
+from ...resources import bundled_files
 from ...words import mark, tr
 from ..atomic import read_file, write_atomic
 from ..images import read_image
@@ -88,7 +88,7 @@ def drawing_inside(header: dict[str, Any]) -> bytes:
 
 def bundled_drawing(header: dict[str, Any]) -> Path:
     """The path of the bundled drawing that the header of a recording names. Raises InputError."""
-    bundled = {path.stem: path for path in bundled_drawings()}
+    bundled = {path.stem: path for path in bundled_files()}
     name = header.get("name")
     if name not in list(bundled):
         raise InputError(

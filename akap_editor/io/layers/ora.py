@@ -5,16 +5,18 @@ https://www.openraster.org: a zip archive of PNG pictures and of stack.xml, whic
 
 from dataclasses import dataclass, field
 from io import BytesIO
+from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
-from ...errors import InputError, error_context
+from ...errors import InputError, error_context, file_errors
 from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
 from ...progress import announce
 from ...words import mark, tr
 from ..akap.archive import Archive
-from ..images import decode_image
+from ..atomic import read_file
+from ..images import Picture, decode_image
 from .limits import MAX_DEPTH, LayerBudget, check_size, quoted
 
 ORA_MIMETYPE = b"image/openraster"
@@ -33,6 +35,16 @@ _BLEND_MODES = {
 def decode_ora(file: BytesIO) -> LayeredPicture:
     """The layers in an OpenRaster file. Raises InputError."""
     return _OraReader(file.getvalue()).read()
+
+
+def ora_thumbnail(path: Path) -> Picture:
+    """The small picture in an OpenRaster file, (h, w, 4) uint8, at most 256 pixels a side.
+
+    Raises FileError.
+    """
+    with file_errors("open", path):
+        archive = Archive(read_file(path, "an OpenRaster file"), mark("an OpenRaster file"))
+        return decode_image(archive.read("Thumbnails/thumbnail.png", MAX_LAYER_BYTES), ("PNG",))
 
 
 @dataclass

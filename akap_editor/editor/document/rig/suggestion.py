@@ -195,7 +195,8 @@ def _joint_place(raster: _Covers, limb: int, carrier: int) -> Floats:
     along = (x - center[0]) * away[0] + (y - center[1]) * away[1]
     length = np.sqrt(np.linalg.eigvalsh(np.cov(x, y)).max()) / depth.max() if len(x) > 2 else 0.0
     if length > 0.9:
-        score = np.minimum(depth[y, x], 0.75 * depth.max()) + 0.05 * along
+        across = np.hypot(x - center[0], y - center[1])  # decides only where the others are equal
+        score = np.minimum(depth[y, x], 0.75 * depth.max()) + 0.05 * along - 0.01 * across
     else:
         score = depth[y, x] - 0.05 * np.hypot(x - center[0], y - center[1])
     best = int(score.argmax())
