@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.jit import compiled, inlined
+from ..geometry.jit import compiled
 from ..geometry.validation import Floats, Ints
 
 _DIRECTIONS = 4  # of the lines that are tried as a cut; even, so that each has a perpendicular one
@@ -41,7 +41,7 @@ def dissect(points: Floats, edges: Ints, smallest: int = 10) -> Dissection:
     return Dissection(*_dissect(sorted_vertices, edges.astype(np.int32), smallest))
 
 
-@inlined
+@compiled
 def _neighbors(n: int, edges: Ints) -> tuple[Ints, Ints]:
     """The neighbors of all vertices in one array (2e,), and where those of each vertex start, (n + 1,)."""
     starts = np.zeros(n + 1, dtype=np.int32)
@@ -119,7 +119,7 @@ def _dissect(lists: Ints, edges: Ints, smallest: int) -> tuple[Ints, Ints]:
     return order, starts[: count + 1].copy()
 
 
-@inlined
+@compiled
 def _best_cut(
     lists: Ints, region: Ints, number: int, rank: Ints, neighbor_starts: Ints, neighbors: Ints
 ) -> tuple[int, int, bool]:
@@ -162,7 +162,7 @@ def _best_cut(
     return best_direction, best_cut, from_lower
 
 
-@inlined
+@compiled
 def _mark_parts(
     vertices: Ints,
     cut: int,
@@ -187,7 +187,7 @@ def _mark_parts(
                     break
 
 
-@inlined
+@compiled
 def _split(lists: Ints, part: Ints) -> tuple[int, int]:
     """Reorder each list by ``part``, stably; returns the numbers of vertices in parts 0 and 1."""
     size = lists.shape[1]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.jit import compiled, inlined
+from ..geometry.jit import compiled
 from ..geometry.validation import Indices, Ints
 
 
@@ -87,7 +87,7 @@ def _analyze(
     return row_starts, front_rows, parents, run_starts, runs, entries
 
 
-@inlined
+@compiled
 def _find_rows(width: int, starts: Ints, column_starts: Ints, rows: Ints) -> tuple[Ints, Ints, Ints]:
     """The later vertices of each front, and its parent: the front of the first of them, -1 if there is
     none."""
@@ -130,7 +130,7 @@ def _find_rows(width: int, starts: Ints, column_starts: Ints, rows: Ints) -> tup
     return row_starts, result[:end].copy(), parents
 
 
-@inlined
+@compiled
 def _sort(values: Ints) -> None:
     """Sort in place, by Shell's method: numba's own sort takes a second to compile."""
     for gap in (1750, 701, 301, 132, 57, 23, 10, 4, 1):  # Ciura's sequence
@@ -142,7 +142,7 @@ def _sort(values: Ints) -> None:
             values[at] = value
 
 
-@inlined
+@compiled
 def _find_places(
     width: int,
     starts: Ints,

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..geometry.jit import compiled_with_fast_sums, inlined, packed, unpacked
+from ..geometry.jit import compiled, compiled_with_fast_sums, packed, unpacked
 from ..geometry.validation import Complexes, Floats, Indices, Ints
 from .fronts import Fronts
 
@@ -32,7 +32,7 @@ _ROUNDING = 1e-13  # share of the first correction below which a further one is 
 _DEPENDENT = 1e-11  # share of its energy below which what a further basis vector adds is rounding
 
 
-@compiled_with_fast_sums
+@compiled
 def factorize(
     fronts: Fronts, nonzeros: Floats, factor: Any, front: Any, stack: Any, min_pivot: float
 ) -> bool:
@@ -69,7 +69,7 @@ def factorize(
     return True
 
 
-@inlined
+@compiled
 def _add_update(front: Any, size: int, update: Any, runs: Ints) -> None:
     """Add a child's packed update to a front with ``size`` rows; runs: (q, 3) of the child."""
     start = 0
@@ -88,7 +88,7 @@ def _add_update(front: Any, size: int, update: Any, runs: Ints) -> None:
             start += length - i
 
 
-@inlined
+@compiled_with_fast_sums
 def _eliminate(front: Any, size: int, own: int, min_pivot: float) -> bool:
     """Eliminate the first ``own`` rows of the upper triangle of a front with ``size`` rows, in place.
 
@@ -122,7 +122,7 @@ def _eliminate(front: Any, size: int, own: int, min_pivot: float) -> bool:
     return True
 
 
-@inlined
+@compiled_with_fast_sums
 def _subtract_panel(front: Any, size: int, k: int) -> None:
     """Subtract from the rows below a panel of eight rows, which starts at row ``k``, its outer products."""
     for i in range(k + _PANEL, size):
@@ -167,7 +167,7 @@ def solve(fronts: Fronts, factor: Any, x: Any, front: Any) -> None:
             x[begin + k] = front[k]
 
 
-@inlined
+@compiled_with_fast_sums
 def _forward(rows: Any, own: int, size: int, x: Any) -> None:
     """Solve with the transposed rows of a front, four at a time; x: (size,) the front's values."""
     at = k = 0
@@ -197,7 +197,7 @@ def _forward(rows: Any, own: int, size: int, x: Any) -> None:
             at, k = at + length, k + 1
 
 
-@inlined
+@compiled_with_fast_sums
 def _backward(rows: Any, own: int, size: int, x: Any) -> None:
     """Solve with the rows of a front, which end with ``rows``, the last ones first; x: (size,) its values."""
     at, k = len(rows), own
@@ -259,7 +259,7 @@ class Preconditioner(NamedTuple):  # numba's caches on disk refer to this name
     front: Any
 
 
-@inlined
+@compiled_with_fast_sums
 def dot(a: Complexes, b: Complexes) -> float:
     """Re aᴴ b of two vectors (n,). BLAS would use threads, which wait for one another on a busy machine."""
     total = 0.0
@@ -268,7 +268,7 @@ def dot(a: Complexes, b: Complexes) -> float:
     return total
 
 
-@inlined
+@compiled_with_fast_sums
 def multiply(matrix: Matrix, values: Complexes, result: Complexes) -> None:
     """Set ``result`` (n,) to A x for x = ``values`` (n,)."""
     starts, vertices, nonzeros = matrix
@@ -291,7 +291,7 @@ def multiply(matrix: Matrix, values: Complexes, result: Complexes) -> None:
         result[j] += complex(real, imaginary)
 
 
-@inlined
+@compiled_with_fast_sums
 def precondition(preconditioner: Preconditioner, right: Complexes, result: Complexes) -> float:
     """Set ``result`` (n,) to R A₀⁻¹ Rᵀ b for b = ``right`` (n,); returns its largest absolute value."""
     rotation, x = preconditioner.rotation, preconditioner.x
@@ -309,13 +309,14 @@ def precondition(preconditioner: Preconditioner, right: Complexes, result: Compl
     return np.sqrt(largest)
 
 
-@compiled_with_fast_sums
+@compiled
 def iterate(
     preconditioner: Preconditioner,
     matrix: Matrix,
     right: Complexes,
     frame: Complexes,
     earlier: Complexes,
+    known: int,
     tolerance: float,
     trusted_contraction: float,
     min_solves: int,
@@ -325,9 +326,9 @@ def iterate(
     """Solve A x = b by preconditioned conjugate gradients, in one call without Python's lock.
 
     right: b (n,); solution: (n,) receives x.
-    frame: (n,) unit complex numbers; earlier: (2, n), the last two solutions times conj(frame) of their pose,
-    the last one first, zeros without. Iterations start from the best combination of these; the solution is
-    put before them.
+    frame: (n,) unit complex numbers; earlier: (2, n), of which the first ``known`` are earlier solutions
+    times conj(frame) of their pose, the last one first. Iterations start from the best combination of these;
+    the solution is put before them.
     trusted_contraction: the share of an error that a solve is trusted to leave, at most 1. Iterations end
     with the first correction that leaves an error within the ``tolerance`` at every vertex, after at least
     ``min_solves`` of them or as soon as corrections are rounding.
@@ -339,7 +340,7 @@ def iterate(
     residual, correction, image = right.copy(), np.empty_like(right), np.empty_like(right)
     direction = np.zeros_like(right)
     solution[:] = 0
-    _project_on_earlier(matrix, frame, earlier, residual, solution)
+    _project_on_earlier(matrix, frame, earlier, known, residual, solution)
     previous, first, last = np.inf, 0.0, 0.0
     for count in range(1, max_solves + 1):
         last = precondition(preconditioner, residual, correction)
@@ -365,9 +366,9 @@ def iterate(
     return 0, first, last
 
 
-@inlined
+@compiled_with_fast_sums
 def _project_on_earlier(
-    matrix: Matrix, frame: Complexes, earlier: Complexes, residual: Complexes, solution: Complexes
+    matrix: Matrix, frame: Complexes, earlier: Complexes, known: int, residual: Complexes, solution: Complexes
 ) -> None:
     """Add to ``solution`` the combination of earlier ones with the least error in the energy norm.
 
@@ -375,33 +376,38 @@ def _project_on_earlier(
     techniques for iterative solution of Ax = b with successive right-hand sides".
     """
     n = len(residual)
+    if known == 0:
+        return
     first, second = np.empty_like(residual), np.empty_like(residual)
     first_image, second_image = np.empty_like(residual), np.empty_like(residual)
     for k in range(n):
         first[k], second[k] = frame[k] * earlier[0, k], frame[k] * earlier[1, k]
-    _multiply_pair(matrix, first, second, first_image, second_image)
-    energy = mixed_energy = second_energy = slope = second_slope = 0.0
-    for k in range(n):
-        a, b, r, image = first[k], second[k], residual[k], first_image[k]
-        energy += a.real * image.real + a.imag * image.imag
-        mixed_energy += b.real * image.real + b.imag * image.imag
-        second_energy += b.real * second_image[k].real + b.imag * second_image[k].imag
-        slope += a.real * r.real + a.imag * r.imag
-        second_slope += b.real * r.real + b.imag * r.imag
+    if known == 1:
+        multiply(matrix, first, first_image)
+    else:
+        _multiply_pair(matrix, first, second, first_image, second_image)
+    energy = dot(first, first_image)
     if not energy > 0:
         return
-    overlap = mixed_energy / energy  # of the second solution with the first, and the energy of the rest
-    rest_energy = second_energy - overlap * mixed_energy
-    second_share = 0.0
-    if rest_energy > _DEPENDENT * second_energy:
-        second_share = (second_slope - overlap * slope) / rest_energy
-    share = slope / energy - overlap * second_share
+    share = dot(first, residual) / energy
     for k in range(n):
-        solution[k] += share * first[k] + second_share * second[k]
-        residual[k] -= share * first_image[k] + second_share * second_image[k]
+        solution[k] += share * first[k]
+        residual[k] -= share * first_image[k]
+    if known == 1:
+        return
+    before, share = dot(second, second_image), dot(first_image, second) / energy
+    for k in range(n):  # make the second one orthogonal to the first
+        second[k] -= share * first[k]
+        second_image[k] -= share * first_image[k]
+    energy = dot(second, second_image)
+    if energy > _DEPENDENT * before:
+        share = dot(second, residual) / energy
+        for k in range(n):
+            solution[k] += share * second[k]
+            residual[k] -= share * second_image[k]
 
 
-@inlined
+@compiled_with_fast_sums
 def _multiply_pair(
     matrix: Matrix, values: Complexes, others: Complexes, result: Complexes, other_result: Complexes
 ) -> None:

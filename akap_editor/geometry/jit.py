@@ -44,18 +44,8 @@ def compiled_with_fast_sums(function: F) -> F:
     return _compile(function, fastmath=_FAST_SUMS, forceinline=True)
 
 
-def inlined(function: F) -> F:
-    """Copy the function's body into the compiled functions that call it, before they are compiled.
-
-    For helpers that are called in one or two places: to compile them, and then their callers with another
-    copy, would double the time that the first run takes. The copies have the options of their callers. Python
-    may call the function, too; then sums may be reordered.
-    """
-    return _compile(function, fastmath=_FAST_SUMS, inline="always")
-
-
 def _compile(function: F, **options: Any) -> F:
-    options |= {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+    options |= {"nogil": True, "error_model": "numpy"}
     try:
         machine_code: F = numba.njit(function, cache=True, **options)
     except RuntimeError:  # neither the package's folder nor the user's cache is writable

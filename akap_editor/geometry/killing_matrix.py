@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .jit import compiled, inlined
+from .jit import compiled
 from .mesh import TriMesh
 from .validation import Complexes, Floats, Indices, Ints
 
@@ -146,7 +146,7 @@ def _add_faces(
             a, b, c = b, c, a
 
 
-@inlined
+@compiled
 def add_face(result: Floats, f: int, corners: Indices, matrix: Floats, slots: Slots) -> None:
     """Add the matrix of face ``f`` to the nonzeros (z,).
 

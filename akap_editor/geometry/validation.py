@@ -160,7 +160,7 @@ def as_channel(value: Any, name: str) -> NDArray[np.uint8]:
     return channel
 
 
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
+def read_only(array: Floats) -> Floats:
     """A view of an array that cannot be written to.
 
     Compiled functions have a version for arrays that can and one for those that cannot; each is compiled.

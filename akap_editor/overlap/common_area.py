@@ -37,12 +37,9 @@ def common_areas(pose: Floats, faces: Ints, first: Ints, second: Ints) -> Floats
                     clipped[size, 0], clipped[size, 1] = ax + t * (bx - ax), ay + t * (by - ay)
                     size += 1
             count = size
-            for j in range(count):  # slices take numba two seconds to compile
-                shape[j, 0], shape[j, 1] = clipped[j, 0], clipped[j, 1]
-        area = 0.0
+            shape[:count] = clipped[:count]
         for j in range(1, count - 1):
             ax, ay = shape[j, 0] - shape[0, 0], shape[j, 1] - shape[0, 1]
             bx, by = shape[j + 1, 0] - shape[0, 0], shape[j + 1, 1] - shape[0, 1]
-            area += 0.5 * (ax * by - ay * bx)
-        areas[i] = max(area, 0.0)
-    return areas
+            areas[i] += 0.5 * (ax * by - ay * bx)
+    return np.maximum(areas, 0.0)

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.jit import compiled, inlined
+from ..geometry.jit import compiled
 from ..geometry.validation import Floats, Ints, read_only
-from .seeds import longer, overlap_seeds
+from .seeds import overlap_seeds
 from .topology import Topology
 
 MAX_PAIRS_PER_FACE = 30  # a pose with more is crumpled beyond any order; two sheets have about eight
@@ -79,7 +79,7 @@ def pair_index(first: int, second: int, seconds: Ints, heads: Ints, starts: Ints
     return -1
 
 
-@inlined
+@compiled
 def stretch_inside(
     px: float,
     py: float,
@@ -168,7 +168,9 @@ def _flood(pose: Floats, faces: Ints, neighbors: Ints, seeds: Ints, capacity: in
             blocks += 1
             starts[blocks] = size
             if depth + 3 * (size - begin) > len(stack):
-                stack = longer(stack, 2 * (depth + 3 * (size - begin)))
+                larger = np.empty((2 * (depth + 3 * (size - begin)), 2), dtype=np.int32)
+                larger[:depth] = stack[:depth]
+                stack = larger
             depth = _cross_edges(
                 f, begin, size, corners, neighbors, second, heads, starts, links, crossed, stack, depth
             )
@@ -184,7 +186,7 @@ def _flood(pose: Floats, faces: Ints, neighbors: Ints, seeds: Ints, capacity: in
     )
 
 
-@inlined
+@compiled
 def _face_corners(pose: Floats, faces: Ints) -> Floats:
     """The corners of each face side by side, (m, 6): x and y of the first one, and so on."""
     corners = np.empty((len(faces), 6))
@@ -194,7 +196,7 @@ def _face_corners(pose: Floats, faces: Ints) -> Floats:
     return corners
 
 
-@inlined
+@compiled
 def _fill_block(  # type: ignore[no-untyped-def]
     f: int,
     g: int,
@@ -262,7 +264,7 @@ def _fill_block(  # type: ignore[no-untyped-def]
     return size, is_exchanged
 
 
-@inlined
+@compiled
 def _cross_edges(  # type: ignore[no-untyped-def]
     f: int,
     begin: int,

@@ -5,7 +5,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import breadth_first_order, maximum_flow
 
 from ..geometry.jit import compiled
-from ..geometry.validation import Floats, Ints, read_only
+from ..geometry.validation import Floats, Ints
 from .common_area import common_areas
 from .face_pairs import FacePairs, pair_index, stretch_inside
 from .topology import Topology
@@ -215,7 +215,6 @@ def cut_signs(
     of a pair that comes out otherwise, in pixels of a seam; hidden: (p,) whether a third sheet covers a pair.
     A least cut (Boykov and Jolly 2001) among the pairs that are at most ``steps`` from a seam.
     """
-    pose = read_only(pose)
     arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
     is_exchanged = bool(pairs.exchanged[pairs.regions[members[0]]])
     band = seam_pairs(members, signs, *arrays, steps, is_exchanged)

@@ -84,8 +84,7 @@ def _branch_areas(distances: Floats, parents: Ints, sizes: Floats, room: float) 
     while 1 << height < n:
         height += 1
     ancestors = np.empty((height + 1, n), dtype=np.int64)  # 2^k generations up
-    for v in range(n):
-        ancestors[0, v] = parents[v]
+    ancestors[0] = parents
     for k in range(height):
         for v in range(n):
             ancestors[k + 1, v] = ancestors[k, ancestors[k, v]]

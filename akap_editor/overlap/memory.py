@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..geometry.jit import compiled
-from ..geometry.validation import Floats, Ints, freeze, read_only
+from ..geometry.validation import Floats, Ints, freeze
 from .circles import low_and_high
 from .common_area import common_areas
 from .face_pairs import FacePairs, pair_index
@@ -95,7 +95,9 @@ def deciding_pairs(
     where they serve. The same object as ``before`` if nothing changed.
     """
     arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
-    indices, sides = find_pairs(pairs, before)
+    indices, sides = find_pairs(
+        before[:, 0], before[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
+    )
     valid = (indices >= 0) & (signs[indices] == sides)
     ends = np.searchsorted(pairs.regions, np.arange(pairs.region_count + 1))
     chosen = []
@@ -128,7 +130,9 @@ def recalled_signs(topology: Topology, pairs: FacePairs, crossings: Ints) -> tup
     signs = np.zeros(len(pairs), dtype=np.int8)
     ages = np.full(pairs.region_count, len(crossings), dtype=np.int64)
     arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
-    indices, sides = find_pairs(pairs, crossings)
+    indices, sides = find_pairs(
+        crossings[:, 0], crossings[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
+    )
     for row in range(len(crossings) - 1, -1, -1):
         if indices[row] >= 0:
             signs[indices[row]] = sides[row]
@@ -139,20 +143,13 @@ def recalled_signs(topology: Topology, pairs: FacePairs, crossings: Ints) -> tup
     return signs, ages
 
 
-def find_pairs(pairs: FacePairs, rows: Ints) -> tuple[Ints, Ints]:
-    """Indices (s,) of the pairs ``rows`` (s, 2) in either order, −1 for none; 1 if in this order, or −1."""
-    indices, signs = np.full(len(rows), -1, dtype=np.int64), np.ones(len(rows), dtype=np.int8)
-    rows = read_only(np.ascontiguousarray(rows, dtype=np.int32))
-    _find_pairs(rows, pairs.second, pairs.heads, pairs.starts, pairs.links, indices, signs)
-    return indices, signs
-
-
 @compiled
-def _find_pairs(
-    rows: Ints, seconds: Ints, heads: Ints, starts: Ints, links: Ints, indices: Ints, signs: Ints
-) -> None:
-    for i in range(len(rows)):
-        indices[i] = pair_index(rows[i, 0], rows[i, 1], seconds, heads, starts, links)
+def find_pairs(first: Ints, second: Ints, seconds: Ints, heads: Ints, starts: Ints, links: Ints):  # type: ignore[no-untyped-def]
+    """Indices (s,) of pairs in either order, −1 for none, and whether they are in this order, 1 or −1."""
+    indices, signs = np.full(len(first), -1, dtype=np.int64), np.ones(len(first), dtype=np.int8)
+    for i in range(len(first)):
+        indices[i] = pair_index(first[i], second[i], seconds, heads, starts, links)
         if indices[i] < 0:
-            indices[i] = pair_index(rows[i, 1], rows[i, 0], seconds, heads, starts, links)
+            indices[i] = pair_index(second[i], first[i], seconds, heads, starts, links)
             signs[i] = -1
+    return indices, signs

@@ -109,8 +109,7 @@ def _block_values(
     graph.data[:] = 1.0
     sizes = np.bincount(blocks[members] - first_block, minlength=count)
     means: Floats = np.bincount(blocks[members] - first_block, signs[members], count) / sizes
-    band, smoothed = _straightened(graph.indptr, graph.indices, means)
-    values = smoothed[band]
+    band, values = _straightened(graph.indptr, graph.indices, means)
     labels = connected_components(graph[band][:, band], directed=False)[1]
     faces = pairs.first[pairs.starts[band + first_block]]
     corners = mesh.faces[faces]
@@ -127,7 +126,7 @@ def _block_values(
 
 @compiled
 def _straightened(starts: Ints, neighbors: Ints, means: Floats):  # type: ignore[no-untyped-def]
-    """The blocks near a change of sign, (b,), and the mean signs of all, (n,), smoothed in these blocks.
+    """The blocks near a change of sign, (b,), and their mean signs smoothed between blocks, (b,).
 
     starts, neighbors: the graph of blocks by rows; means: (n,) mean sign of each block.
     """
@@ -149,23 +148,18 @@ def _straightened(starts: Ints, neighbors: Ints, means: Floats):  # type: ignore
                 distance[neighbors[j]] = distance[i] + 1
                 queue[size] = neighbors[j]
                 size += 1
-    band, size = np.empty(size, dtype=np.int64), 0
-    for i in range(len(means)):
-        if distance[i] >= 0:
-            band[size] = i
-            size += 1
+    band = np.sort(queue[:size])
     values, smoothed = means.copy(), means.copy()
     for _ in range(_ROUNDS):
-        for b in band:
-            total, is_inner = 0.0, starts[b + 1] > starts[b]
-            for j in range(starts[b], starts[b + 1]):
+        for i in band:
+            total, is_inner = 0.0, starts[i + 1] > starts[i]
+            for j in range(starts[i], starts[i + 1]):
                 is_inner &= distance[neighbors[j]] >= 0
                 total += values[neighbors[j]]
             if is_inner:
-                smoothed[b] = 0.25 * values[b] + 0.75 * total / (starts[b + 1] - starts[b])
-        for b in band:
-            values[b] = smoothed[b]
-    return band, values
+                smoothed[i] = 0.25 * values[i] + 0.75 * total / (starts[i + 1] - starts[i])
+        values[band] = smoothed[band]
+    return band, values[band]
 
 
 @compiled

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..geometry.jit import compiled, inlined
+from ..geometry.jit import compiled
 from ..geometry.validation import Floats, Ints
 from .common_area import common_areas
 from .topology import Topology
@@ -19,8 +19,7 @@ def overlap_seeds(topology: Topology, pose: Floats) -> Ints:
     wholly inside another one. Faces of different layers do not count: the order of the layers decides there.
     """
     t = topology
-    order = np.argsort(pose[t.rim, 0].min(axis=1), kind="stable")
-    seeds = _rim_crossings(pose, t.rim, order, t.rim_faces, t.layers)
+    seeds = _rim_crossings(pose, t.rim, t.rim_faces, t.layers)
     wound = _wound_vertices(pose, t.faces, t.rim_faces, t.rim_previous, t.fans, t.fan_edges)
     if len(wound):
         seeds = np.concatenate([seeds, wound])
@@ -36,29 +35,18 @@ def overlap_seeds(topology: Topology, pose: Floats) -> Ints:
     return seeds
 
 
-@inlined
-def longer(rows: Ints, length: int) -> Ints:
-    """A copy of ``rows`` (s, 2) with room for more, (length, 2); numba takes long to compile slices."""
-    result = np.empty((length, 2), dtype=np.int32)
-    for i in range(len(rows)):
-        result[i, 0], result[i, 1] = rows[i, 0], rows[i, 1]
-    return result
-
-
 @compiled
-def _rim_crossings(pose: Floats, rim: Ints, order: Ints, rim_faces: Ints, layers: Ints) -> Ints:
-    """Faces of rim edges that cross, (s, 2): edges in the ``order`` of their left ends, swept to the right.
-
-    It is sorted outside: numba takes a second to compile a sort.
-    """
+def _rim_crossings(pose: Floats, rim: Ints, rim_faces: Ints, layers: Ints) -> Ints:
+    """Faces of rim edges that cross, (s, 2): edges sorted by their left ends, swept from left to right."""
     count = len(rim)
     left, right = np.empty(count), np.empty(count)
     low, high = np.empty(count), np.empty(count)
-    for i in range(count):
-        p, q = rim[order[i], 0], rim[order[i], 1]
-        px, py, qx, qy = pose[p, 0], pose[p, 1], pose[q, 0], pose[q, 1]
-        left[i], right[i] = min(px, qx), max(px, qx)
-        low[i], high[i] = min(py, qy), max(py, qy)
+    for e in range(count):
+        px, py, qx, qy = pose[rim[e, 0], 0], pose[rim[e, 0], 1], pose[rim[e, 1], 0], pose[rim[e, 1], 1]
+        left[e], right[e] = min(px, qx), max(px, qx)
+        low[e], high[e] = min(py, qy), max(py, qy)
+    order = np.argsort(left)
+    left, right, low, high = left[order], right[order], low[order], high[order]
     found, size = np.empty((64, 2), dtype=np.int32), 0
     for i in range(count):
         for j in range(i + 1, count):
@@ -80,7 +68,9 @@ def _rim_crossings(pose: Floats, rim: Ints, order: Ints, rim_faces: Ints, layers
             d = (sx - rx) * (qy - ry) - (sy - ry) * (qx - rx)
             if (a > 0) != (b > 0) and (c > 0) != (d > 0):
                 if size == len(found):
-                    found = longer(found, 2 * size)
+                    larger = np.empty((2 * size, 2), dtype=np.int32)
+                    larger[:size] = found
+                    found = larger
                 found[size, 0], found[size, 1] = rim_faces[e], rim_faces[g]
                 size += 1
     return found[:size]
@@ -98,12 +88,11 @@ def _wound_vertices(
         ux, uy = pose[u, 0] - pose[o, 0], pose[u, 1] - pose[o, 1]
         vx, vy = pose[v, 0] - pose[o, 0], pose[v, 1] - pose[o, 1]
         angle[fan_edges[i]] += np.arctan2(abs(ux * vy - uy * vx), ux * vx + uy * vy)
-    found, size = np.empty((len(angle), 2), dtype=np.int32), 0
-    for e in range(len(angle)):
-        if angle[e] > _FULL_TURN:
-            found[size, 0], found[size, 1] = rim_faces[e], rim_faces[rim_previous[e]]
-            size += 1
-    return found[:size]
+    wound = np.flatnonzero(angle > _FULL_TURN)
+    found = np.empty((len(wound), 2), dtype=np.int32)
+    for i in range(len(wound)):
+        found[i, 0], found[i, 1] = rim_faces[wound[i]], rim_faces[rim_previous[wound[i]]]
+    return found
 
 
 @compiled
@@ -141,7 +130,9 @@ def _enclosed_loops(
             )
             if inside:
                 if size == len(found):
-                    found = longer(found, 2 * size)
+                    larger = np.empty((2 * size, 2), dtype=np.int32)
+                    larger[:size] = found
+                    found = larger
                 found[size, 0], found[size, 1] = rim_faces[e], f
                 size += 1
     return found[:size]

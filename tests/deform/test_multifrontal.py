@@ -107,13 +107,11 @@ def test_iterations_reach_double_precision(known, precision):
     rotation = np.exp(0.4j)
     pose = rotation * (1.2 * case.mesh.vertices[:, 0] + 1j * case.mesh.vertices[:, 1])
     nonzeros, frame = case.nonzeros_at(pose), np.full(n, rotation)
-    right, earlier = random_values(n), np.zeros((2, n), dtype=complex)
-    for k in range(known):
-        earlier[k] = random_values(n, 1 + k)
+    right, earlier = random_values(n), np.stack([random_values(n, 1), random_values(n, 2)])
     before = earlier.copy()
     solution = np.empty(n, dtype=complex)
     count, first, last = iterate(
-        factors.preconditioner(frame), case.matrix(nonzeros), right, frame, earlier, 1e-12, 1.0, 1,
+        factors.preconditioner(frame), case.matrix(nonzeros), right, frame, earlier, known, 1e-12, 1.0, 1,
         60, solution,
     )  # fmt: skip
     expected = splu(case.sparse(nonzeros)).solve(right.view(np.float64)).view(complex)

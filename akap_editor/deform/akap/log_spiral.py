@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...geometry.jit import compiled, inlined
+from ...geometry.jit import compiled
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Complexes, Floats, Indices
 
@@ -76,7 +76,7 @@ def _follow(
     return sums
 
 
-@inlined
+@compiled
 def _spiral_factors(x: Floats, y: Floats, count: int, real: Floats, imaginary: Floats) -> None:
     """Set ``real`` and ``imaginary`` to φ of the first ``count`` rates x + i y; at most a block.
 

@@ -62,7 +62,9 @@ class PreconditionedCholesky:
         self._job: _FactorizationThread | None = None
         self._frame = self._rotation = self._factorized_frame = np.ones(n, np.complex128)
         self._poses_to_wait = 0
-        self._earlier_solutions: dict[str, Complexes] = {}  # as `iterate` takes them
+        self._earlier_solutions: dict[
+            str, tuple[Complexes, int]
+        ] = {}  # and how many, as `iterate` takes them
         self._has_factors = self._is_exact = False  # of some pose; of the current one
         self._wasted_iterations, self._contraction = 0.0, 1.0
         self.iterations = self.factorizations = 0
@@ -184,18 +186,18 @@ class PreconditionedCholesky:
 
     def _iterate(self, right: Complexes, tolerance: float, warm_start_key: str) -> Complexes | None:
         """The solution (n,) by preconditioned conjugate gradients; None if they do not converge soon."""
-        earlier = self._earlier_solutions.get(warm_start_key) if warm_start_key else None
-        if earlier is None:
-            earlier = np.zeros((_WARM_STARTS, len(right)), np.complex128)
+        earlier, known = np.empty((_WARM_STARTS, len(right)), np.complex128), 0
+        if warm_start_key:
+            earlier, known = self._earlier_solutions.get(warm_start_key, (earlier, 0))
         solution, preconditioner = np.empty_like(right), self._factors.preconditioner(self._rotation)
         trusted = 1.0 if self._confirm else min(_CONTRACTION_SAFETY * self._contraction, 1.0)
         count, first, last = iterate(
-            preconditioner, self._matrix, right, self._frame, earlier, tolerance, trusted,
+            preconditioner, self._matrix, right, self._frame, earlier, known, tolerance, trusted,
             _EXACT_ITERATIONS if self._is_exact else 1, _MAX_ITERATIONS, solution,
         )  # fmt: skip
         if not count:
             return None
-        self._earlier_solutions[warm_start_key] = earlier
+        self._earlier_solutions[warm_start_key] = earlier, min(known + 1, _WARM_STARTS)
         if count > 1 and first > 0:
             seen = (last / first) ** (1 / (count - 1))
             self._contraction = max(seen, 0.5 * (seen + self._contraction))

@@ -25,9 +25,11 @@ def test_each_names_a_bundled_drawing_and_bends_it(path):
     assert np.abs(last.state.positions - drawing.mesh.vertices).max() > 0.1
 
 
-@pytest.mark.parametrize("path", RECORDINGS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", [path for path in RECORDINGS if path.stem != "robot"], ids=lambda path: path.stem
+)
 def test_each_is_replayed_where_there_is_no_triangle(path, monkeypatch):
-    """On meshes of PythonCDT: the first moves."""
+    """On meshes of PythonCDT: the first moves. The robot's recording carries its mesh."""
     pretend_installed(monkeypatch, PYTHONCDT)
     recording = read_recording(path)
     drawing = recorded_drawing(recording)
