@@ -63,10 +63,8 @@ def print_steps() -> None:
         puppet = make_drawing(layers=layered, vertices=vertices)
         picture = make_drawing(flat, vertices=vertices)
         layers, whole = step_milliseconds(puppet), step_milliseconds(picture)
-        print(
         ratio = layers / whole
         print(f"{vertices:6} vertices: layers {layers:5.2f} ms, flat {whole:5.2f} ms, {ratio:.2f} times")
-        )
 
 
 def make_large_file(path: Path) -> None:
