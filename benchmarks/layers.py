@@ -108,9 +108,8 @@ def print_child(path: str) -> None:
     start = time.perf_counter()
     layered = open_layers(path)
     seconds = time.perf_counter() - start
-    print(
-        f"{len(layered.layers)} layers in {seconds:.1f} s, {before:.0f} MB before, peak {peak_megabytes():.0f} MB"
-    )
+    memory = f"{before:.0f} MB before, peak {peak_megabytes():.0f} MB"
+    print(f"{len(layered.layers)} layers in {seconds:.1f} s, {memory}")
 
 
 def main() -> None:
