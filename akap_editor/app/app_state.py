@@ -124,10 +124,7 @@ class AppState:
         state.view.restore(preferences.get("overlays", {}))
         if state.view.reference_path is not None:
             state.run_after_frame(state.view.reload_reference)
-        brush: list[object] = preferences.get("brush", [])
-        match brush:
-            case [int() | float() as factor, int() | float() as radius]:
-                state.editor.brush_tool.brush = Brush.within_limits(radius, factor)
+        state.editor.brush_tool.brush = Brush.restored(preferences.get("brush", []))
         return state
 
     def save_preferences(self) -> None:
@@ -136,8 +133,7 @@ class AppState:
             self.preferences.put(name, getattr(self.view, option))
         self.preferences.put("show_timeline", self.timeline.is_shown)
         self.preferences.put("overlays", self.view.to_json())
-        brush = self.editor.brush_tool.brush
-        self.preferences.put("brush", [brush.factor, brush.radius])
+        self.preferences.put("brush", self.editor.brush_tool.brush.to_json())
         try:
             self.preferences.write()
         except InputError as error:

@@ -1,6 +1,7 @@
 """What the state of the window stores in the preferences and restores from them."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from akap_editor.app import files
 from akap_editor.app.app_state import AppState
 from akap_editor.app.preferences import Preferences
+from akap_editor.deform.follow_through import MAX_BOUNCE, MAX_SPEED, MIN_SPEED
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS
@@ -29,7 +31,7 @@ def test_overlays_come_back(path, tmp_path):
     state.view.distortion_measure, state.view.distortion_range = "angle", 4
     state.view.set_reference(np.zeros((1, 1, 4), np.uint8), picture)
     state.view.show_reference = False
-    state.editor.brush_tool.brush = Brush(80.0, 500.0, erasing=True)
+    state.editor.brush_tool.brush = Brush(80.0, 500.0, erasing=True, paints="loose", speed=2.0, bounce=0.25)
     state.save_preferences()
     again = AppState.from_preferences(Preferences(path))
     for name in (
@@ -48,7 +50,7 @@ def test_overlays_come_back(path, tmp_path):
     assert again.view.reference is not None
     assert again.view.reference.image.shape == read_image(picture).shape
     assert not again.view.show_reference
-    assert again.editor.brush_tool.brush == Brush(80.0, 500.0)
+    assert again.editor.brush_tool.brush == replace(state.editor.brush_tool.brush, erasing=False)
 
 
 def test_a_reference_picture_that_is_gone_is_not_missed(path, tmp_path):
@@ -61,13 +63,34 @@ def test_a_reference_picture_that_is_gone_is_not_missed(path, tmp_path):
     assert (again.view.reference, again.view.reference_path, again.error) == (None, None, "")
 
 
-@pytest.mark.parametrize("brush", [[1e9, -1.0], [float("nan")] * 2, ["a", 2], [3], {}])
+@pytest.mark.parametrize(
+    "brush",
+    [
+        [1e9, -1.0],
+        [float("nan")] * 2,
+        ["a", 2],
+        [3],
+        {},
+        [100.0, 32.0, "loose", 1e9, 1e9],
+        [100.0, 32.0, "loose", -1.0, float("nan")],
+        [100.0, 32.0, "wet", 2.0, 0.5],
+    ],
+)
 def test_a_remembered_brush_is_one_that_there_is(brush):
     preferences = Preferences()
     preferences.put("brush", brush)
     found = AppState.from_preferences(preferences).editor.brush_tool.brush
     assert MIN_RADIUS <= found.radius <= MAX_RADIUS
     assert MIN_STIFFNESS <= found.factor <= MAX_STIFFNESS
+    assert found.paints in ("stiff", "loose")
+    assert MIN_SPEED <= found.speed <= MAX_SPEED
+    assert 0 <= found.bounce <= MAX_BOUNCE
+
+
+def test_a_brush_of_an_earlier_version_is_remembered():
+    preferences = Preferences()
+    preferences.put("brush", [300.0, 20.0])
+    assert AppState.from_preferences(preferences).editor.brush_tool.brush == Brush(20.0, 300.0)
 
 
 @pytest.fixture

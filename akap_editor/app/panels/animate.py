@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ...editor.document.easing import EASING_LABELS, KEYFRAME_EASINGS
 from ...editor.document.keyframes import Keyframe
-from ...words import mark, tr
+from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..commands.command import Command
@@ -83,18 +83,20 @@ def draw_playback(state: AppState, scale: float) -> None:
     widgets.row(
         tr("Duration"), f"{end - start:.2f} s", tr("Of the motion that the timeline shows, or of its range.")
     )
-    _switch(state, SHOW_TIMELINE, tr("Key: {key}", key=SHOW_TIMELINE.key_name))
+    timeline_key = tr("Key: {key}", key=SHOW_TIMELINE.key_name)
+    _switch(state, SHOW_TIMELINE, tr("Timeline"), timeline_key)
     _, playback.loop = widgets.switch(tr("Loop") + "###Loop", playback.loop)
-    _switch(state, SHOW_MOTION_PATHS, tr("The ways of the selected pins, with their keyframes."))
+    _switch(
+        state,
+        SHOW_MOTION_PATHS,
+        tr("Motion paths"),
+        tr("The ways of the selected pins, with their keyframes."),
+    )
     _button(state, PLAY)
     _button(state, EXPORT_ANIMATION)
 
 
-_SHOWN = (mark("Timeline"), mark("Motion Paths"))  # without "Show "
-
-
-def _switch(state: AppState, command: Command, tooltip: str) -> None:
-    label = tr(command.label.removeprefix("Show "))
+def _switch(state: AppState, command: Command, label: str, tooltip: str) -> None:
     if widgets.switch(f"{label}###{command.label}", command.is_checked(state), tooltip)[0]:
         widgets.run(state, command)
 

@@ -48,8 +48,8 @@ def draw(state: AppState, scale: float) -> None:
     _draw_cuts(state, meshing)
 
 
-def draw_figures(state: AppState, scale: float) -> None:
-    """Draw the Figures section. scale: points per design point."""
+def draw_drawing(state: AppState, scale: float) -> None:
+    """Draw the Drawing section: its name, size and mesh. scale: points per design point."""
     assert state.document is not None
     drawing = state.document.drawing
     widgets.row(tr("Name"), drawing.name)

@@ -20,7 +20,8 @@ from ..theme import ACCENT, FRAME, HOVER, SECONDARY, packed
 from ..timeline.keyframe_track import POSE_PAYLOAD
 
 _SIDE, _GAP, _MARGIN = 66, 6, 4  # of a thumbnail, in design points
-_COLUMNS, _ROWS = 3, 2  # of thumbnails that are visible at once
+_COLUMNS = 3  # of thumbnails
+_TALL = 780  # design points: a panel of this height shows two rows of thumbnails, a lower one shows one
 _NAME_SIZE = 0.86  # of the font, relative to that of other text
 
 
@@ -59,9 +60,10 @@ class PosesSection:
 
     def _draw_poses(self, state: AppState, poses: Sequence[NamedPose], scale: float) -> None:
         """Draw the thumbnails in a list of fixed height, so that nothing below it moves when one is added."""
+        rows = 2 if imgui.get_window_height() >= _TALL * scale else 1
         gaps = 2 * imgui.get_style().item_spacing.y
         row_height = round(_SIDE * scale) + _NAME_SIZE * imgui.get_text_line_height() + gaps
-        imgui.begin_child("##poses", ImVec2(0, _ROWS * row_height), widgets.NAV_FLATTENED)
+        imgui.begin_child("##poses", ImVec2(0, rows * row_height), widgets.NAV_FLATTENED)
         if not poses:
             widgets.secondary_text(tr("None yet. Add a pose to return to it with a click."))
         for number, pose in enumerate(poses):

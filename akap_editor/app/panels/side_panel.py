@@ -58,7 +58,7 @@ SECTIONS = (
     Section("Playback", animate.draw_playback, "Animate"),
     Section("Mesh", mesh.draw, "Mesh"),
     Section("View", view.draw, "Mesh"),
-    Section("Figures", mesh.draw_figures, "Mesh", opened=False),
+    Section("Drawing", mesh.draw_drawing, "Mesh", opened=False),
     Section("Measurements", measurements.draw, "Mesh", opened=False),
 )
 

@@ -7,9 +7,20 @@ from .. import widgets
 from ..app_state import AppState
 from ..canvas.checkerboard import BOARD_LABELS
 from ..canvas.view_options import DISTORTION_RANGES
-from ..commands.registry import OVERLAYS, SHOW_CHECKERBOARD, SHOW_MESH, SHOW_PINS, SHOW_REFERENCE
+from ..commands.registry import (
+    OVERLAYS,
+    SHOW_CHECKERBOARD,
+    SHOW_MESH,
+    SHOW_PINS,
+    SHOW_REFERENCE,
+)
+from ..commands.view import SHOW_MOTION_PATHS
 
-_SWITCHES = (SHOW_MESH, SHOW_PINS, SHOW_CHECKERBOARD, *OVERLAYS, SHOW_REFERENCE)
+_SWITCHES = tuple(
+    command
+    for command in (SHOW_MESH, SHOW_PINS, SHOW_CHECKERBOARD, *OVERLAYS, SHOW_REFERENCE)
+    if command is not SHOW_MOTION_PATHS  # it is in the tab Animate
+)
 _LABELS = {  # of switches, by the labels of their commands
     "Show Mesh": mark("Mesh"),
     "Show Pins": mark("Pins"),
@@ -19,7 +30,6 @@ _LABELS = {  # of switches, by the labels of their commands
     "Show Angle Distortion": mark("Angle distortion"),
     "Show Rest Pose": mark("Rest pose"),
     "Show Pin Trails": mark("Pin trails"),
-    "Show Motion Paths": mark("Motion paths"),
     "Show Reference Picture": mark("Reference picture"),
 }
 

@@ -45,8 +45,7 @@ class KeyframeTrack:
     def draw(self, state: AppState, scale: float) -> TimeScale:
         """Draw one frame and return the scale of its time. scale: points per design point."""
         playback = state.timeline.keyframe_playback
-        is_unkeyed = playback.shows_unkeyed_pose
-        label = f"{playback.time:.2f}{'*' * is_unkeyed} / {playback.duration:.2f} s"
+        label = time_label(playback)
         label_width = imgui.calc_text_size("000.00* / 000.00 s").x + 12 * scale
         corner, height = imgui.get_cursor_screen_pos(), _BOTTOM * scale
         width = max(imgui.get_content_region_avail().x - label_width, 40 * scale)
@@ -77,7 +76,7 @@ class KeyframeTrack:
         label_y = corner.y + (height - imgui.get_text_line_height()) / 2
         imgui.set_cursor_screen_pos(ImVec2(corner.x + width + 12 * scale, label_y))
         imgui.text_colored(ImVec4(*SECONDARY), label)
-        if is_unkeyed:
+        if "*" in label:
             widgets.show_tooltip(
                 tr("* The pose on the canvas is not the animation's at this time. K keeps it there.")
             )
@@ -174,6 +173,12 @@ class KeyframeTrack:
             shift = max(time - self._pressed_time, -min(playback.selected))
             moves = {selected: selected + shift for selected in playback.selected}
             playback.drag_keyframes(moves, copy=io.key_ctrl)
+
+
+def time_label(playback: KeyframePlayback) -> str:
+    """The time of the playhead, and the duration if there are keyframes; * for a pose without a keyframe."""
+    time = f"{playback.time:.2f}{'*' * playback.shows_unkeyed_pose}"
+    return f"{time} / {playback.duration:.2f} s" if playback.animation.keyframes else f"{time} s"
 
 
 def _time_at_pointer(playback: KeyframePlayback, time_scale: TimeScale, scale: float) -> float | None:

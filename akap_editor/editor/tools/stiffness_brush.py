@@ -6,7 +6,13 @@ from typing import Literal
 
 import numpy as np
 
-from ...deform.follow_through import DEFAULT_BOUNCE, DEFAULT_SPEED
+from ...deform.follow_through import (
+    DEFAULT_BOUNCE,
+    DEFAULT_SPEED,
+    MAX_BOUNCE,
+    MAX_SPEED,
+    MIN_SPEED,
+)
 from ...geometry.mesh import MeshPoints
 from ...geometry.validation import Floats
 from ...words import mark, tr
@@ -39,15 +45,38 @@ class Brush:
     speed: float = DEFAULT_SPEED
     bounce: float = DEFAULT_BOUNCE
 
+    def to_json(self) -> list[object]:
+        """What the next start of the program takes over by `restored`: all but the eraser."""
+        return [self.factor, self.radius, self.paints, self.speed, self.bounce]
+
     @classmethod
-    def within_limits(cls, radius: float, factor: float) -> "Brush":
-        """A brush with radius and factor clamped to their ranges; NaN becomes the upper limit."""
-        return cls(max(MIN_RADIUS, min(MAX_RADIUS, radius)), max(MIN_STIFFNESS, min(MAX_STIFFNESS, factor)))
+    def restored(cls, values: list[object]) -> "Brush":
+        """The brush that wrote ``values``, or earlier versions their first two; the default one for others.
+
+        Numbers are clamped to their ranges, because the file may have been edited by hand; NaN becomes the
+        upper limit.
+        """
+        match values:
+            case [int() | float() as factor, int() | float() as radius, *others]:
+                brush = cls(
+                    _clamp(radius, MIN_RADIUS, MAX_RADIUS), _clamp(factor, MIN_STIFFNESS, MAX_STIFFNESS)
+                )
+            case _:
+                return cls()
+        match others:
+            case ["stiff" | "loose" as paints, int() | float() as speed, int() | float() as bounce]:
+                speed, bounce = _clamp(speed, MIN_SPEED, MAX_SPEED), _clamp(bounce, 0.0, MAX_BOUNCE)
+                return replace(brush, paints=paints, speed=speed, bounce=bounce)
+        return brush
 
     def resized(self, larger: bool) -> "Brush":
         """The next larger or smaller brush."""
         radius = self.radius * (_RADIUS_STEP if larger else 1 / _RADIUS_STEP)
         return replace(self, radius=min(max(radius, MIN_RADIUS), MAX_RADIUS))
+
+
+def _clamp(value: float, low: float, high: float) -> float:
+    return max(low, min(high, value))
 
 
 class BrushIdle(IdleTool):

@@ -49,6 +49,17 @@ def test_a_pose_is_renamed_with_a_double_click(pinned):
     assert pinned.state.part(PosesSection).name_field.key is None
 
 
+def test_the_whole_tab_is_seen_in_a_window_of_ordinary_height(bent):
+    def scroll(hand):
+        panel = hand.window_info("//Panel").window
+        found.append((panel.size.y / bent.window.scale, panel.scroll_max.y))
+
+    found = []
+    bent.do(scroll)
+    assert found[0][0] < 700, "the window is that of a new user"
+    assert found[0][1] == 0
+
+
 def test_nothing_moves_when_a_pose_is_added(bent):
     def places(hand):
         labels = (f"{icons.ICON_FA_PLUS}  Add to Poses", "##mix", "###section Bending")

@@ -7,6 +7,7 @@ from imgui_bundle import imgui
 
 from akap_editor.app import files
 from akap_editor.app.commands.command import SHIFT
+from akap_editor.app.timeline.keyframe_track import time_label
 from akap_editor.editor import gestures
 from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.replay import replay
@@ -49,6 +50,16 @@ def at_time(ui, time, share):
     assert ui.state.timeline.keyframe_playback.time == pytest.approx(time)
     far = np.abs(last - first).max()
     return np.abs(seen - first).max() == pytest.approx(share * far, abs=0.06 * far)
+
+
+def test_the_time_has_no_duration_beside_it_once_all_keyframes_are_undone(keyed):
+    playback = keyed.state.timeline.keyframe_playback
+    keyed.drag(on_track(keyed, 0.1, y=8), on_track(keyed, 0.5, y=8))
+    assert time_label(playback) == "0.50 / 1.00 s"
+    while times(keyed):
+        keyed.session.undo()
+    keyed.settle()
+    assert time_label(playback) == f"{playback.time:.2f} s"
 
 
 def test_a_drag_on_the_ruler_moves_along_and_edits_nothing(keyed):

@@ -97,11 +97,13 @@ def _draw_buttons(state: AppState, selected: Joint | None) -> None:
     gap = imgui.get_style().item_spacing.x
     half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
     imgui.begin_disabled(not _has_proposals(state))
-    if imgui.button(tr("Accept Proposed"), half):
+    if imgui.button(tr("Accept") + "###Accept Proposed", half):
         widgets.run(state, ACCEPT_JOINTS)
+    widgets.show_tooltip(tr("Keeps the proposed joints."))
     imgui.same_line()
-    if imgui.button(tr("Clear Proposed"), half):
+    if imgui.button(tr("Reject") + "###Clear Proposed", half):
         state.run_reporting_errors(lambda: gestures.clear_proposed_joints(editor))
+    widgets.show_tooltip(tr("Removes the joints that are proposed and not accepted."))
     imgui.end_disabled()
     imgui.begin_disabled(selected is None)
     if imgui.button(tr("Remove Joint"), half) and selected is not None:

@@ -37,12 +37,12 @@ def test_proposals_are_shown_accepted_and_cleared_in_one_step_each(rigged):
     count = len(joints(rigged))
     assert count == 2
     assert are_shown(rigged.state)
-    rigged.panel("Accept Proposed")
+    rigged.panel("###Accept Proposed")
     assert not any(joint.is_proposed for joint in joints(rigged))
     assert not are_shown(rigged.state)
     rigged.session.undo()
     assert all(joint.is_proposed for joint in joints(rigged))
-    rigged.panel("Clear Proposed")
+    rigged.panel("###Clear Proposed")
     assert joints(rigged) == ()
     rigged.panel("Propose Joints")
     assert len(joints(rigged)) == count
@@ -71,7 +71,7 @@ def test_kind_and_removal_of_the_selected_joint(rigged):
 
 def test_the_joint_tool_adds_moves_and_removes_joints(rigged):
     editor = rigged.editor
-    rigged.panel("Clear Proposed")
+    rigged.panel("###Clear Proposed")
     editor.chosen_tool = editor.joint_tool
     rigged.click(rigged.to_screen((92.0, 118.0)))
     (joint,) = joints(rigged)
