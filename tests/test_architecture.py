@@ -147,6 +147,7 @@ def test_folders_have_at_most_a_dozen_modules() -> None:
 # Test files about no module of the package.
 OVERALL = {
     "test_architecture",
+    "test_dependencies",
     "test_docs",
     "io/test_fuzz_files",  # runs benchmarks/fuzz_files.py
 }
