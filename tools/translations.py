@@ -84,12 +84,14 @@ def store(catalog: Catalog, language: str) -> None:
 
 
 def missing(catalog: Catalog, texts: Catalog) -> list[str]:
-    """The texts that a catalog has no translation of, or not of each plural form."""
+    """The texts that a catalog has no translation of, not of each plural form, or one marked as fuzzy."""
 
     def is_missing(identifier: object, context: str | None) -> bool:
         message = catalog.get(identifier, context)
-        strings = message.string if message is not None else ""
-        return not all(strings) if isinstance(strings, tuple) else not strings
+        if message is None or message.fuzzy:
+            return True
+        strings = message.string if isinstance(message.string, tuple) else (message.string,)
+        return not all(text.strip() for text in strings)
 
     return [str(each.id) for each in texts if each.id and is_missing(each.id, each.context)]
 
