@@ -53,6 +53,15 @@ def read_file(path: str | Path, expected: str) -> bytes:
 
     Raises FileError if there is no such file, it cannot be read, or has over `MAX_FILE_BYTES`.
     """
+    try:
+        with open_file(path, expected) as file:
+            return file.read()
+    except (OSError, ValueError) as error:
+        raise FileError("open", as_path(path), os_error_reason(error)) from error
+
+
+def open_file(path: str | Path, expected: str) -> BinaryIO:
+    """A regular file, open for reading; it is one that `noted_reads` collects. Raises as `read_file` does."""
     path = as_path(path)
     try:
         status = path.stat()
@@ -60,7 +69,7 @@ def read_file(path: str | Path, expected: str) -> bytes:
             noted = _noted.get()
             if noted is not None:
                 noted.append(path)
-            return path.read_bytes()
+            return path.open("rb")
     except FileNotFoundError:
         raise FileError("open", path, tr("there is no such file")) from None
     except (OSError, ValueError) as error:

@@ -232,6 +232,6 @@ def test_unreadable_and_oversized_files_are_refused(tmp_path, monkeypatch):
     def deny(*_):
         raise PermissionError(errno.EACCES, "Permission denied")
 
-    monkeypatch.setattr(Path, "read_bytes", deny)
+    monkeypatch.setattr(Path, "open", deny)
     with pytest.raises(InputError, match=r"^Couldn't open “.*large\.bin”\. Permission denied\.$"):
         read_file(path, "a picture")

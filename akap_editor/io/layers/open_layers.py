@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
+from typing import BinaryIO
 
 from ...display_text import display_name
 from ...errors import FileError, InputError, file_errors
@@ -11,7 +12,7 @@ from ...layers.composite import hidden_layers
 from ...layers.layered_picture import Layer, LayeredPicture, trimmed
 from ...progress import announce
 from ...words import mark, tr, tr_plural
-from ..atomic import as_path, os_error_reason, read_file
+from ..atomic import as_path, open_file, os_error_reason
 from ..images import read_image
 from .limits import LayerBudget, quoted
 from .ora import ORA_MIMETYPE, decode_ora
@@ -20,13 +21,13 @@ PSD_MAGIC = b"8BPS"
 _MAX_NAMED = 5  # layers or parts named in a sentence
 
 
-def _decode_psd(file: BytesIO) -> LayeredPicture:
+def _decode_psd(file: BinaryIO) -> LayeredPicture:
     from .psd import decode_psd  # psd-tools takes 0.2 s to load
 
     return decode_psd(file)
 
 
-_DECODERS: dict[str, Callable[[BytesIO], LayeredPicture]] = {
+_DECODERS: dict[str, Callable[[BinaryIO], LayeredPicture]] = {
     ".psd": _decode_psd,
     ".psb": _decode_psd,
     ".ora": decode_ora,
@@ -61,8 +62,8 @@ def open_layers(path: str | Path) -> LayeredPicture:
         got = path.suffix or tr("no ending")
         reason = tr("expected a folder or a file that ends in {endings}, got {got}", endings=endings, got=got)
         raise FileError("open", path, reason)
-    with file_errors("open", path):
-        return decode(BytesIO(read_file(path, mark("a picture in layers"))))
+    with open_file(path, mark("a picture in layers")) as file, file_errors("open", path):
+        return decode(file)
 
 
 def decode_layers(data: bytes) -> LayeredPicture:

@@ -4,9 +4,8 @@ https://www.openraster.org: a zip archive of PNG pictures and of stack.xml, whic
 """
 
 from dataclasses import dataclass, field
-from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
@@ -15,7 +14,7 @@ from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, Layer
 from ...progress import announce
 from ...words import mark, tr
 from ..akap.archive import Archive
-from ..atomic import read_file
+from ..atomic import os_error_reason, read_file
 from ..images import Picture, decode_image
 from .limits import MAX_DEPTH, LayerBudget, check_size, quoted
 
@@ -32,9 +31,13 @@ _BLEND_MODES = {
 }
 
 
-def decode_ora(file: BytesIO) -> LayeredPicture:
+def decode_ora(file: BinaryIO) -> LayeredPicture:
     """The layers in an OpenRaster file. Raises InputError."""
-    return _OraReader(file.getvalue()).read()
+    try:
+        data = file.read()
+    except OSError as error:
+        raise InputError(os_error_reason(error)) from error
+    return _OraReader(data).read()
 
 
 def ora_thumbnail(path: Path) -> Picture:

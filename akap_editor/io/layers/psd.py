@@ -3,8 +3,7 @@
 import logging
 import warnings
 from dataclasses import dataclass, field
-from io import BytesIO
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from ...errors import AkapError, InputError, error_context
 from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
 from ...progress import announce
 from ...words import tr
+from ..atomic import os_error_reason
 from ..images import MAX_PIXELS, Picture
 from .limits import MAX_DEPTH, LayerBudget, check_size, quoted
 
@@ -43,7 +43,7 @@ _BLEND_MODES = {
 logging.getLogger("psd_tools").addHandler(logging.NullHandler())  # its remarks are not for our users
 
 
-def decode_psd(file: BytesIO) -> LayeredPicture:
+def decode_psd(file: BinaryIO) -> LayeredPicture:
     """The layers in a Photoshop file, which is closed once it has been read. Raises InputError.
 
     The picture of a text, a shape or a smart object is the one that the file contains. Masks are multiplied
@@ -55,6 +55,8 @@ def decode_psd(file: BytesIO) -> LayeredPicture:
         try:
             psd = PSDImage.open(file, MAX_ALLOCATED_BYTES, _LIMITS)
         except Exception as error:  # psd-tools reports damage with exceptions of many kinds
+            if isinstance(error, OSError) and error.errno:  # not of psd-tools
+                raise InputError(os_error_reason(error)) from error
             raise InputError(tr("the file is damaged or not a Photoshop file")) from error
         file.close()
         return _PsdReader(psd).read()
@@ -94,7 +96,7 @@ class _PsdReader:
     def _read_merged(self) -> None:
         image = self.psd.topil()
         if image is not None:
-            self._add("Background", np.array(image.convert("RGBA")), (0, 0), {})
+            self._add("Background", _as_array(image), (0, 0), {})
 
     def _read_group(self, group: Any, groups: tuple[LayerGroup, ...], masks: tuple[PsdLayer, ...]) -> None:
         """Read what a group contains, which psd-tools lists from the bottom to the top.
@@ -144,6 +146,7 @@ class _PsdReader:
                 raise
             except Exception as error:  # psd-tools reports damage with exceptions of many kinds
                 raise InputError(tr("the layer is damaged or incomplete")) from error
+            _release(layer)
             self._add(layer.name, picture, layer.offset, self._common(layer) | place)
 
     def _add(self, name: str, picture: Picture, offset: tuple[int, int], values: dict[str, Any]) -> None:
@@ -216,12 +219,23 @@ def _rgba(layer: PsdLayer) -> Picture:
     if image is None:
         raise InputError(tr("the layer is damaged or incomplete"))
     if image.mode in ("RGBA", "LA"):
-        return np.array(image.convert("RGBA"))
-    picture = np.array(image.convert("RGB").convert("RGBA"))
+        return _as_array(image)
+    picture = _as_array(image.convert("RGB"))
     alpha = layer.topil(ChannelID.TRANSPARENCY_MASK)  # Pillow's CMYK pictures have none
     if alpha is not None:
         picture[..., 3] = np.asarray(alpha.convert("L"))
     return picture
+
+
+def _as_array(image: Image.Image) -> Picture:
+    """The pixels of an image, (h, w, 4) uint8."""
+    return np.array(image if image.mode == "RGBA" else image.convert("RGBA"))
+
+
+def _release(layer: PsdLayer) -> None:
+    """Forget the compressed pixels of a layer that has been read; psd-tools holds all of them to the end."""
+    for channel in layer._channels:
+        channel.data = b""
 
 
 def _apply_mask(picture: Picture, offset: tuple[int, int], masked: PsdLayer) -> None:
