@@ -49,6 +49,19 @@ def error_message(error: Exception) -> str:
     )
 
 
+@dataclass(frozen=True)
+class NoticeButton:
+    """A button in the status bar, shown as long as its notice is.
+
+    label: English, for `tr`; icon: of it; run: what a click does.
+    """
+
+    notice: str
+    label: str
+    icon: str
+    run: Callable[[], None]
+
+
 @dataclass
 class AppState:
     """What panels and dialogs show and commands change.
@@ -60,8 +73,8 @@ class AppState:
     notice: text in the status bar until the next edit; error: text that must be read before anything else;
     task: the work whose progress a dialog shows; pose_exports: exports in the background; is_closing: whether
     the window is about to close; panels_are_hidden: whether only canvas and menus are shown; is_full_screen:
-    whether the window is to cover its monitor; exported: the file that was exported last, after the notice
-    that says so; frame_delay: seconds until a frame is due because something on the screen moves by itself.
+    whether the window is to cover its monitor; notice_button: what can be done about a notice; frame_delay:
+    seconds until a frame is due because something on the screen moves by itself.
 
     folder: where the next file dialog starts; preferences: what is stored between runs; autosave: keeps
     recovery copies, None for none; offscreen_renderer, thumbnails: share the window's OpenGL context.
@@ -81,7 +94,7 @@ class AppState:
     is_closing: bool = False
     panels_are_hidden: bool = False
     is_full_screen: bool = False
-    exported: tuple[str, Path] | None = None
+    notice_button: NoticeButton | None = None
     frame_delay: float = math.inf
     folder: Path = field(default_factory=Path.cwd)
     preferences: Preferences = field(default_factory=Preferences)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..display_text import display_name, file_stem
 from ..editor import gestures
-from ..editor.document.document import Document, EditState, new_document
+from ..editor.document.document import Document, new_document
 from ..editor.document.drawing import (
     Meshing,
     apply_mask,
@@ -15,22 +15,17 @@ from ..editor.document.drawing import (
     mesh_layered_drawing,
     remove_background_and_mesh,
 )
-from ..editor.session.artwork_reload import with_artwork
-from ..editor.session.edits import ReloadArtwork
 from ..errors import file_errors
 from ..io.akap.pose import POSE_SUFFIX, load_pose, save_pose
 from ..io.akap.recording import RECORDING_SUFFIX, write_recording
 from ..io.images import read_image, read_mask
-from ..io.layers.open_layers import LAYER_SUFFIXES, is_layered, open_layers
 from ..io.open_document import PICTURE_SUFFIXES
 from ..layers.drawing_layer import as_layered_picture, flat_picture
-from ..layers.layered_picture import Layer, LayeredPicture
 from ..meshing.faint import fitting_threshold
-from ..words import mark, tr
+from ..words import tr
 from . import files
 from .app_state import AppState
 from .dialogs.file_dialog import FileDialog, FileRequest
-from .jobs.artwork_watch import ArtworkWatch, artwork_path
 from .jobs.background_task import background_task
 
 # -- masks --------------------------------------------------------------------------------------------------
@@ -118,61 +113,7 @@ def merged_document(document: Document) -> Document:
     meshing = drawing.meshing or Meshing()
     threshold = fitting_threshold(image[..., 3], meshing.threshold)
     merged = make_drawing(image, None, meshing.vertices, meshing.expand, threshold, name=drawing.name)
-    return replace(new_document(merged), sources=document.sources)
-
-
-# -- artwork ------------------------------------------------------------------------------------------------
-
-
-def can_reload(state: AppState) -> bool:
-    """Whether the drawing was made from a picture."""
-    return state.document is not None and state.document.drawing.meshing is not None
-
-
-def reload_artwork(state: AppState) -> None:
-    """Read the drawing's picture again, which was painted anew; ask for it if its file is not known."""
-    document = state.document
-    if document is None:
-        return
-    known = artwork_path(state)
-    if known is not None:
-        _reload(state, known)
-        return
-    suffixes = (*PICTURE_SUFFIXES, *LAYER_SUFFIXES)
-    use = partial(_reload, state)
-    state.part(FileDialog).ask(
-        FileRequest(tr("Choose the picture painted anew"), suffixes, state.folder, use)
-    )
-
-
-def _reload(state: AppState, path: Path) -> None:
-    session = state.editor.session
-    if session is None:
-        return
-    session.finish_step()
-    before, drawing = session.present, session.drawing
-
-    def read() -> tuple[LayeredPicture, EditState]:
-        artwork = read_artwork(path)
-        with file_errors("reload", path):
-            return artwork, with_artwork(before, drawing, artwork)
-
-    def show(result: tuple[LayeredPicture, EditState]) -> None:
-        artwork, prepared = result
-        is_current = state.editor.session is session and session.present is before
-        state.editor.apply(mark("Reload Artwork"), ReloadArtwork(artwork, prepared if is_current else None))
-        state.part(ArtworkWatch).remember(path)
-        state.notice = tr("Reloaded {file}", file=display_name(path))
-
-    state.begin_task(background_task(tr("Reloading {file}", file=display_name(path)), read, show, state.wake))
-
-
-def read_artwork(path: Path) -> LayeredPicture:
-    """The layers of a picture file; of a flat picture one layer. Raises FileError."""
-    if is_layered(path):
-        return open_layers(path)
-    image = read_image(path)
-    return LayeredPicture((image.shape[1], image.shape[0]), (Layer(path.stem, image),))
+    return replace(new_document(merged), sources=document.sources, artwork=document.artwork)
 
 
 # -- poses --------------------------------------------------------------------------------------------------

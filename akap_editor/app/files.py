@@ -25,10 +25,10 @@ from .app_state import AppState, error_message
 from .dialogs.file_dialog import FileDialog, FileRequest
 from .dialogs.replace_files import ReplaceFilesDialog, ReplaceQuestion
 from .dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
-from .jobs.artwork_watch import ArtworkWatch, artwork_path
 from .jobs.background_task import background_task
 from .jobs.engine_preparation import TEXT as PREPARATION_TEXT
 from .jobs.open_recording import ReadRecording, read_for_replay, replay_task
+from .jobs.reload_artwork import watch_artwork
 from .jobs.task import Task
 
 T = TypeVar("T")
@@ -47,9 +47,6 @@ def show_document(state: AppState, document: Document) -> None:
     except InputError:  # preferences that were written by hand, or by another version
         state.editor.open(document)
     state.view.selected_layer = state.view.selected_joint = None
-    path = artwork_path(state)
-    if path is not None:
-        state.part(ArtworkWatch).remember(path)
     if document.state.animation.keyframes:
         state.timeline.mode, state.timeline.is_shown = "keyframes", True
     opaque = document.path is None and not has_transparency(document.drawing.image)
@@ -62,6 +59,7 @@ def show_document(state: AppState, document: Document) -> None:
             )
         )
     state.notice = ". ".join(notes)
+    watch_artwork(state)
 
 
 def show_when_prepared(state: AppState, document: Document) -> None:
@@ -74,15 +72,6 @@ def show_when_prepared(state: AppState, document: Document) -> None:
         show_document(state, document)
 
     state.begin_task(background_task(tr(PREPARATION_TEXT), state.engine.wait_to_open, show, state.wake))
-
-
-def notice_changed_artwork(state: AppState) -> None:
-    """Offer to reload the artwork if another program has written its file."""
-    path = artwork_path(state)
-    if path is not None and state.part(ArtworkWatch).has_changed(path):
-        state.notice = tr(
-            "{file} has changed on disk; Reload Artwork (F5) takes it over", file=display_name(path)
-        )
 
 
 def choose_and_open(state: AppState) -> None:

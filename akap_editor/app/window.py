@@ -36,6 +36,7 @@ from .dialogs.file_dialog import FileDialog, has_native_dialogs
 from .dialogs.recovery import RecoveryDialog
 from .frame import frame
 from .glfw_window import FullScreen, create_window, on_key, remembered_position, remembered_size, screens
+from .jobs.reload_artwork import notice_changed_artwork
 from .preferences import Preferences
 from .termination import TerminationSignals, rescue_on_lost_display
 from .thumbnails import Thumbnails
@@ -367,7 +368,7 @@ class Window:
         """Cancel a gesture if another window gets the keyboard; look for changed artwork on the return."""
         has_focus = bool(glfw.get_window_attrib(self.handle, glfw.FOCUSED))
         if self._has_focus != has_focus:
-            (files.notice_changed_artwork if has_focus else self._canvas.cancel_input)(self.state)
+            (notice_changed_artwork if has_focus else self._canvas.cancel_input)(self.state)
         self._has_focus = has_focus
 
     def drop(self, paths: list[Path]) -> None:

@@ -146,6 +146,7 @@ def _inspect_drawing(data: bytes) -> tuple[Facts, list[str]]:
         "faces": len(drawing.mesh.faces),
         "parts": int(drawing.mesh.component.max()) + 1,
         **_drawing_layer_facts(drawing),
+        **({"artwork": document.artwork.path.as_posix()} if document.artwork is not None else {}),
         "pins": len(state.pins),
         "poses": len(state.poses),
         "keyframes": len(state.animation.keyframes),

@@ -19,6 +19,7 @@ from ..progress import announce, part
 from ..words import tr, tr_plural
 from .akap.project import PROJECT_SUFFIX, load
 from .akap.recording import RECORDING_SUFFIX, read_recording, recorded_drawing
+from .artwork_file import artwork_file, with_current_artwork
 from .atomic import as_path, noted_reads
 from .images import Picture, read_image, read_mask
 from .layers.open_layers import is_layered, left_out_notes, merging_notes, open_layers
@@ -50,7 +51,14 @@ def open_document(
     """
     with noted_reads() as files:
         document = _open(as_path(path), mask, threshold, mesher, merge_layers)
+    if mask is None and is_artwork(path):  # what a mask has cut out could not be reloaded
+        document = replace(document, artwork=artwork_file(path))
     return replace(document, sources=tuple(files))
+
+
+def is_artwork(path: str | Path) -> bool:
+    """Whether the name of a file is one of a picture, flat or in layers."""
+    return is_layered(path) or as_path(path).suffix.lower() in PICTURE_SUFFIXES
 
 
 def _open(
@@ -65,7 +73,7 @@ def _open(
     if threshold is not None and suffix in (PROJECT_SUFFIX, RECORDING_SUFFIX, *MESH_SUFFIXES):
         raise InputError(tr("threshold: expected a picture to cut out, got {file}", file=display_name(path)))
     if suffix == PROJECT_SUFFIX:
-        return load(path)
+        return with_current_artwork(load(path))
     if suffix == RECORDING_SUFFIX:
         return _open_recording(path)
     if suffix in MESH_SUFFIXES:

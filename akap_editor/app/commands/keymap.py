@@ -125,13 +125,21 @@ class Keymap:
         """The changed chords by their names, for the preferences."""
         return {label: [chord_name(chord) for chord in chords] for label, chords in self._changed.items()}
 
-    def restore(self, stored: Mapping[str, object]) -> None:
-        """Take over what `to_json` returned; whatever makes no sense is ignored."""
+    def restore(self, stored: Mapping[str, object], table: Mapping[str, tuple[int, ...]]) -> None:
+        """Take over what `to_json` returned; whatever makes no sense is ignored.
+
+        table: the chords of all commands. One that another version of the table has given to a command goes
+        to the command for which the user chose it.
+        """
         self.reset()
         for label, names in stored.items():
             if isinstance(names, list):
                 chords = [chord_named(name) for name in names if isinstance(name, str)]
                 self._changed[label] = tuple(chord for chord in chords if chord is not None)
+        chosen = {chord for label in self._changed if label in table for chord in self._changed[label]}
+        for label, default in table.items():
+            if label not in self._changed and chosen & set(map(int, default)):
+                self._changed[label] = tuple(int(chord) for chord in default if int(chord) not in chosen)
 
 
 KEYMAP = Keymap()  # of this program; the preferences store it

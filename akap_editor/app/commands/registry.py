@@ -19,6 +19,7 @@ from ..app_state import AppState
 from ..dialogs.about import AboutDialog
 from ..dialogs.export.pose import ExportPoseDialog
 from ..dialogs.preferences_page import PreferencesPage
+from ..jobs.reload_artwork import can_reload, reload_artwork
 from ..panels.method_parameters import with_default_values
 from ..preferences import Preferences
 from .clipboard import COPY_PICTURE, COPY_POSE, PASTE
@@ -73,7 +74,7 @@ OPEN_BUNDLED = Submenu(
     "Open Bundled Drawing", lambda state: [(drawing_title(path), path) for path in bundled_files()]
 )
 CUT_OUT = Command("Cut Out with Mask...", file_commands.choose_mask, (), "", file_commands.can_mask)
-RELOAD = Command("Reload Artwork", file_commands.reload_artwork, (Key.f5,), "", file_commands.can_reload)
+RELOAD = Command("Reload Artwork", reload_artwork, (CTRL | Key.r, Key.f5), "", can_reload)
 MERGE_LAYERS = Command("Merge Layers", file_commands.merge_layers, (), "", file_commands.has_layers)
 CLOSE = Command("Close", files.close_document, (CTRL | Key.w,), "", has_drawing)
 SAVE = Command("Save", files.save, (CTRL | Key.s,), icons.ICON_FA_FLOPPY_DISK, has_drawing)
@@ -247,7 +248,7 @@ HOLD_ANGLE = Command(
     "Hold Angle", _on_editor(gestures.toggle_held_angles), (), "", _can_hold_angle, _holds_angle
 )
 RESET_POSE = Command(
-    "Reset Pose", _on_editor(gestures.reset_pose), (CTRL | Key.r,), icons.ICON_FA_PERSON, _is_posed
+    "Reset Pose", _on_editor(gestures.reset_pose), (CTRL | SHIFT | Key.r,), icons.ICON_FA_PERSON, _is_posed
 )
 SET_REST_POSE = Command("Set Rest Pose from Current", _on_editor(gestures.set_rest_pose), (), "", _is_posed)
 REMEMBER_REST_SHAPE = Command(
@@ -385,7 +386,7 @@ PALETTE_ITEMS = (*(item for _, items in MENUS for item in commands_and_files(ite
 
 def restore_keys(preferences: Preferences) -> None:
     """Give the commands the keys that the user has chosen in an earlier run."""
-    KEYMAP.restore(preferences.get("keys", {}))
+    KEYMAP.restore(preferences.get("keys", {}), {command.label: command.chords for command in COMMANDS})
 
 
 def run_pressed(state: AppState) -> None:

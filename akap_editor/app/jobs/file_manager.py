@@ -4,13 +4,23 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from threading import Thread
 
+from imgui_bundle import icons_fontawesome_6 as icons
+
 from ...errors import FileError
-from ...words import tr
+from ...words import mark, tr
+from ..app_state import NoticeButton
 
 _SECONDS = 10.0  # for a file manager to answer
+
+
+def folder_button(notice: str, path: Path) -> NoticeButton:
+    """The button beside a notice about a file that shows the file in its folder."""
+    show = partial(show_in_folder, path)
+    return NoticeButton(notice, mark("Show in Folder"), icons.ICON_FA_FOLDER_OPEN, show)
 
 
 def show_in_folder(path: Path) -> None:

@@ -86,6 +86,19 @@ class EditState:
         raise KeyError(pin_id)
 
 
+@dataclass(frozen=True)
+class ArtworkFile:
+    """The picture that a drawing was made from, which the artist may change.
+
+    path: of a file or a folder of layers, absolute; digest: SHA-256 of the content that the drawing shows, ""
+    if unknown; has_changed: whether the content was another one when the document was opened.
+    """
+
+    path: Path
+    digest: str = ""
+    has_changed: bool = False
+
+
 @dataclass(frozen=True, eq=False)
 class Document:
     """An open drawing with its state.
@@ -93,7 +106,8 @@ class Document:
     revision: grows with every change of ``state``; path: the .akap file, None if there is none; digest: of
     the bytes of this file when they were read or written here, "" if unknown; notes: sentences, without
     period, about what opening a file of another program merged or left out; sources: the files that it was
-    read from, for example a mesh with its material and texture. Notes and sources are not saved.
+    read from, for example a mesh with its material and texture; artwork: the picture that can be painted on
+    and reloaded, None if it is not known. Notes and sources are not saved.
     """
 
     drawing: Drawing
@@ -103,6 +117,7 @@ class Document:
     digest: str = ""
     notes: tuple[str, ...] = ()
     sources: tuple[Path, ...] = ()
+    artwork: ArtworkFile | None = None
 
     @property
     def face_order(self) -> Ints | None:

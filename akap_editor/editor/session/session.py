@@ -15,7 +15,7 @@ from ...errors import SolverError
 from ...geometry.validation import Floats
 from ...words import mark
 from ..document.crossings import crossings_in_pose
-from ..document.document import Document, EditState
+from ..document.document import ArtworkFile, Document, EditState
 from ..document.drawing import Drawing
 from ..document.pin_angles import pin_angles
 from .edits import Edit, Effect, SetPins
@@ -369,6 +369,10 @@ class Session:
         """
         self.document = replace(self.document, path=path, digest=digest)
         self._saved_state = self.present
+
+    def set_artwork(self, artwork: ArtworkFile) -> None:
+        """Note the picture file that the drawing shows now."""
+        self.document = replace(self.document, artwork=artwork)
 
     def mark_unsaved(self) -> None:
         """Note that no file holds the present state, although nothing was edited since it was opened."""

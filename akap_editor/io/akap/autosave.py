@@ -13,7 +13,7 @@ from pathlib import Path
 import platformdirs
 from filelock import FileLock, Timeout
 
-from ...editor.document.document import Document, EditState
+from ...editor.document.document import ArtworkFile, Document, EditState
 from ...errors import InputError, file_errors
 from ...words import mark, tr
 from ..atomic import TEMPORARY_PREFIX, TEMPORARY_SUFFIX, read_file, write_atomic
@@ -70,12 +70,19 @@ class RecoveryCopy:
             document = decode_document(data)
             origin = parse_record(Archive(data).read(ORIGIN_ENTRY, MAX_ORIGIN_BYTES))
             path, digest = require(origin, "path", str), optional(origin, "digest", str, "")
-        return replace(document, path=Path(path) if path else None, digest=digest)
+            artwork = optional(origin, "artwork", str, "")
+            known = (
+                ArtworkFile(Path(artwork), optional(origin, "artworkDigest", str, "")) if artwork else None
+            )
+        return replace(document, path=Path(path) if path else None, digest=digest, artwork=known)
 
     def write(self, document: Document) -> None:
         """Replace the copy. Raises InputError."""
         path = str(document.path.absolute()) if document.path else ""
-        origin = json.dumps({"path": path, "digest": document.digest}).encode()
+        values = {"path": path, "digest": document.digest}
+        if document.artwork is not None:
+            values |= {"artwork": str(document.artwork.path), "artworkDigest": document.artwork.digest}
+        origin = json.dumps(values).encode()
         write_atomic(self.path, encode_document(document, [(ORIGIN_ENTRY, origin, True)]))
 
     def discard(self) -> None:

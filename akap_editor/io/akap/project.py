@@ -2,11 +2,9 @@
 
 import hashlib
 import json
-import reprlib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -14,22 +12,19 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from ...editor.document.document import Document, EditState
-from ...editor.document.drawing import Drawing, Meshing
+from ...editor.document.drawing import Drawing
 from ...editor.document.rig.joint import check_joints
 from ...errors import FileError, InputError, error_context, file_errors
 from ...geometry.mesh import TriMesh
-from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, as_number, freeze
+from ...geometry.validation import MAX_COORDINATE, Floats, as_instance, freeze
 from ...layers.drawing_layer import flat_picture
-from ...meshing.meshers import TRIANGLE, check_known
-from ...meshing.slits import Cut, check_cuts
 from ...words import mark, tr
-from ..atomic import as_path, read_file, write_atomic
+from ..atomic import as_path, read_file, resolved, write_atomic
 from ..images import MAX_PIXELS, decode_image, encode_png
 from .archive import Archive, ArchiveEntry, check_expanded, pack
 from .json_records import (
     Json,
     file_version,
-    numbers,
     optional,
     parse_record,
     program_name,
@@ -44,6 +39,14 @@ from .layer_entries import (
     read_layers,
 )
 from .loose_entries import describe_loose, loose_entries, read_loose
+from .picture_record import (
+    MAX_DOCUMENT_VERTICES,
+    check_meshing,
+    describe_meshing,
+    describe_source,
+    read_meshing,
+    read_source,
+)
 from .pose_entries import keyframe_entries, named_pose_entries, read_keyframes, read_named_poses
 from .state_records import (
     check_crossings,
@@ -64,7 +67,6 @@ STIFFNESS_ENTRY = "stiffness"  # a factor for each face
 THUMBNAIL_ENTRY = "thumbnail.png"  # a small copy of the picture
 ORIGINAL_ENTRY = "original.png"  # the picture before its background was removed
 
-MAX_DOCUMENT_VERTICES = 1_000_000
 MAX_DOCUMENT_FACES = 2_000_000
 MAX_DOCUMENT_BYTES = 2**24
 THUMBNAIL_SIDE = 256
@@ -73,13 +75,13 @@ THUMBNAIL_SIDE = 256
 def save(document: Document, path: str | Path) -> Document:
     """Write an .akap file, whole or not at all; return the document with its ``path`` and ``digest`` set.
 
-    Equal documents give equal bytes. Raises FileError if the file cannot be written, or could not be opened
-    again, e.g. for two pins with one id; then the old file stays.
+    Equal documents give equal bytes in one folder. Raises FileError if the file cannot be written, or could
+    not be opened again, e.g. for two pins with one id; then the old file stays.
     """
     as_instance(document, "document", Document)
     path = as_path(path)
     with file_errors("save", path):
-        data = encode_document(document)
+        data = encode_document(document, folder=resolved(path).parent)
     write_atomic(path, data)
     return replace(document, path=Path(path), digest=_digest(data))
 
@@ -91,7 +93,7 @@ def load(path: str | Path) -> Document:
     """
     data = read_file(path, mark("an .akap file"))
     with file_errors("open", path):
-        document = decode_document(data)
+        document = decode_document(data, resolved(as_path(path)).parent)
     return replace(document, path=Path(path), digest=_digest(data))
 
 
@@ -112,14 +114,17 @@ def _digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def encode_document(document: Document, more: Sequence[ArchiveEntry] = ()) -> bytes:
+def encode_document(
+    document: Document, more: Sequence[ArchiveEntry] = (), folder: Path | None = None
+) -> bytes:
     """The bytes of an .akap file. Raises InputError if it could not be opened again.
 
-    more: additional entries at the end, which readers ignore.
+    more: additional entries at the end, which readers ignore; folder: where the file will be, from which the
+    path of the artwork begins; None leaves it out.
     """
     _check(document)
     drawing = document.drawing
-    text = json.dumps(_describe(document), allow_nan=False).encode()
+    text = json.dumps(_describe(document, folder), allow_nan=False).encode()
     if len(text) > MAX_DOCUMENT_BYTES:
         raise InputError(
             tr(
@@ -147,9 +152,9 @@ def encode_document(document: Document, more: Sequence[ArchiveEntry] = ()) -> by
     return pack(entries)
 
 
-def decode_document(data: bytes) -> Document:
-    """The document in the bytes of an .akap file. Raises InputError, and nothing else."""
-    document = _decode(Archive(data))
+def decode_document(data: bytes, folder: Path = Path()) -> Document:
+    """The document in the bytes of an .akap file, which is in ``folder``. Raises InputError, nothing else."""
+    document = _decode(Archive(data), folder)
     _check(document)
     return document
 
@@ -160,7 +165,7 @@ def _check(document: Document) -> None:
     _check_sizes(*document.drawing.size, len(mesh.vertices), len(mesh.faces))
     _check_vertices(mesh.vertices)
     if document.drawing.meshing is not None:
-        _check_meshing(document.drawing.meshing)
+        check_meshing(document.drawing.meshing)
     state = document.state
     check_state(state, len(mesh.vertices), len(mesh.faces))
     check_joints(state.joints, mesh)
@@ -174,14 +179,6 @@ def _check(document: Document) -> None:
             raise InputError(
                 tr("keyframes: expected {count} layers in each, got {actual}", count=count, actual=actual)
             )
-
-
-def _check_meshing(meshing: Meshing) -> None:
-    as_number(meshing.vertices, "vertices wanted", 0, MAX_DOCUMENT_VERTICES)
-    as_number(meshing.expand, "expand", 0.0, MAX_COORDINATE)
-    as_number(meshing.threshold, "threshold", 0.0, 1.0)
-    if meshing.background is not None:
-        as_number(meshing.background, "background", 0.0, 1.0)
 
 
 def _check_sizes(width: int, height: int, vertices: int, faces: int) -> None:
@@ -252,7 +249,7 @@ def _stiffness_entries(state: EditState) -> list[ArchiveEntry]:
     return [(STIFFNESS_ENTRY, state.stiffness.astype("<f8").tobytes(), True)]
 
 
-def _describe(document: Document) -> Json:
+def _describe(document: Document, folder: Path | None) -> Json:
     """The entry document.json."""
     drawing, state = document.drawing, document.state
     width, height = drawing.size
@@ -267,7 +264,7 @@ def _describe(document: Document) -> Json:
             "faces": len(drawing.mesh.faces),
             "tied": drawing.mesh.tied,
             **({"cut": True} if drawing.mesh.is_cut else {}),
-            **({"made": _describe_meshing(drawing)} if drawing.meshing is not None else {}),
+            **({"made": describe_meshing(drawing)} if drawing.meshing is not None else {}),
         },
         "pins": [pin.to_json() for pin in document.state.pins],
         "settings": document.state.settings.to_json(),
@@ -276,6 +273,7 @@ def _describe(document: Document) -> Json:
         **write_crossings(document.state.crossings),
         **({"mirror": state.mirror.to_json()} if state.mirror is not None else {}),
         **describe_loose(document.state),
+        **describe_source(document.artwork, folder),
     }
 
 
@@ -284,21 +282,6 @@ def _is_of_version_2(document: Document) -> bool:
     drawing = document.drawing
     has_scales = any(pin.scale is not None for pin in document.state.pins)
     return bool(drawing.layers) or drawing.mesh.is_cut or has_scales
-
-
-def _describe_meshing(drawing: Drawing) -> Json:
-    """How the mesh was made; the tolerance of a removed background only with the original picture."""
-    meshing = drawing.meshing
-    assert meshing is not None
-    is_background_removed = meshing.background is not None and drawing.original is not None
-    return {
-        "vertices": int(meshing.vertices),
-        "expand": float(meshing.expand),
-        "threshold": float(meshing.threshold),
-        "mesher": meshing.mesher,
-        **({"background": float(meshing.background or 0.0)} if is_background_removed else {}),
-        **({"cuts": [list(map(list, cut)) for cut in meshing.cuts]} if meshing.cuts else {}),
-    }
 
 
 def _thumbnail(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -316,7 +299,7 @@ def _thumbnail_step(size: tuple[int, ...]) -> int:
 # -- reading -------------------------------------------------------------------------------------------------
 
 
-def _decode(archive: Archive) -> Document:
+def _decode(archive: Archive, folder: Path) -> Document:
     if "mimetype" not in archive or archive.read("mimetype", 256) != MIMETYPE:
         raise InputError(tr("expected an .akap file, got a zip archive of another kind"))
     text = archive.read("document.json", MAX_DOCUMENT_BYTES)
@@ -334,13 +317,14 @@ def _decode(archive: Archive) -> Document:
         n, m = require(mesh, "vertices", int), require(mesh, "faces", int)
         tied = optional(mesh, "tied", bool, True)
         is_cut = optional(mesh, "cut", bool, False) and version > FLAT_VERSION
-        meshing = _read_meshing(require(mesh, "made", dict)) if "made" in mesh else None
+        meshing = read_meshing(require(mesh, "made", dict)) if "made" in mesh else None
         _check_sizes(width, height, n, m)
     positions = archive.read_array("pose/positions", "<f8", n, 2)
     with error_context("document.json"):
         pins = read_pins(require(record, "pins", list))
         settings = read_settings(require(record, "settings", dict))
         crossings, mirror = read_crossings(record), read_mirror(record, pins)
+        artwork = read_source(record, folder)
     stiffness = archive.read_array(STIFFNESS_ENTRY, "<f8", m, 1)[:, 0] if STIFFNESS_ENTRY in archive else None
     poses, animation = read_named_poses(archive, n), read_keyframes(archive, n)
     loose = read_loose(archive, record, m)
@@ -358,36 +342,12 @@ def _decode(archive: Archive) -> Document:
         )
         with error_context("document.json"):
             joints = read_joints(record)
-        return Document(drawing, replace(state, joints=joints))
+        return Document(drawing, replace(state, joints=joints), artwork=artwork)
     trimesh = TriMesh(vertices, faces, tied, is_cut=is_cut)
     image, original = _picture(archive, "picture.png", width, height), None
     if meshing is not None and meshing.background is not None:
         original = _picture(archive, ORIGINAL_ENTRY, width, height)
-    return Document(Drawing(image, trimesh, uv, name, meshing, original), state)
-
-
-def _read_meshing(record: Json) -> Meshing:
-    expand, threshold = numbers([record.get("expand"), record.get("threshold")], "expand and threshold")
-    background = numbers([record["background"]], "background")[0] if "background" in record else None
-    vertices = require(record, "vertices", int)
-    meshing = Meshing(
-        vertices,
-        float(expand),
-        float(threshold),
-        None if background is None else float(background),
-        check_known(record.get("mesher", TRIANGLE)),
-        _read_cuts(optional(record, "cuts", list, [])),
-    )
-    _check_meshing(meshing)
-    return meshing
-
-
-def _read_cuts(records: list[Any]) -> tuple[Cut, ...]:
-    """The strokes of the knife. Raises InputError on values of other kinds."""
-    for record in records:
-        if type(record) is not list or any(type(point) is not list or len(point) != 2 for point in record):
-            raise InputError(tr("cuts: expected lists of points, got {value}", value=reprlib.repr(record)))
-    return check_cuts([[numbers(point, "cuts").tolist() for point in record] for record in records])
+    return Document(Drawing(image, trimesh, uv, name, meshing, original), state, artwork=artwork)
 
 
 def _picture(archive: Archive, name: str, width: int, height: int) -> NDArray[np.uint8]:

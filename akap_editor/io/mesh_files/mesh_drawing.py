@@ -10,7 +10,7 @@ from ...errors import InputError, file_errors
 from ...geometry.mesh import TriMesh, signed_areas
 from ...geometry.validation import Floats
 from ...words import mark, tr
-from ..akap.project import MAX_DOCUMENT_VERTICES
+from ..akap.picture_record import MAX_DOCUMENT_VERTICES
 from ..atomic import read_file, resolved
 from ..images import read_image
 from .materials import parse_textures

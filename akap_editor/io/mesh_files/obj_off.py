@@ -14,7 +14,7 @@ import numpy as np
 from ...errors import InputError
 from ...geometry.mesh import TriMesh
 from ...words import tr
-from ..akap.project import MAX_DOCUMENT_VERTICES
+from ..akap.picture_record import MAX_DOCUMENT_VERTICES
 from ..atomic import write_atomic
 
 _MAX_CORNERS = 6_000_000

@@ -8,7 +8,7 @@ import pytest
 from imgui_bundle import imgui
 
 from akap_editor.app import files
-from akap_editor.app.commands.command import CTRL
+from akap_editor.app.commands.command import CTRL, SHIFT
 from akap_editor.app.dialogs import file_dialog
 from akap_editor.app.dialogs.file_dialog import FileDialog
 from akap_editor.app.jobs import task as task_module
@@ -64,7 +64,7 @@ HANDS = {
     "remove": press(imgui.Key.delete),
     "remove the last": press(imgui.Key.backspace),
     "nudge": press(imgui.Key.right_arrow),
-    "reset": press(CTRL | imgui.Key.r),
+    "reset": press(CTRL | SHIFT | imgui.Key.r),
     "close": press(CTRL | imgui.Key.w),
     "drop": lambda ui, point: ui.window.drop([OTHER]),
 }

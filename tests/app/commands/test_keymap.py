@@ -35,7 +35,7 @@ def test_changes_are_stored_by_name_and_come_back():
     changed.change("Open...", default, default)
     assert changed.to_json() == {"Save": ["Ctrl+W", "F5"], "Quit": []}
     again = Keymap()
-    again.restore(changed.to_json())
+    again.restore(changed.to_json(), {})
     assert again.chords("Save", default) == (int(CTRL | Key.w), int(Key.f5))
     assert again.chords("Quit", default) == ()
     assert again.chords("Open...", default) is default
@@ -49,8 +49,16 @@ def test_changes_are_stored_by_name_and_come_back():
 )
 def test_what_makes_no_sense_is_ignored(stored, chords):
     changed, default = Keymap(), (int(CTRL | Key.s),)
-    changed.restore(stored)
+    changed.restore(stored, {"Save": default})
     assert changed.chords("Save", default) == (default if chords is None else chords)
+
+
+def test_a_chord_that_a_newer_table_gives_to_another_command_stays_where_the_user_put_it():
+    restored = Keymap()
+    table = {"Save": (int(CTRL | Key.s),), "Reload": (int(CTRL | Key.r), int(Key.f5)), "Quit": (int(Key.f5),)}
+    restored.restore({"Save": ["Ctrl+R"], "Gone": ["F5"]}, table)
+    chords = {label: restored.chords(label, default) for label, default in table.items()}
+    assert chords == {"Save": (int(CTRL | Key.r),), "Reload": (int(Key.f5),), "Quit": (int(Key.f5),)}
 
 
 def test_the_keymap_of_the_program_is_the_table_s(ui):

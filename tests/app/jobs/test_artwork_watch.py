@@ -6,9 +6,10 @@ from dataclasses import replace
 import pytest
 
 from akap_editor.app import files
-from akap_editor.app.files import notice_changed_artwork
 from akap_editor.app.jobs.artwork_watch import artwork_path
+from akap_editor.app.jobs.reload_artwork import notice_changed_artwork
 from akap_editor.editor.document.document import new_document
+from akap_editor.io.artwork_file import artwork_file
 from akap_editor.io.images import write_png
 from tests.support.pictures import figure_picture
 
@@ -19,7 +20,7 @@ def painted(ui, drawing, tmp_path):
     path = tmp_path / "figure.png"
     write_png(path, figure_picture(2, soft=True))
     os.utime(path, (1000, 1000))
-    files.show_document(ui.state, replace(new_document(drawing), sources=(path,)))
+    files.show_document(ui.state, replace(new_document(drawing), artwork=artwork_file(path)))
     ui.state.notice = ""
     return ui, path
 
@@ -30,7 +31,7 @@ def test_a_change_is_noticed_once_and_reloaded(painted):
     assert ui.state.notice == ""
     os.utime(path, (2000, 2000))
     notice_changed_artwork(ui.state)
-    assert ui.state.notice.startswith("figure.png has changed on disk; Reload Artwork (F5)")
+    assert ui.state.notice == "figure.png has changed on disk"
     ui.state.notice = ""
     notice_changed_artwork(ui.state)
     assert ui.state.notice == ""

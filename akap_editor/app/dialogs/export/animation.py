@@ -25,6 +25,7 @@ from ....io.outputs import is_source
 from ....words import mark, tr, tr_plural
 from ... import widgets
 from ...app_state import AppState
+from ...jobs.file_manager import folder_button
 from ...jobs.frame_encoder import FrameEncoder
 from ...jobs.task import Progress, Steps, Task
 from ...preferences import Preferences
@@ -275,7 +276,7 @@ def _export_steps(state: AppState, options: AnimationExportOptions, path: Path, 
         file=display_name(path),
         details=encoder.said,
     )
-    state.exported = state.notice, path
+    state.notice_button = folder_button(state.notice, path)
 
 
 def _draw_options(options: AnimationExportOptions, scale: float) -> None:

@@ -16,6 +16,7 @@ from ....io.painter import Painter
 from ....words import mark, tr
 from ... import widgets
 from ...app_state import AppState
+from ...jobs.file_manager import folder_button
 from ...theme import ACCENT
 from ..file_dialog import FileDialog, FileRequest
 from ..replace_files import ReplaceFilesDialog
@@ -136,7 +137,7 @@ def _begin_export(state: AppState, options: PoseExportOptions, path: Path) -> No
         if format_of(path).uses_framing:
             width, height = options.output_size(document)
             said = tr("{exported}, {width} × {height} pixels", exported=said, width=width, height=height)
-        state.exported = said, path
+        state.notice_button = folder_button(said, path)
         return said
 
     state.notice = tr("Exporting {file} ...", file=display_name(path))

@@ -68,14 +68,14 @@ def test_the_dialog_asks_and_then_a_file_is_written(keyed, tmp_path):
 
 def test_after_an_export_a_button_shows_the_file(keyed, tmp_path, monkeypatch):
     shown = []
-    monkeypatch.setattr("akap_editor.app.frame.status_bar.show_in_folder", shown.append)
+    monkeypatch.setattr("akap_editor.app.jobs.file_manager.show_in_folder", shown.append)
     export_animation(keyed.state, AnimationExportOptions("GIF", fps=5, size=40), tmp_path / "wave.gif")
     keyed.settle()
-    keyed.do(lambda hand: hand.item_click("//Status/###show in folder"))
+    keyed.do(lambda hand: hand.item_click("//Status/###Show in Folder"))
     assert shown == [tmp_path / "wave.gif"]
     keyed.state.notice = "Saved figure.akap"
     keyed.settle()
-    keyed.do(lambda hand: [] if not hand.item_exists("//Status/###show in folder") else pytest.fail("shown"))
+    keyed.do(lambda hand: [] if not hand.item_exists("//Status/###Show in Folder") else pytest.fail("shown"))
 
 
 def test_asking_does_not_change_what_is_seen(keyed):
