@@ -15,6 +15,7 @@ from akap_editor.io.open_document import open_document
 from akap_editor.meshing.meshers import MESHERS
 from akap_editor.render.offscreen import OffscreenRenderer
 from tests.support.command_line import assert_one_line
+from tests.support.meshers import needs_triangle
 
 SUFFIXES = [each.suffix for each in EXPORT_FORMATS]
 
@@ -113,6 +114,7 @@ def test_the_largest_picture(run, tmp_path):
     assert not image[:, :190].any()
 
 
+@needs_triangle
 def test_the_mesh_of_a_picture_is_made_by_the_mesher_asked_for(run, picture, tmp_path):
     written = []
     for mesher in MESHERS:

@@ -11,6 +11,7 @@ from akap_editor.io.images import write_png
 from akap_editor.io.mesh_files.mesh_drawing import read_mesh
 from akap_editor.meshing.meshers import MESHERS
 from tests.support.command_line import assert_one_line
+from tests.support.meshers import needs_triangle
 
 
 @pytest.fixture
@@ -194,6 +195,7 @@ def test_as_a_program(picture):
     assert "2 parts, 1 hole" in done.stdout
 
 
+@needs_triangle
 def test_the_mesher_is_chosen(run, picture):
     outputs = [run("mesh", picture, "-o", f"{name}.obj", "--mesher", name) for name in MESHERS]
     assert [code for code, _, _ in outputs] == [0, 0]

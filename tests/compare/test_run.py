@@ -13,6 +13,7 @@ from akap_editor.geometry.distortion import distortion
 from akap_editor.io.akap.recording import read_recording, recorded_drawing
 from akap_editor.io.images import read_image
 from akap_editor.resources import resource
+from tests.support.meshers import needs_triangle
 from tests.support.recorded_drag import plank_drawing, plank_recording, record_drag
 
 SPECS = ["akap", "akap:memory=1", "arap", "igarashi", "cauchy-green", "mls"]
@@ -72,6 +73,7 @@ def test_iterations_converge(ran):
     assert (curve.pin_error[1:] < 1e-9).all()
 
 
+@needs_triangle
 def test_bar_of_the_paper_gives_its_figures():
     """Table 1, first row: the bundled recording is the bend at which conformal maps and ARAP agree."""
     recording = read_recording(resource("assets", "recordings", "bar.akaprec"))

@@ -10,6 +10,7 @@ from akap_editor.io.open_document import open_document
 from akap_editor.meshing.outline import Outline
 from akap_editor.meshing.triangulate import triangulate
 from akap_editor.resources import resource
+from tests.support.meshers import needs_triangle
 
 
 def star(arms: int, first_angle: float = 0.2) -> tuple[TriMesh, np.ndarray]:
@@ -69,6 +70,7 @@ EXPECTED = {
 }
 
 
+@needs_triangle
 @pytest.mark.parametrize("name", EXPECTED)
 def test_hands_feet_heads_and_trunks_of_bundled_drawings(name):
     mesh = open_document(resource("assets", "drawings", f"{name}.png")).drawing.mesh

@@ -2,11 +2,10 @@
 
 import pytest
 
-from akap_editor.meshing.meshers import MESHERS
-from tests.support.meshers import pretend_installed
+from tests.support.meshers import EACH_MESHER, pretend_installed
 
 
-@pytest.fixture(params=MESHERS)
+@pytest.fixture(params=EACH_MESHER)
 def mesher(request, monkeypatch) -> str:
     """Each mesher in turn; it is the default one, as on a computer where only it is installed."""
     pretend_installed(monkeypatch, request.param)

@@ -7,7 +7,7 @@ from akap_editor.editor.document.drawing import Meshing, make_drawing
 from akap_editor.editor.document.remesh import remesh_drawing
 from akap_editor.errors import InputError
 from akap_editor.meshing.meshers import PYTHONCDT, TRIANGLE, check_mesher, default_mesher, nearest_mesher
-from tests.support.meshers import pretend_installed
+from tests.support.meshers import needs_triangle, pretend_installed
 
 IMAGE = np.zeros((80, 80, 4), dtype=np.uint8)
 IMAGE[10:70, 10:70] = 255
@@ -19,11 +19,13 @@ def without_triangle(monkeypatch):
     pretend_installed(monkeypatch, PYTHONCDT)
 
 
+@needs_triangle
 def test_triangle_comes_first_where_it_is_installed():
     assert default_mesher() == check_mesher(None) == Meshing().mesher == TRIANGLE
     assert make_drawing(IMAGE, vertices=100).meshing.mesher == TRIANGLE
 
 
+@needs_triangle
 def test_the_mesher_asked_for_makes_the_mesh():
     meshes = [make_drawing(IMAGE, vertices=100, mesher=name).mesh for name in (TRIANGLE, PYTHONCDT)]
     assert meshes[0].vertices.tolist() != meshes[1].vertices.tolist()

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from akap_editor.errors import InputError
-from akap_editor.meshing.meshers import MESHERS
 from akap_editor.meshing.picture_mesh import mesh_picture
 from akap_editor.meshing.quality import smallest_angles
 from akap_editor.meshing.slits import check_cuts, simplified_cut
+from tests.support.meshers import EACH_MESHER
 
 SIDE = 100
 ALPHA = np.zeros((SIDE, SIDE), np.uint8)
@@ -31,7 +31,7 @@ CUTS = {
 }
 
 
-@pytest.mark.parametrize("mesher", MESHERS)
+@pytest.mark.parametrize("mesher", EACH_MESHER)
 @pytest.mark.parametrize("name", CUTS)
 def test_a_stroke_opens_the_mesh_and_takes_nothing_away(name, mesher):
     cuts, parts, loops = CUTS[name]
@@ -43,7 +43,7 @@ def test_a_stroke_opens_the_mesh_and_takes_nothing_away(name, mesher):
     assert smallest_angles(mesh).min() > 15  # only corners between outline and slit force smaller ones
 
 
-@pytest.mark.parametrize("mesher", MESHERS)
+@pytest.mark.parametrize("mesher", EACH_MESHER)
 def test_the_lips_lie_on_one_another(mesher):
     """Each edge of one lip is one of the other lip, in the other direction and at the same bits."""
     mesh = mesh_picture(ALPHA, 300, mesher=mesher, cuts=[((30, 0), (30, 50), (45, 70))]).mesh

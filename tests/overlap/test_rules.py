@@ -18,6 +18,7 @@ from akap_editor.overlap.overlaps import Overlaps, no_overlaps
 from akap_editor.overlap.rules import TRUNK_SHARE, Rules, signs_after_drag
 from akap_editor.resources import bundled_drawings
 from tests.overlap.test_overlaps import ROPE, SEAM_TRAVEL, decided, rolled_up, rope_pose, turned_area
+from tests.support.meshers import needs_triangle
 
 Point = tuple[float, float]
 
@@ -114,6 +115,7 @@ def test_small_changes_of_the_way_do_not_change_who_wins(scene: tuple[Scene, Ses
         assert len(turned) <= scene[0].seam * len(expected)
 
 
+@needs_triangle
 @pytest.mark.parametrize("scene", ["gingerbread, arms folded"], indirect=True)
 def test_a_brushed_limb_passes_to_the_front_gradually(scene: tuple[Scene, Session]) -> None:
     before, shares = [no_overlaps(scene[1].drawing.mesh)], [0.0]

@@ -13,6 +13,7 @@ from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.session import Session
 from akap_editor.io.export.drawn_faces import DrawnFaces, drawn_faces
 from akap_editor.render.offscreen import OffscreenRenderer
+from tests.support.meshers import needs_triangle
 
 WIDTH, HEIGHT = 420, 64
 SCALE = 2
@@ -85,6 +86,7 @@ def winding(curve: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.rint(np.angle(np.roll(spokes, -1, axis=1) / spokes).sum(axis=1) / (2 * np.pi))
 
 
+@needs_triangle
 @pytest.mark.parametrize("elbow", [40.0, 130.0])
 def test_a_gap_in_a_fold_is_one_of_the_bent_outline(elbow: float) -> None:
     """Its crease is a loop of the outline, and it is transparent inside that loop and nowhere else."""

@@ -8,6 +8,7 @@ from akap_editor.app.canvas.scene import scene_overlays
 from akap_editor.app.canvas.view_options import distortion_colors
 from akap_editor.geometry.distortion import distortion
 from akap_editor.render.overlays import FaceColors
+from tests.support.meshers import needs_triangle
 
 Key = imgui.Key
 
@@ -72,6 +73,7 @@ def test_an_overlay_is_seen_and_gone_again_and_never_exported(pinned, name):
     assert (canvas(pinned, pinned.screenshot()) == plain).all()
 
 
+@needs_triangle
 def test_a_stroke_of_the_brush_is_tinted_only_while_the_brush_is_at_hand(pinned):
     plain = pinned.screenshot()
     pinned.key(Key.b)

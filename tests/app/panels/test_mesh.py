@@ -13,7 +13,7 @@ from akap_editor.editor.document.drawing import Meshing, make_drawing
 from akap_editor.io.mesh_files.mesh_drawing import read_mesh
 from akap_editor.meshing.meshers import PYTHONCDT
 from akap_editor.resources import resource
-from tests.support.meshers import pretend_installed
+from tests.support.meshers import needs_triangle, pretend_installed
 from tests.support.window_driver import WindowDriver
 
 
@@ -151,6 +151,7 @@ def test_a_mesh_from_a_file_that_is_not_on_its_picture_says_so(opened, tmp_path)
     assert "cannot be made anew" in opened.state.notice
 
 
+@needs_triangle
 def test_another_mesher_is_kept_for_new_drawings(opened):
     depth, before = opened.session.history.depth, opened.document.drawing
 
@@ -171,6 +172,7 @@ def test_another_mesher_is_kept_for_new_drawings(opened):
     assert opened.document.drawing.meshing.mesher == PYTHONCDT
 
 
+@needs_triangle
 def test_without_a_choice_no_mesher_is_shown(opened, monkeypatch):
     def shows_choice():
         shown = []

@@ -18,6 +18,7 @@ from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import signed_areas
 from akap_editor.layers.layered_picture import LayeredPicture
 from tests.support.layered_files import filled
+from tests.support.meshers import needs_triangle
 from tests.support.puppets import ARM, BODY, EYES, HAT, SKULL, puppet, puppet_layers
 
 DRAWING = puppet()
@@ -106,6 +107,7 @@ def posed_session(drawing=DRAWING):
     return session
 
 
+@needs_triangle
 def test_another_mesh_takes_over_pose_pins_and_stiffness_layer_by_layer():
     session = posed_session()
     state = session.state

@@ -40,7 +40,7 @@ from akap_editor.io.images import Picture
 from akap_editor.meshing.meshers import MESHERS, PYTHONCDT, TRIANGLE
 from tests.support.edit_examples import EDIT_EXAMPLES, LAYER_EDITS
 from tests.support.editor_driver import Ticks, bits, replayed_state
-from tests.support.meshers import pretend_installed
+from tests.support.meshers import EACH_MESHER, pretend_installed
 from tests.support.puppets import puppet
 
 CASES = {**EDIT_EXAMPLES, "another method": lambda _: SetSettings(Settings.parse("arap:iterations=3"))}
@@ -207,7 +207,7 @@ def test_a_prepared_mesh_is_taken_over(session):
     assert session.drawing is drawing
 
 
-@pytest.mark.parametrize("mesher", MESHERS)
+@pytest.mark.parametrize("mesher", EACH_MESHER)
 def test_a_recorded_mesh_is_made_by_the_same_mesher_again(session, drawing, mesher, monkeypatch):
     """Whichever is the default one there."""
     apply_in_gesture(session, Remesh(replace(drawing.meshing, vertices=200, mesher=mesher)))

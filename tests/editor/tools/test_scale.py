@@ -18,6 +18,7 @@ from akap_editor.errors import InputError
 from akap_editor.geometry.mesh import signed_areas
 from akap_editor.io.akap.project import decode_document, encode_document
 from tests.support.editor_driver import Driver, bits, replayed_state
+from tests.support.meshers import needs_triangle
 from tests.support.puppets import ARM, BODY, EYES, SKULL, puppet
 
 
@@ -52,6 +53,7 @@ def flipped(d):
     return int((signed_areas(d.state.positions, d.session.drawing.mesh.faces) <= 0).sum())
 
 
+@needs_triangle
 def test_a_drag_of_the_handle_scales_the_drawing_and_back(pinned, drawing):
     pinned.editor.select({2})
     scale_by_hand(pinned, 1.6)
@@ -68,6 +70,7 @@ def test_a_drag_of_the_handle_scales_the_drawing_and_back(pinned, drawing):
     np.testing.assert_allclose(pinned.state.positions, drawing.mesh.vertices, atol=0.05)
 
 
+@needs_triangle
 def test_escape_restores_every_bit(pinned):
     pinned.editor.select({2})
     before = pinned.everything

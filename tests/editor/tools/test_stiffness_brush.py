@@ -15,6 +15,7 @@ from akap_editor.editor.session.replay import replay
 from akap_editor.editor.tools.stiffness_brush import MAX_RADIUS, MIN_RADIUS, Brush
 from akap_editor.geometry.distortion import distortion
 from tests.support.editor_driver import Driver, bits
+from tests.support.meshers import needs_triangle
 from tests.support.puppets import ARM, BODY, SKULL, puppet
 
 NECK, HEAD = (80.0, 40.0), (30.0, 40.0)
@@ -55,6 +56,7 @@ def test_a_click_with_shift_paints_a_straight_line_from_the_end_of_the_last_stro
     assert at(pinned, (20.0, 40.0)) == 100.0
 
 
+@needs_triangle
 def test_shift_without_an_earlier_stroke_paints_where_it_is(pinned):
     pinned.editor.chosen_tool = pinned.editor.brush_tool
     place = pinned.editor.camera.to_screen((100.0, 40.0))
@@ -123,6 +125,7 @@ def test_a_stroke_beside_the_drawing_is_no_step(pinned):
     assert pinned.everything == before
 
 
+@needs_triangle
 def test_a_fast_stroke_has_no_gaps(pinned):
     stroke(pinned, (15.0, 40.0), (105.0, 40.0))
     assert min(at(pinned, (float(x), 40.0)) for x in range(15, 106)) == 100.0

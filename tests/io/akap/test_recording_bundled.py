@@ -10,7 +10,7 @@ from akap_editor.editor.session.replay import replay
 from akap_editor.io.akap.recording import read_recording, recorded_drawing
 from akap_editor.meshing.meshers import PYTHONCDT
 from akap_editor.resources import resource
-from tests.support.meshers import pretend_installed
+from tests.support.meshers import needs_triangle, pretend_installed
 
 RECORDINGS = sorted(resource("assets", "recordings").glob("*.akaprec"))
 
@@ -39,6 +39,7 @@ def test_each_is_replayed_where_there_is_no_triangle(path, monkeypatch):
     assert np.abs(last.state.positions - drawing.mesh.vertices).max() > 0.1
 
 
+@needs_triangle
 def test_the_paper_s_experiments_are_on_the_meshes_that_they_were_made_on():
     """So that their figures are those of docs/experiments.md."""
     for name in ("fig5-rotating-head", "fig8-variants", "there-and-back"):
