@@ -11,10 +11,13 @@ import io
 import locale
 import os
 import re
+import string
 import struct
 import subprocess
 import sys
+from numbers import Real
 from pathlib import Path
+from typing import Any
 
 LANGUAGES = {
     "en": "English",
@@ -24,6 +27,9 @@ LANGUAGES = {
     "ja": "日本語",
     "zh": "简体中文",
 }
+# The decimal mark and the one between thousands, where they are not those of English. In French the latter is
+# a narrow space, which the font of the window lacks; this one is wider.
+_NUMBER_MARKS = {"de": ",.", "es": ",.", "fr": ",\N{NO-BREAK SPACE}"}
 LANGUAGE_VARIABLE = "AKAP_EDITOR_LANGUAGE"  # environment variable: another language than the system's
 _VARIABLES = (LANGUAGE_VARIABLE, "LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
 _FOLDER = Path(__file__).resolve().parent / "locale"
@@ -33,23 +39,41 @@ _QUERY_SECONDS = 2.0
 
 _translations: gettext.NullTranslations = gettext.NullTranslations()
 _language = "en"
+_number_marks: dict[int, str] = {}  # for `str.translate`
 
 
 def tr(text: str, /, **fields: object) -> str:
     """The text in the current language. fields: values of its fields, as in "{count} pins"."""
     found = _translations.gettext(text) if text else ""
-    return found.format(**fields) if fields else found
+    return _filled(found, fields) if fields else found
 
 
 def tr_in(context: str, text: str, /, **fields: object) -> str:
     """`tr` for a text that means several things in English, and here what ``context`` says."""
     found = _translations.pgettext(context, text)
-    return found.format(**fields) if fields else found
+    return _filled(found, fields) if fields else found
 
 
 def tr_plural(one: str, many: str, count: int, /, **fields: object) -> str:
     """The text for a number of things, in the current language's plural form; ``count`` is a field of it."""
-    return _translations.ngettext(one, many, count).format(count=count, **fields)
+    return _filled(_translations.ngettext(one, many, count), {"count": count, **fields})
+
+
+def number_text(value: float, form: str = "") -> str:
+    """A number as the current language writes it. form: Python's format specification, as in ",.1f"."""
+    return format(value, form).translate(_number_marks)
+
+
+class _LocalizedFormatter(string.Formatter):
+    """Fills the fields of a text with numbers as the current language writes them."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        text = format(value, format_spec)
+        return text.translate(_number_marks) if isinstance(value, Real) else text
+
+
+def _filled(text: str, fields: dict[str, object]) -> str:
+    return _LocalizedFormatter().vformat(text, (), fields) if _number_marks else text.format(**fields)
 
 
 def mark(text: str) -> str:
@@ -64,9 +88,10 @@ def mark_in(context: str, text: str) -> str:
 
 def use_language(language: str = "") -> None:
     """Choose the language, one of `LANGUAGES`; empty: the system's, or else English."""
-    global _translations, _language
+    global _translations, _language, _number_marks
     _language = language if language in LANGUAGES else system_language()
     _translations = gettext.NullTranslations() if _language == "en" else read_translations(po_path(_language))
+    _number_marks = dict(zip((ord("."), ord(",")), _NUMBER_MARKS.get(_language, ""), strict=False))
 
 
 def current_language() -> str:

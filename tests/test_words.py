@@ -6,15 +6,27 @@ import string
 from pathlib import Path
 
 import pytest
+from babel import Locale
 from babel.messages.catalog import Catalog
+from babel.numbers import format_decimal
 
 from akap_editor import words
 from akap_editor.app.commands import registry
 from akap_editor.app.commands.menu_bar import access_letters
 from akap_editor.app.panels import history
-from akap_editor.words import LANGUAGES, po_path, read_translations, tr, tr_in, tr_plural, use_language
+from akap_editor.words import (
+    LANGUAGES,
+    number_text,
+    po_path,
+    read_translations,
+    tr,
+    tr_in,
+    tr_plural,
+    use_language,
+)
 from tools import translations
 
+PACKAGE = Path(words.__file__).parent
 TRANSLATED = [language for language in LANGUAGES if language != "en"]
 
 PO = r"""# A comment.
@@ -94,6 +106,68 @@ def test_the_language_of_the_system(monkeypatch, variables, language):
         monkeypatch.setenv(name, value)
     monkeypatch.setattr(words.sys, "platform", "linux")
     assert words.system_language() == language
+
+
+# -- numbers -------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(params=LANGUAGES)
+def language(request):
+    """Each language in turn."""
+    use_language(request.param)
+    yield request.param
+    use_language("en")
+
+
+def test_numbers_have_the_marks_of_the_language(language):
+    """Babel's; in French the font lacks the narrow space that does not break."""
+    shown = [
+        number_text(1234567.5, ",.2f"),
+        number_text(0.05, "g"),
+        number_text(12),
+        number_text(-0.5, "+.1f"),
+    ]
+    locale = Locale.parse(language)
+    expected = format_decimal(1234567.5, "#,##0.00", locale).replace("\u202f", "\xa0")
+    point = locale.number_symbols["latn"]["decimal"]
+    assert shown == [expected, f"0{point}05", "12", f"-0{point}5"]
+
+
+def test_fields_of_texts_are_numbers_of_the_language(language):
+    values = {"size": 2.5, "name": "a.b", "count": 3, "share": 0.125}
+    text = tr("{size:,.1f} {name} {count} {name!r:.60} {share:.1%}", **values)
+    point = number_text(0.5)[1]
+    assert text == f"2{point}5 a.b 3 'a.b' 12{point}5%"
+    assert tr_plural("{count}, {more} s", "{count}, {more} s", 2, more=0.5) == f"2, 0{point}5 s"
+
+
+# A format that may give a point or a comma: with decimals, without a set number of them, or with thousands.
+DECIMALS = re.compile(r",|\.[1-9]\d*[f%]|[0-9]*(?<!\.0)[fge%]$")
+
+
+def unlocalized_numbers(path: Path) -> list[str]:
+    """The f-strings of a module of the window that write numbers themselves."""
+    return [
+        f"{path.name}:{node.lineno}: {ast.unparse(node)}"
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.FormattedValue)
+        and node.format_spec is not None
+        and DECIMALS.search("".join(str(getattr(part, "value", "")) for part in node.format_spec.values))
+    ]
+
+
+def test_no_number_is_drawn_with_the_marks_of_english_only():
+    """Numbers on the screen are written by `number_text`, or by `tr` as fields of a text."""
+    assert [text for path in (PACKAGE / "app").rglob("*.py") for text in unlocalized_numbers(path)] == []
+
+
+@pytest.mark.parametrize(
+    ("form", "is_found"),
+    [(".2f", 1), ("g", 1), (",", 1), ("+.1f", 1), (".1%", 1), (".0f", 0), (".0%", 0), ("02x", 0), ("d", 0)],
+)
+def test_numbers_with_the_marks_of_english_are_found(monkeypatch, form, is_found):
+    monkeypatch.setattr(Path, "read_text", lambda *_: f'imgui.text(f"{{value:{form}}} px")')
+    assert len(unlocalized_numbers(Path("made_up.py"))) == is_found
 
 
 # -- the stored translations ---------------------------------------------------------------------------------
@@ -216,7 +290,6 @@ def test_no_text_is_an_f_string():
 
 # -- no text is forgotten ------------------------------------------------------------------------------------
 
-PACKAGE = Path(words.__file__).parent
 # Rooms whose errors an artist can cause by files and gestures; the others check arguments of programs.
 SHOWN = ("app", "editor", "io", "layers", "meshing")
 DRAWING = frozenset(

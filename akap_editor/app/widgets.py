@@ -2,12 +2,13 @@
 
 import re
 from bisect import bisect_left
+from collections.abc import Callable
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ..editor.document.settings import Settings
 from ..render.overlays import Rgba
-from ..words import tr
+from ..words import number_text, tr
 from .app_state import AppState
 from .commands.command import Command
 from .theme import ACCENT, ACCENT_ACTIVE, ACCENT_HOVER, DARK, SECONDARY, STRONG_LINE, TEXT, packed
@@ -24,6 +25,7 @@ _BAR = (
     | imgui.WindowFlags_.no_scroll_with_mouse
 )
 _DIALOG = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
+_PRINTF_NUMBER = re.compile(r"%(\+?(?:\.\d+)?[dfg])")
 _MIN_NUMBER_WIDTH = 3.2  # beside a slider, times the font size, so that sliders have the same width
 _SWITCH_PADDING = 0.18  # times the font size
 _TOOLTIP_WIDTH = 22  # times the font size
@@ -131,13 +133,41 @@ def slider(
     imgui.pop_style_color()
     is_released = imgui.is_item_deactivated_after_edit()
     show_tooltip(tooltip)
-    text, right = word or text_format % value, imgui.get_item_rect_max().x + room
+    text, right = word or number_with_unit(value, text_format), imgui.get_item_rect_max().x + room
     top = imgui.get_item_rect_min().y + imgui.get_style().frame_padding.y
     corner = ImVec2(right - imgui.calc_text_size(text).x, top)
     imgui.get_window_draw_list().add_text(
         corner, packed(TEXT), text
     )  # no item: the slider stays the last one
     return bool(is_moved), float(value), bool(is_released)
+
+
+def number_with_unit(value: float, text_format: str) -> str:
+    """A number as the current language writes it. text_format: as for printf, as in "%.1f px"."""
+    text = _PRINTF_NUMBER.sub(lambda found: number_text(value, found[1]), text_format)
+    return text.replace("%%", "%")
+
+
+def number_in_language(
+    name: str, text_format: str, draw: Callable[[], tuple[bool, float]]
+) -> tuple[bool, float]:
+    """Draw a field or slider of ImGui with its number as the current language writes it.
+
+    draw: draws the item, of this name and with this printf format, and returns whether it changed, and its
+    value. ImGui writes a point, so its number is transparent and this one is drawn over it. While a number is
+    typed, ImGui's own text is shown, and ImGui takes a comma for a point.
+    """
+    is_own = number_with_unit(0.5, text_format) == text_format % 0.5
+    if is_own or imgui.internal.temp_input_is_active(imgui.get_id(name)):
+        return draw()
+    imgui.push_style_color(imgui.Col_.text, ImVec4(0, 0, 0, 0))
+    is_changed, value = draw()
+    imgui.pop_style_color()
+    text = number_with_unit(value, text_format)
+    low, high, size = imgui.get_item_rect_min(), imgui.get_item_rect_max(), imgui.calc_text_size(text)
+    corner = ImVec2((low.x + high.x - size.x) / 2, (low.y + high.y - size.y) / 2)
+    imgui.get_window_draw_list().add_text(corner, imgui.get_color_u32(imgui.Col_.text), text)
+    return is_changed, value
 
 
 def color(name: str, value: tuple[float, float, float]) -> tuple[float, float, float]:

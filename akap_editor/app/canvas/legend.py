@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from ...deform.methods import get_method
 from ...editor.editor import Editor
 from ...editor.session.session import Session
-from ...words import tr
+from ...words import number_text, tr
 from ..theme import SECONDARY, TEXT, packed
 from .vector_field_arrows import U_OPT_COLOR, U_SMOOTH_COLOR
 from .view_options import DISTORTION_RANGES, DISTORTION_SCALES, Measure, ViewOptions
@@ -76,11 +76,8 @@ def _draw_distortion_scale(view: ViewOptions, measure: Measure, scale: float) ->
     for low, high, color in zip(edges, edges[1:], colors.tolist(), strict=False):
         lower_right = ImVec2(high + 0.5, corner.y + size.y)
         draw.add_rect_filled(ImVec2(low, corner.y), lower_right, packed((*color, 1.0)))
-    labels = (
-        (f"÷ {limit:g}", tr("same"), f"× {limit:g}")
-        if measure == "area"
-        else (tr("1 (none)"), "", f"{limit:g}")
-    )
+    end = number_text(limit, "g")
+    labels = (f"÷ {end}", tr("same"), f"× {end}") if measure == "area" else (tr("1 (none)"), "", end)
     for position, label in zip((0.0, 0.5, 1.0), labels, strict=True):
         x = corner.x + position * (size.x - imgui.calc_text_size(label).x)
         draw.add_text(ImVec2(x, corner.y + size.y + gap), packed(TEXT), label)

@@ -13,6 +13,7 @@ from ...editor.session.session import Session
 from ...editor.tools.base import BrushCircle, Crosshair, Markers, RotationRing
 from ...editor.tools.rotate import RING_RADIUS
 from ...editor.tools.scale import scale_handle
+from ...words import number_text
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, packed
 from ..timeline.motion_paths import draw_motion_paths
@@ -202,7 +203,8 @@ def _draw_ring(draw: imgui.ImDrawList, ring: RotationRing, scale: float, has_sca
     if has_scale:
         _draw_scale_handle(draw, ring, scale)
     if ring.is_dragged or ring.scale is not None:
-        text = f"{round(math.degrees(ring.angle), 1) + 0.0:+.1f}°"  # + 0.0 turns -0.0 into 0.0
+        degrees = round(math.degrees(ring.angle), 1) + 0.0  # + 0.0 turns -0.0 into 0.0
+        text = f"{number_text(degrees, '+.1f')}°"
         if ring.scale is not None:
             text = f"{100 * ring.scale:.0f} %"
         left = ring.center[0] - imgui.calc_text_size(text).x / 2 - 6 * scale

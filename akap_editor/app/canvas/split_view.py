@@ -8,7 +8,7 @@ from ...editor.editor import FRAME_BUDGET
 from ...editor.events import ScrollEvent
 from ...editor.session.session import Session
 from ...geometry.distortion import Distortion
-from ...words import tr
+from ...words import number_text, tr
 from ..app_state import AppState
 from ..theme import SECONDARY, TEXT, packed
 from .pin_markers import draw_pin
@@ -105,7 +105,10 @@ def _draw_caption(
     background.add_text(ImVec2(left + 12 * scale, top + 14 * scale), packed(TEXT), method)
     if distortion is None:
         return
-    first_line = [f"E_area {distortion.area:.3f}", f"E_angle {distortion.angle:.3f}"]
+    first_line = [
+        f"E_area {number_text(distortion.area, '.3f')}",
+        f"E_angle {number_text(distortion.angle, '.3f')}",
+    ]
     if distortion.flipped:
         first_line.append(tr("{count} flipped", count=distortion.flipped))
     second_line = [tr("Pin error {pixels:.2f} px", pixels=session.pin_error())]

@@ -78,11 +78,13 @@ def _draw_angle(pin: Pin, state: AppState) -> None:
         mark("Rotate"),
         (pin.id,),
         degrees,
-        lambda value: imgui.drag_float("##angle", value, 0.5, 0, 0, "%.1f°"),
+        lambda value: widgets.number_in_language(
+            "##angle", "%.1f°", lambda: imgui.drag_float("##angle", value, 0.5, 0, 0, "%.1f°")
+        ),
         tooltip,
     )
     imgui.end_disabled()
-    if new is not None and f"{new:.1f}" != f"{degrees:.1f}":
+    if new is not None and round(new, 1) != round(degrees, 1):
         state.run_reporting_errors(lambda: gestures.set_pin_angle(state.editor, pin.id, math.radians(new)))
 
 
@@ -103,7 +105,7 @@ def _draw_scale(pin: Pin, state: AppState) -> None:
         tr("Size of the drawing around the pin, compared with the rest pose. Drag, or double-click to type."),
     )
     imgui.end_disabled()
-    if new is not None and f"{new:.0f}" != f"{percent:.0f}":
+    if new is not None and round(new) != round(percent):
         scale = min(max(new / 100, MIN_PIN_SCALE), MAX_PIN_SCALE)
         state.run_reporting_errors(lambda: gestures.set_pin_scale(state.editor, pin.id, scale))
 

@@ -117,14 +117,16 @@ def _pending_slider(
     state: AppState, label: str, value: float, limits: tuple[float, float], text_format: str, tooltip: str
 ) -> float | None:
     """Draw a label (English) and a slider; return the new value in the frame in which its edit ends."""
-    flags = imgui.SliderFlags_.always_clamp
+    name, flags = f"##{label}", imgui.SliderFlags_.always_clamp
     return _labeled(
         label,
         tooltip,
         lambda: state.part(PendingValues).edit(
             (label, "of the brush"),
             value,
-            lambda shown: imgui.slider_float(f"##{label}", shown, *limits, text_format, flags),
+            lambda shown: widgets.number_in_language(
+                name, text_format, lambda: imgui.slider_float(name, shown, *limits, text_format, flags)
+            ),
         ),
     )
 

@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ...editor.document.easing import EASING_LABELS, KEYFRAME_EASINGS
 from ...editor.document.keyframes import Keyframe
-from ...words import tr
+from ...words import number_text, tr
 from .. import widgets
 from ..app_state import AppState
 from ..commands.command import Command
@@ -60,7 +60,7 @@ def _draw_row(state: AppState, keyframe: Keyframe, number: int) -> None:
     playback = state.timeline.keyframe_playback
     is_selected = keyframe.time in playback.selected
     right = imgui.get_content_region_avail().x + imgui.get_cursor_pos_x()
-    if imgui.selectable(f"{keyframe.time:.2f} s###keyframe {number}", is_selected)[0]:
+    if imgui.selectable(f"{number_text(keyframe.time, '.2f')} s###keyframe {number}", is_selected)[0]:
         state.timeline.show_keyframes()
         playback.selected = frozenset({keyframe.time})
         playback.stop_at(keyframe.time)
@@ -82,7 +82,9 @@ def draw_playback(state: AppState, scale: float) -> None:
     playback = state.timeline.playback
     start, end = playback.played_range
     widgets.row(
-        tr("Duration"), f"{end - start:.2f} s", tr("Of the motion that the timeline shows, or of its range.")
+        tr("Duration"),
+        f"{number_text(end - start, '.2f')} s",
+        tr("Of the motion that the timeline shows, or of its range."),
     )
     timeline_key = tr("Key: {key}", key=SHOW_TIMELINE.key_name)
     _switch(state, SHOW_TIMELINE, tr("Timeline"), timeline_key)

@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from ...editor.session.session import Session
 from ...geometry.distortion import Distortion
 from ...render.overlays import Rgba
-from ...words import tr
+from ...words import number_text, tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import FRAME, packed
@@ -90,16 +90,16 @@ def draw(state: AppState, scale: float) -> None:
     _draw_energy("E_angle", angle, ANGLE_COLOR, tr("Shear and stretch, averaged over the drawing."), scale)
     _draw_sparkline(((measurements.areas, AREA_COLOR), (measurements.angles, ANGLE_COLOR)), scale)
     worst = max(float(distortion.face_area.max()), float(distortion.face_angle.max()))
-    text = f"{worst:.3f}" if distortion.flipped == 0 else tr("{count} flipped", count=distortion.flipped)
+    flipped = distortion.flipped
+    text = tr("{count} flipped", count=flipped) if flipped else number_text(worst, ".3f")
     widgets.row(
         tr("Worst face"), text, tr("E_area or E_angle of the most distorted triangle; 2 is undistorted.")
     )
-    error = f"{session.pin_error():.2f} px"
+    error = f"{number_text(session.pin_error(), '.2f')} px"
     widgets.row(tr("Pin error"), error, tr("Largest distance of a pin from its target."))
     step, rate = measurements.step_seconds, measurements.frame_rate
-    widgets.row(
-        tr("Step time"), "–" if step is None else f"{1000 * step:.1f} ms", tr("Time of one solver step.")
-    )
+    step_text = "–" if step is None else f"{number_text(1000 * step, '.1f')} ms"
+    widgets.row(tr("Step time"), step_text, tr("Time of one solver step."))
     rate_text = "–" if rate is None else tr("{rate:.0f} per s", rate=rate)
     widgets.row(tr("Frame rate"), rate_text, tr("While something moves; otherwise the window sleeps."))
 
@@ -109,7 +109,7 @@ def _draw_energy(name: str, value: float, color: Rgba, tooltip: str, scale: floa
     center = ImVec2(corner.x + 4 * scale, corner.y + 0.55 * height)
     imgui.get_window_draw_list().add_circle_filled(center, 3.5 * scale, packed(color))
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 14 * scale)
-    widgets.row(name, f"{value:.4f}", f"{tooltip} {tr('2 is undistorted.')}")
+    widgets.row(name, number_text(value, ".4f"), f"{tooltip} {tr('2 is undistorted.')}")
 
 
 def _draw_sparkline(lines: Sequence[tuple[Sequence[float], Rgba]], scale: float) -> None:

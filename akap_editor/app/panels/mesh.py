@@ -13,7 +13,7 @@ from ...geometry.mesh import TriMesh
 from ...meshing import meshers
 from ...meshing.background import DEFAULT_TOLERANCE
 from ...meshing.quality import smallest_angles
-from ...words import mark, tr
+from ...words import mark, number_text, tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import SECONDARY
@@ -54,8 +54,8 @@ def draw_drawing(state: AppState, scale: float) -> None:
     drawing = state.document.drawing
     widgets.row(tr("Name"), drawing.name)
     widgets.row(tr("Picture"), f"{drawing.size[0]} × {drawing.size[1]} px")
-    for label, value, tooltip in _figures(drawing.mesh):
-        widgets.row(tr(label), value, tr(tooltip))
+    for label, value, unit, tooltip in _figures(drawing.mesh):
+        widgets.row(tr(label), number_text(value, ",") + unit, tr(tooltip))
 
 
 def _draw_outline(state: AppState, meshing: Meshing) -> None:
@@ -178,21 +178,23 @@ def _two_digits(count: float) -> int:
 
 
 @lru_cache(maxsize=1)
-def _figures(mesh: TriMesh) -> tuple[tuple[str, str, str], ...]:
-    """Label, value and tooltip of each figure."""
+def _figures(mesh: TriMesh) -> tuple[tuple[str, int, str, str], ...]:
+    """Label, value, unit and tooltip of each figure."""
     parts = int(mesh.component.max()) + 1
     holes = len(mesh.boundary_loops) - parts
     return (
         (
             mark("Parts"),
-            f"{parts:,}",
+            parts,
+            "",
             mark("Pieces of the mesh. A piece without a pin moves with the nearest one."),
         ),
-        (mark("Holes"), f"{holes:,}", mark("Openings inside the outline.")),
-        (mark("Vertices"), f"{len(mesh.vertices):,}", mark("The drawing bends at the vertices of its mesh.")),
+        (mark("Holes"), holes, "", mark("Openings inside the outline.")),
+        (mark("Vertices"), len(mesh.vertices), "", mark("The drawing bends at the vertices of its mesh.")),
         (
             mark("Smallest angle"),
-            f"{smallest_angles(mesh).min():.0f}°",
+            round(smallest_angles(mesh).min()),
+            "°",
             mark(
                 "Of all triangles. Thin triangles bend badly; less than 25° means a sharp corner in the "
                 "outline."

@@ -2,7 +2,7 @@
 
 from imgui_bundle import imgui
 
-from ...words import mark, tr
+from ...words import mark, number_text, tr
 from .. import widgets
 from ..app_state import AppState
 from ..canvas.checkerboard import BOARD_LABELS
@@ -60,7 +60,7 @@ def draw(state: AppState, scale: float) -> None:
         imgui.text(tr("Scale ends at"))
         imgui.same_line()
         imgui.set_next_item_width(-1)
-        ends = [f"× {limit:g}" for limit in DISTORTION_RANGES]
+        ends = [f"× {number_text(limit, 'g')}" for limit in DISTORTION_RANGES]
         _, state.view.distortion_range = imgui.combo("##range", state.view.distortion_range, ends)
         widgets.show_tooltip(
             tr("Change of area or shape at the ends of the color scale. Shift+R selects the next one.")

@@ -10,7 +10,7 @@ from ...editor.animation.keyframe_playback import KeyframePlayback
 from ...editor.animation.keyframe_times import stretch_times
 from ...editor.animation.playback import VisibleRange
 from ...editor.document.easing import easing_label
-from ...words import tr
+from ...words import number_text, tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, FRAME, SECONDARY, STRONG_LINE, TEXT, packed
@@ -177,8 +177,10 @@ class KeyframeTrack:
 
 def time_label(playback: KeyframePlayback) -> str:
     """The time of the playhead, and the duration if there are keyframes; * for a pose without a keyframe."""
-    time = f"{playback.time:.2f}{'*' * playback.shows_unkeyed_pose}"
-    return f"{time} / {playback.duration:.2f} s" if playback.animation.keyframes else f"{time} s"
+    time = number_text(playback.time, ".2f") + "*" * playback.shows_unkeyed_pose
+    if not playback.animation.keyframes:
+        return f"{time} s"
+    return f"{time} / {number_text(playback.duration, '.2f')} s"
 
 
 def _time_at_pointer(playback: KeyframePlayback, time_scale: TimeScale, scale: float) -> float | None:
@@ -250,7 +252,7 @@ def _draw_ruler(
     font, size = imgui.get_font(), 0.8 * imgui.get_font_size()
     shortest = time_scale.seconds(_MIN_TICK_DISTANCE * scale)
     tick = next((seconds for seconds in _TICKS if seconds >= shortest), _TICKS[-1])
-    text_format = "%.1f" if tick < 1 else "%.0f"
+    form = ".1f" if tick < 1 else ".0f"
     first = ceil(visible_range.start / tick - 1e-6)
     last = int((visible_range.start + visible_range.seconds) / tick + 1e-6)
     for number in range(first, last + 1):
@@ -259,7 +261,7 @@ def _draw_ruler(
         draw.add_line(ImVec2(x, top), ImVec2(x, bottom), packed(STRONG_LINE))
         if x + 24 * scale < high.x:
             text_corner = ImVec2(x + 3 * scale, corner.y + 1 * scale)
-            draw.add_text(font, size, text_corner, packed(SECONDARY), text_format % (number * tick))
+            draw.add_text(font, size, text_corner, packed(SECONDARY), number_text(number * tick, form))
     draw_visible_part(visible_range, corner, width, scale)
 
 

@@ -5,6 +5,7 @@ from typing import Literal
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from ...editor.animation.session_playback import SessionPlayback
+from ...words import number_text
 from ..app_state import AppState
 from ..theme import ACCENT, FRAME, SECONDARY, TEXT, packed
 from .track import (
@@ -31,7 +32,7 @@ class SessionTrack:
     def draw(self, state: AppState, scale: float) -> TimeScale:
         """Draw one frame and return the scale of its time. scale: points per design point."""
         playback = state.timeline.session_playback
-        label = f"{playback.playhead:.1f} / {playback.duration:.1f} s"
+        label = f"{number_text(playback.playhead, '.1f')} / {number_text(playback.duration, '.1f')} s"
         label_width = imgui.calc_text_size("000.0 / 000.0 s").x + 12 * scale
         corner, margin = imgui.get_cursor_screen_pos(), _MARGIN * scale
         width = max(imgui.get_content_region_avail().x - label_width, 40 * scale)

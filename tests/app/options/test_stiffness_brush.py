@@ -5,6 +5,7 @@ import pytest
 
 from akap_editor.app.commands import registry as commands
 from akap_editor.editor.session.edits import PaintLoose, PaintStiffness
+from akap_editor.words import use_language
 
 
 def test_the_options_of_the_brush(pinned):
@@ -56,6 +57,12 @@ def test_the_options_of_loose_parts(pinned):
 
         pinned.do(slide)
 
+    use_language("de")
+    try:
+        type_into("Speed", "2,5")  # ImGui itself knows only the point
+    finally:
+        use_language("en")
+    assert pinned.editor.brush_tool.brush.speed == 2.5
     type_into("Speed", "2")
     assert pinned.editor.brush_tool.brush.speed == 2.0
     assert pinned.session.state.loose is None

@@ -22,7 +22,7 @@ from ....io.animation.formats import (
     write_animation,
 )
 from ....io.outputs import is_source
-from ....words import mark, tr, tr_plural
+from ....words import mark, number_text, tr, tr_plural
 from ... import widgets
 from ...app_state import AppState
 from ...jobs.file_manager import folder_button
@@ -363,7 +363,8 @@ def _draw_result(
     scale: float,
 ) -> None:
     """Draw the number of frames, the seconds and the size in pixels of what is written."""
-    seconds = f"{count / options.written_fps:.1f}".removesuffix(".0")
+    tenths = round(10 * count / options.written_fps)
+    seconds = number_text(tenths / 10, "g")
     text = tr_plural("{count} frame, {seconds} s", "{count} frames, {seconds} s", count, seconds=seconds)
     if options.written_fps < options.fps:
         text = tr("{frames} at {fps:g} fps", frames=text, fps=options.written_fps)

@@ -61,7 +61,10 @@ def number_field(
     widgets.label(label, LABEL_WIDTH * scale)
     imgui.set_next_item_width(width * scale)
     clamp = imgui.SliderFlags_.always_clamp
-    _, value = imgui.drag_float(f"##{label}", value, speed, *limits, text_format, clamp)
+    name = f"##{label}"
+    _, value = widgets.number_in_language(
+        name, text_format, lambda: imgui.drag_float(name, value, speed, *limits, text_format, clamp)
+    )
     widgets.show_tooltip(f"{tr('Drag, or double-click to type.')} {tooltip}".strip())
     return float(value)
 

@@ -13,7 +13,7 @@ from ....errors import InputError
 from ....io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of, replaced_companions
 from ....io.outputs import is_source
 from ....io.painter import Painter
-from ....words import mark, tr
+from ....words import mark, number_text, tr
 from ... import widgets
 from ...app_state import AppState
 from ...jobs.file_manager import folder_button
@@ -175,7 +175,7 @@ def _draw_framing(options: PoseExportOptions, document: Document, scale: float) 
     """Draw scale, crop and background of a picture; return what prevents this export, or ""."""
     limits, speed = (100 * SMALLEST_SCALE, 100 * LARGEST_SCALE), max(0.5, options.scale)
     options.scale = number_field(tr("Scale"), 100 * options.scale, limits, "%.4g %%", speed, 86, scale) / 100
-    preset = preset_buttons([f"{each:g}×" for each in SCALES], scale)
+    preset = preset_buttons([f"{number_text(each, 'g')}×" for each in SCALES], scale)
     if preset is not None:
         options.scale = SCALES[preset]
     problem = _draw_picture_size(options, document, scale)

@@ -10,6 +10,7 @@ from ....editor.framing import Box, Color
 from ....errors import InputError
 from ....io.animation.formats import AnimationFormat, Shot, write_animation
 from ....io.painter import FramedPose
+from ....words import number_text
 from ...app_state import AppState
 from ...jobs.frame_encoder import FrameEncoder
 
@@ -37,8 +38,12 @@ def size_in_words(size: int) -> str:
     for unit in ("kB", "MB"):
         size_in_unit = size / 1000 if unit == "kB" else size / 1_000_000
         if size_in_unit < 995:
-            return f"{float(f'{size_in_unit:.2g}'):g} {unit}"
-    return f"{float(f'{size / 1e9:.2g}'):g} GB"
+            return f"{_with_two_digits(size_in_unit)} {unit}"
+    return f"{_with_two_digits(size / 1e9)} GB"
+
+
+def _with_two_digits(number: float) -> str:
+    return number_text(float(format(number, ".2g")), "g")
 
 
 class SizeEstimate:
