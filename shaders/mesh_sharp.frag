@@ -11,7 +11,7 @@ in vec2 uv;
 
 out vec4 color;
 
-const int MAX_SAMPLES = 8;  // a side; beyond that, each sample is a mean of texels itself
+const float MAX_SAMPLES = 8.0;  // a side; beyond that, each sample is a mean of texels itself, from a mipmap
 const float MAX_CUBIC_STEP = 1.5;  // texels per pixel; where more are averaged, linear samples do as well
 const float EXACT = 1e-3;   // texels: this near to the middle of a texel, only that one counts
 
@@ -54,10 +54,9 @@ vec2 offset(ivec2 index, ivec2 count, vec2 width, vec2 across, vec2 down) {
 vec4 sharp_sample() {
     vec2 size = vec2(textureSize(picture, 0)), across = dFdx(uv), down = dFdy(uv);
     vec2 lengths = vec2(length(across * size), length(down * size));
-    ivec2 count = clamp(ivec2(ceil(lengths - EXACT)), ivec2(1), ivec2(MAX_SAMPLES));
+    float level = max(ceil(log2(max(lengths.x, lengths.y) / MAX_SAMPLES) - EXACT), 0.0);  // whole: one is read
+    ivec2 count = max(ivec2(ceil(lengths / exp2(level) - EXACT)), ivec2(1));
     vec2 width = clamp(2.0 * (lengths - 1.0), 0.0, 1.0);
-    float step = max(lengths.x / float(count.x), lengths.y / float(count.y));  // from sample to sample, texels
-    float level = max(log2(step), 0.0);
     // Two loops, because a processor that draws eight pixels at once computes both branches of an `if`.
     bool few = max(lengths.x, lengths.y) <= MAX_CUBIC_STEP;
     ivec2 cubic = few ? count : ivec2(0), linear = few ? ivec2(0) : count;

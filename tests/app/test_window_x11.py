@@ -4,6 +4,8 @@ import json
 import os
 import shutil
 import signal
+import tempfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -44,6 +46,13 @@ needs_alt = pytest.mark.skipif(
 def display():
     with x_server() as server:
         yield server.display
+
+
+@pytest.fixture
+def tmp_path():
+    """A folder with a short path: the program draws two frames for each letter typed into its dialog."""
+    with tempfile.TemporaryDirectory(prefix="") as folder:
+        yield Path(folder)
 
 
 @pytest.fixture

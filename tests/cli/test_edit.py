@@ -13,26 +13,33 @@ from akap_editor.io.open_document import open_document
 from tests.support.command_line import assert_one_line
 
 
-@pytest.mark.parametrize("arguments", [(), ("edit", "--bundled", "elephant")], ids=["alone", "make run"])
-def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path, monkeypatch, arguments):
-    wanted = {}
+def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path, monkeypatch):
+    wanted = []
 
     def smaller(*arguments, **options):
-        wanted.update(options)
-        replay(*arguments, fps=6.0, size=96)
+        wanted.append((arguments, options))
+        if len(wanted) == 1:
+            replay(*arguments, fps=6.0, size=96)
 
     replay = replaying.replay_recording
     monkeypatch.setattr(replaying, "replay_recording", smaller)
-    code, output, errors = run(*arguments)
+    code, output, errors = run("edit", "--bundled", "elephant")
     assert (code, errors) == (0, "")
     assert "there is no display" in output.splitlines()[0]
     with Image.open(tmp_path / "out" / "elephant.webp") as animation:
         assert animation.n_frames > 10
-    assert wanted == {"fps": 24.0, "size": 480}
     pose = read_image(tmp_path / "out" / "elephant.png")
     assert (pose[..., 3] > 127).sum() > 10_000
     assert "elephant.png" in output
     assert "elephant.webp" in output
+
+    code, alone, errors = run()
+    assert (code, errors) == (0, "")
+    assert alone.splitlines()[0] == output.splitlines()[0]
+    (first, options), (second, options_alone) = wanted
+    assert options == options_alone == {"fps": 24.0, "size": 480}
+    assert second[:2] == first[:2], "without arguments it does the same"
+    assert [path.name for path in second[2:]] == ["elephant-2.webp", "elephant-2.png"], "it replaces nothing"
 
 
 def test_an_unknown_bundled_drawing_is_an_error_that_names_those_there_are(run, tmp_path):

@@ -60,9 +60,8 @@ def replay_bar(run, session, tmp_path):
 # -- the bundled recording -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("suffix", [".webp", ".gif"])
-def test_replay_writes_an_animation_and_the_last_pose(run, tmp_path, suffix):
-    animation = tmp_path / "new" / f"wave{suffix}"
+def test_replay_writes_an_animation_and_the_last_pose(run, tmp_path):
+    animation = tmp_path / "new" / "wave.gif"
     code, output, errors = run(
         "replay", RECORDING, "-o", animation, "--pose", "last.png", "--size", "64", "--fps", "5"
     )
