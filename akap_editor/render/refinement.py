@@ -150,11 +150,22 @@ def _faces(mesh: TriMesh, keys: Ints, parts: int) -> Ints:
     inner = np.rint(_inner_weights(parts) * parts).astype(int)
     base = n + len(keys) * (parts - 1) + np.arange(m)[:, None] * len(inner)
     numbers[:, inner[:, 1], inner[:, 2]] = base + np.arange(len(inner))
+    corners = _small_faces(parts)
+    return numbers[:, corners[..., 0], corners[..., 1]].astype(np.int32)
+
+
+def _small_faces(parts: int) -> Ints:
+    """(parts², 3, 2) corners of the small faces of a face: steps along its second and its third corner."""
     small = []
     for row in range(parts):
         for column in range(parts - row):
             small.append([(row, column), (row + 1, column), (row, column + 1)])
             if row + column < parts - 1:
                 small.append([(row + 1, column), (row + 1, column + 1), (row, column + 1)])
-    corners = np.array(small)
-    return numbers[:, corners[..., 0], corners[..., 1]].astype(np.int32)
+    return np.array(small)
+
+
+def small_corners(parts: int) -> Floats:
+    """(parts², 3, 3) corners of the small faces of a face, barycentric in it."""
+    others = _small_faces(parts) / parts
+    return np.concatenate([1.0 - others.sum(axis=2, keepdims=True), others], axis=2)

@@ -15,7 +15,8 @@ from ..layers.drawing_layer import shown_layers
 from ..overlap.seams import CutMesh
 from .layer_runs import BLEND_PASSES, OVER, LayerRun, layer_runs
 from .overlays import NO_OVERLAYS, FaceColorPainter, LinePainter, Overlays, Reference, Rgba
-from .refinement import MAX_PARTS, suitable_parts
+from .refined_cut import RefinedCut, refined_cut
+from .refinement import MAX_PARTS, refinement, suitable_parts
 from .shaders import View, load_program
 from .smooth_mesh import SmoothMesh
 
@@ -71,6 +72,8 @@ class Renderer:
         self._order: Ints | None = None
         self._cut: CutMesh | None = None
         self._cut_positions: Floats | None = None
+        self._refined_cut: RefinedCut | None = None
+        self._is_cut_smooth = False
         self._smooth: SmoothMesh | None = None
         self._shows_smooth = False
         self._cut_objects: list[moderngl.Buffer | moderngl.VertexArray] = []
@@ -88,8 +91,8 @@ class Renderer:
         """Upload the drawing in the pose ``positions``, (n, 2) float64 in drawing units.
 
         order: (m,) the faces in drawing order, the last one in front, or the mesh cut along seams; by default
-        the order of the mesh; smooth: draw curved faces, see `refinement`, unless the pose is that of rest or
-        cut along seams. Arguments are compared by identity with those of the last call, and only what changed
+        the order of the mesh; smooth: draw curved faces, see `refinement`, unless the pose is that of rest.
+        Arguments are compared by identity with those of the last call, and only what changed
         is uploaded. Raises InputError if the shape of ``positions`` does not fit the drawing.
         """
         expected = drawing.mesh.vertices.shape
@@ -102,8 +105,12 @@ class Renderer:
             self._position_buffer.write(np.ascontiguousarray(positions, dtype=np.float32))
             self._positions = positions
         cut = order if isinstance(order, CutMesh) else None
-        if cut is not None and (cut is not self._cut or positions is not self._cut_positions):
-            self._upload_cut(drawing, positions, cut)
+        smooth = smooth and self._parts > 1
+        if smooth and self._smooth is None:
+            self._smooth = SmoothMesh(self._ctx, self._mesh_program, drawing, self._parts)
+        is_cut_changed = cut is not self._cut or positions is not self._cut_positions
+        if cut is not None and (is_cut_changed or smooth != self._is_cut_smooth):
+            self._upload_cut(drawing, positions, cut, smooth)
         self._cut, self._cut_positions = cut, positions if cut is not None else None
         order = order.order if isinstance(order, CutMesh) else order
         if order is not self._order:
@@ -113,11 +120,9 @@ class Renderer:
         if order is not self._order or drawing is not self._drawing or cut is not None:
             self._arrange_layers(drawing, order, cut)
         self._order, self._drawing = order, drawing
-        is_smooth = smooth and cut is None and self._parts > 1
-        self._shows_smooth = is_smooth and not np.array_equal(positions, drawing.mesh.vertices)
-        if self._shows_smooth:
-            if self._smooth is None:
-                self._smooth = SmoothMesh(self._ctx, self._mesh_program, drawing, self._parts)
+        is_curved = smooth and cut is None and not np.array_equal(positions, drawing.mesh.vertices)
+        self._shows_smooth = is_curved
+        if is_curved and self._smooth is not None:
             self._smooth.show(positions, order)
 
     def _has_uploaded(self, drawing: Drawing) -> bool:
@@ -132,6 +137,8 @@ class Renderer:
         face_layers, layers = drawing.face_layers, drawing.layers
         self._runs = layer_runs(face_layers if order is None else face_layers[order], layers)
         self._cut_runs = () if cut is None else layer_runs(face_layers[cut.sources], layers)
+        if self._refined_cut is not None:
+            self._cut_runs = self._refined_cut.runs(self._cut_runs)
         edges = drawing.mesh.edges
         if layers:
             assert drawing.mesh.layers is not None
@@ -139,13 +146,19 @@ class Renderer:
             self._edge_buffer.write(edges.astype(np.uint32))
         self._edge_count = len(edges)
 
-    def _upload_cut(self, drawing: Drawing, positions: Floats, cut: CutMesh) -> None:
+    def _upload_cut(self, drawing: Drawing, positions: Floats, cut: CutMesh, smooth: bool) -> None:
         """Upload a mesh cut along seams; it differs in every pose, so nothing of it is kept."""
         self._release_cut()
-        ctx = self._ctx
-        places = ctx.buffer(np.ascontiguousarray(cut.values(positions), dtype=np.float32))
-        uv = ctx.buffer(np.ascontiguousarray(cut.values(drawing.uv.astype(np.float64)), dtype=np.float32))
-        faces = ctx.buffer(cut.faces.astype(np.uint32))
+        ctx, self._is_cut_smooth = self._ctx, smooth
+        shown: CutMesh | RefinedCut = cut
+        corners = drawing.uv.astype(np.float64)
+        if smooth and self._smooth is not None:
+            refined = refinement(drawing.mesh, self._parts)
+            shown = self._refined_cut = refined_cut(drawing.mesh, refined, cut)
+            positions, corners = refined.smooth @ positions, self._smooth.uv
+        places = ctx.buffer(np.ascontiguousarray(shown.values(positions), dtype=np.float32))
+        uv = ctx.buffer(np.ascontiguousarray(shown.values(corners), dtype=np.float32))
+        faces = ctx.buffer(shown.faces.astype(np.uint32))
         self._cut_mesh = ctx.vertex_array(
             self._mesh_program, [(places, "2f", "in_position"), (uv, "2f", "in_uv")], faces
         )
@@ -154,7 +167,7 @@ class Renderer:
     def _release_cut(self) -> None:
         for item in self._cut_objects:
             item.release()
-        self._cut_objects, self._cut, self._cut_positions = [], None, None
+        self._cut_objects, self._cut, self._cut_positions, self._refined_cut = [], None, None, None
 
     def hide(self) -> None:
         """Draw no drawing until the next `show`."""

@@ -15,16 +15,17 @@ from .refinement import refinement
 class SmoothMesh:
     """Draws a drawing by its `Refinement`. `release` must be called in the end.
 
-    program: draws textured meshes; parts: of each edge; vertex_array: what to render.
+    program: draws textured meshes; parts: of each edge; vertex_array: what to render; uv: (p, 2) texture
+    coordinates of the refinement's points.
     """
 
     def __init__(
         self, ctx: moderngl.Context, program: moderngl.Program, drawing: Drawing, parts: int
     ) -> None:
         self._refinement = refinement(drawing.mesh, parts)
-        uv = np.asarray(self._refinement.linear @ drawing.uv.astype(np.float64), dtype=np.float32)
-        places = ctx.buffer(reserve=8 * len(uv), dynamic=True)
-        self._places, self._uv = places, ctx.buffer(np.ascontiguousarray(uv))
+        self.uv = np.asarray(self._refinement.linear @ drawing.uv.astype(np.float64))
+        places = ctx.buffer(reserve=8 * len(self.uv), dynamic=True)
+        self._places, self._uv = places, ctx.buffer(np.ascontiguousarray(self.uv, dtype=np.float32))
         self._faces = ctx.buffer(reserve=4 * self._refinement.faces.size, dynamic=True)
         self.vertex_array = ctx.vertex_array(
             program, [(places, "2f", "in_position"), (self._uv, "2f", "in_uv")], self._faces
