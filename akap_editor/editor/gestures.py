@@ -75,15 +75,22 @@ def add_pin(editor: EditContext, position: Point) -> int | None:
     return pin
 
 
-def add_pins(editor: EditContext, positions: Iterable[Point]) -> list[int]:
+def add_pins(
+    editor: EditContext, positions: Sequence[Point], layers: Sequence[int | None] | None = None
+) -> list[int]:
     """Add pins at positions of the current pose, pixels, in one gesture, and deselect all.
 
-    If they were selected, a drag of one would move all of them. Returns their ids; positions outside the
-    drawing are left out. Raises InputError if one is not finite.
+    layers: the layer of each, None for the front one there. If the pins were selected, a drag of one would
+    move all of them. Returns their ids; positions outside the drawing are left out. Raises InputError if one
+    is not finite.
     """
+    layers = [None] * len(positions) if layers is None else layers
 
     def add_all(session: Session) -> list[int]:
-        added = [pin_edits.add_pin(session, position) for position in positions]
+        added = [
+            pin_edits.add_pin(session, position, layer)
+            for position, layer in zip(positions, layers, strict=True)
+        ]
         return [pin for pin in added if pin is not None]
 
     pins = editor.edit(mark("Add Pins"), add_all) or []

@@ -27,7 +27,7 @@ def items(state: AppState) -> Sequence[Item]:
 def _draw_buttons(state: AppState) -> None:
     tool = state.editor.tool
     assert isinstance(tool, SuggestedPins)
-    count = len(tool.positions)
+    count = len(tool.ghosts)
     imgui.align_text_to_frame_padding()
     imgui.text(tr_plural("{count} pin suggested", "{count} pins suggested", count))
     imgui.same_line(0, imgui.get_font_size())

@@ -371,6 +371,15 @@ def visible_point(
     return MeshPoints(hits.faces[chosen : chosen + 1], hits.weights[chosen : chosen + 1])
 
 
+def point_of_layer(
+    drawing: Drawing, point: ArrayLike, positions: Floats, order: Ints | None, layer: int
+) -> MeshPoints | None:
+    """The foremost point of a layer at ``point`` (2,) in a pose (n, 2); None if the layer is not there."""
+    hits = drawing.mesh.find_all(point, positions, order)
+    own = np.flatnonzero(drawing.face_layers[hits.faces] == layer)[-1:]
+    return MeshPoints(hits.faces[own], hits.weights[own]) if len(own) else None
+
+
 def apply_mask(image: NDArray[np.uint8], mask: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Multiply the alpha of a picture (h, w, 4) uint8 by a mask (h, w) uint8; returns a new picture.
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..document.crossings import check_depths, depth_at
-from ..document.drawing import visible_point
+from ..document.drawing import point_of_layer, visible_point
 from ..document.pin import Pin, check_pins
 from ..document.pin_angles import with_held_angles
 from .edits import SetPins, SetTargets
@@ -15,17 +15,19 @@ from .session import Session
 from .stepper import PIN_TOLERANCE
 
 
-def add_pin(session: Session, position: tuple[float, float]) -> int | None:
+def add_pin(session: Session, position: tuple[float, float], layer: int | None = None) -> int | None:
     """Add a pin at a position of the current pose, pixels; returns its id, None outside the drawing.
 
-    Where parts overlap it goes to the front one, and gets the depth of its surroundings. Raises InputError if
-    the position is not finite, SolverError if a pending step failed.
+    Where parts overlap it goes to the front one, or to one on ``layer``, if that is there. It gets the depth
+    of its surroundings. Raises InputError if the position is not finite, SolverError if a pending step
+    failed.
     """
     session.finish_step()
     mesh, pins = session.drawing.mesh, session.state.pins
-    point = visible_point(
-        session.drawing, position, session.state.positions, session.document.face_order, unlocked=True
-    )
+    order, pose = session.document.face_order, session.state.positions
+    point = None if layer is None else point_of_layer(session.drawing, position, pose, order, layer)
+    if point is None:
+        point = visible_point(session.drawing, position, pose, order, unlocked=True)
     if point is None:
         return None
     pin_id = 1 + max((pin.id for pin in pins), default=0)

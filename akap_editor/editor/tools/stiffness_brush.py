@@ -13,11 +13,10 @@ from ...deform.follow_through import (
     MAX_SPEED,
     MIN_SPEED,
 )
-from ...geometry.mesh import MeshPoints
 from ...geometry.validation import Floats
 from ...words import mark, tr
 from ..camera import Point
-from ..document.drawing import visible_point
+from ..document.drawing import point_of_layer, visible_point
 from ..document.rig.loose_parts import LooseParts, painted_loose
 from ..document.stiffness import MAX_STIFFNESS, MIN_STIFFNESS, apply_stroke, stroke_coverage
 from ..events import PointerEvent
@@ -230,9 +229,7 @@ class Painting(Tool):
             if point is not None and drawing.layers:
                 self._layer = int(drawing.face_layers[point.faces[0]])
         else:
-            hits = mesh.find_all(center, pose, order)
-            own = np.flatnonzero(drawing.face_layers[hits.faces] == self._layer)[-1:]
-            point = MeshPoints(hits.faces[own], hits.weights[own]) if len(own) else None
+            point = point_of_layer(drawing, center, pose, order, self._layer)
         return None if point is None else np.round(mesh.evaluate(point, mesh.vertices)[0], 3)
 
     def release(self, event: PointerEvent) -> None:

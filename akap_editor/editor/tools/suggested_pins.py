@@ -1,11 +1,12 @@
 """Suggested pins: ghosts where limbs end and fork, to be moved, removed, and then accepted in one step."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ...geometry.limbs import find_limbs
 from ...words import mark, tr
 from ..camera import Point
-from ..document.document import EditState
+from ..document.rig.pin_suggestion import suggest_places
 from ..events import KeyEvent, PointerEvent
 from ..gestures import add_pins
 from .base import Cursor, IdleTool, Markers, Tool, ToolContext, distance
@@ -21,40 +22,36 @@ def suggest_pins(context: ToolContext) -> None:
         context.set_tool(SuggestedPins(context))
 
 
-def suggested_positions(context: ToolContext) -> list[Point]:
-    """Where pins help to bend the open drawing, in drawing units of its pose; none near pins that exist."""
-    assert context.session is not None
-    mesh, state = context.session.drawing.mesh, context.session.state
-    limbs = find_limbs(mesh)
-    vertices = [*limbs.tips.tolist(), *limbs.middles.tolist(), *limbs.forks.tolist()]
-    pins = _rest_positions(context, state)
-    far = [
-        vertex
-        for vertex in vertices
-        if np.linalg.norm(pins - mesh.vertices[vertex], axis=1).min(initial=np.inf)
-        > MIN_DISTANCE * mesh.length
-    ]
-    return [(float(x), float(y)) for x, y in state.positions[far[:MAX_SUGGESTED]]]
+@dataclass(frozen=True)
+class Suggestion:
+    """A pin that is suggested: its position in drawing units of the pose, and its layer, None for any."""
+
+    position: Point
+    layer: int | None = None
 
 
-def _rest_positions(context: ToolContext, state: EditState) -> np.ndarray:
-    """(k, 2) places of the pins in the rest pose."""
+def suggestions(context: ToolContext) -> list[Suggestion]:
+    """Pins that help to bend the open drawing; none near pins that exist."""
     assert context.session is not None
-    mesh = context.session.drawing.mesh
-    return mesh.evaluate(state.points, mesh.vertices)
+    drawing, state = context.session.drawing, context.session.state
+    mesh = drawing.mesh
+    places = suggest_places(drawing, state.joints)
+    pins = mesh.evaluate(state.points, mesh.vertices)
+    distances = np.linalg.norm(pins[:, None] - places.rest, axis=2).min(axis=0, initial=np.inf)
+    places = places.among(np.flatnonzero(distances > MIN_DISTANCE * mesh.length)[:MAX_SUGGESTED])
+    positions = mesh.evaluate(places.points(mesh), state.positions)
+    layers = (None if layer < 0 else layer for layer in places.layers.tolist())
+    return [Suggestion((x, y), layer) for (x, y), layer in zip(positions.tolist(), layers, strict=True)]
 
 
 class SuggestedPins(IdleTool):
-    """Shows the suggestions until they are accepted or cancelled.
-
-    positions: of the ghosts, in drawing units.
-    """
+    """Shows the suggestions until they are accepted or cancelled. ghosts: the suggestions."""
 
     can_finish = True
 
     def __init__(self, context: ToolContext) -> None:
         super().__init__(context)
-        self.positions = suggested_positions(context)
+        self.ghosts = suggestions(context)
 
     @property
     def press_hint(self) -> str:
@@ -74,7 +71,7 @@ class SuggestedPins(IdleTool):
         """The ghosts. hovered: the number of the one that is drawn larger."""
         to_screen = self.context.camera.to_screen
         return Markers(
-            suggested_pins=tuple(to_screen(position) for position in self.positions),
+            suggested_pins=tuple(to_screen(ghost.position) for ghost in self.ghosts),
             hovered_suggestion=hovered,
             removes_hovered_pin="alt" in self.context.held,
         )
@@ -84,7 +81,7 @@ class SuggestedPins(IdleTool):
         if ghost is None:
             return
         if event.alt or event.button == "right":
-            del self.positions[ghost]
+            del self.ghosts[ghost]
         elif event.button == "left":
             self.context.set_tool(MovingSuggestion(self.context, self, ghost))
 
@@ -100,7 +97,8 @@ class SuggestedPins(IdleTool):
     def finish(self) -> None:
         """Add the pins in one gesture."""
         self.context.return_to_idle()
-        add_pins(self.context, self.positions)
+        positions = [ghost.position for ghost in self.ghosts]
+        add_pins(self.context, positions, [ghost.layer for ghost in self.ghosts])
 
     @property
     def hovered(self) -> int | None:
@@ -111,7 +109,9 @@ class SuggestedPins(IdleTool):
     def _at(self, position: Point) -> int | None:
         """The number of the nearest ghost within reach of a point of the screen."""
         to_screen = self.context.camera.to_screen
-        distances = [(distance(to_screen(ghost), position), at) for at, ghost in enumerate(self.positions)]
+        distances = [
+            (distance(to_screen(ghost.position), position), at) for at, ghost in enumerate(self.ghosts)
+        ]
         nearest = min(distances, default=None)
         if nearest is None or nearest[0] > PICK_RADIUS * self.context.ui_scale:
             return None
@@ -127,7 +127,7 @@ class MovingSuggestion(Tool):
     def __init__(self, context: ToolContext, suggestions: SuggestedPins, ghost: int) -> None:
         super().__init__(context)
         self._suggestions, self._ghost = suggestions, ghost
-        self._position_before = suggestions.positions[ghost]
+        self._before = suggestions.ghosts[ghost]
 
     @property
     def markers(self) -> Markers:
@@ -135,12 +135,13 @@ class MovingSuggestion(Tool):
 
     def move(self, event: PointerEvent) -> None:
         if self.context.is_on_drawing(event.position):
-            self._suggestions.positions[self._ghost] = self.context.camera.to_drawing(event.position)
+            position = self.context.camera.to_drawing(event.position)
+            self._suggestions.ghosts[self._ghost] = Suggestion(position)
 
     def release(self, event: PointerEvent) -> None:
         if event.button == "left":
             self.context.set_tool(self._suggestions)
 
     def cancel(self) -> None:
-        self._suggestions.positions[self._ghost] = self._position_before
+        self._suggestions.ghosts[self._ghost] = self._before
         self.context.set_tool(self._suggestions)

@@ -15,7 +15,7 @@ def suggesting(pinned):
 
 
 def ghosts(driver):
-    return list(driver.editor.tool.positions)
+    return [ghost.position for ghost in driver.editor.tool.ghosts]
 
 
 def event(driver, kind, at, **more):
