@@ -91,7 +91,7 @@ def missing(catalog: Catalog, texts: Catalog) -> list[str]:
         if message is None or message.fuzzy:
             return True
         strings = message.string if isinstance(message.string, tuple) else (message.string,)
-        return not all(text.strip() for text in strings)
+        return not all(text and text.strip() for text in strings)
 
     return [str(each.id) for each in texts if each.id and is_missing(each.id, each.context)]
 

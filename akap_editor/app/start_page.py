@@ -33,7 +33,8 @@ _WINDOW = (
 ) & ~imgui.WindowFlags_.no_scrollbar
 _BUTTON = imgui.ButtonFlags_.enable_nav  # the keyboard can press it
 _WIDTH = 720  # of the column in the middle, in design points, as all sizes here
-_DROP_HEIGHT = 132
+_DROP_HEIGHT, _MIN_DROP_HEIGHT = 132, 84
+_DROP_SHARE = 0.22  # of the page's height, between these two
 _GAP = 12
 _MARGIN = 12  # around a thumbnail
 _DASH = 7
@@ -69,14 +70,13 @@ def draw(state: AppState, scale: float, pixels_per_point: float) -> None:
 def _draw_bundled(state: AppState, scale: float, column: float, pixels_per_point: float) -> None:
     """Draw a row of buttons that open the bundled drawings, each with its thumbnail and name."""
     paths = bundled_files()
-    gap = _GAP * scale
-    side = int((column - gap * (len(paths) - 1)) / len(paths))
-    for path in paths:
+    side = int((column - _GAP * scale * (len(paths) - 1)) / len(paths))
+    corner, step = imgui.get_cursor_pos(), (column - side) / (len(paths) - 1)
+    for number, path in enumerate(paths):
+        imgui.set_cursor_pos(ImVec2(corner.x + round(number * step), corner.y))  # the last one ends the row
         imgui.begin_group()
         _draw_button(state, path, side, scale, pixels_per_point)
         imgui.end_group()
-        imgui.same_line(0, gap)
-    imgui.new_line()
 
 
 def _draw_button(state: AppState, path: Path, side: int, scale: float, pixels_per_point: float) -> None:
@@ -179,7 +179,8 @@ def _draw_heading(title: str) -> None:
 
 def _draw_drop_zone(state: AppState, scale: float, width: float) -> None:
     """Draw the area that invites to drop a file; a click on it runs File > Open."""
-    corner, height = imgui.get_cursor_screen_pos(), _DROP_HEIGHT * scale
+    corner, share = imgui.get_cursor_screen_pos(), _DROP_SHARE * imgui.get_window_height()
+    height = min(max(share, _MIN_DROP_HEIGHT * scale), _DROP_HEIGHT * scale)
     if imgui.invisible_button("Drop a picture here", ImVec2(width, height), _BUTTON):
         widgets.run(state, OPEN)
     is_highlighted = imgui.is_item_hovered() or imgui.is_item_focused()
@@ -193,7 +194,7 @@ def _draw_drop_zone(state: AppState, scale: float, width: float) -> None:
         (tr("Drop a picture here"), 1.2, TEXT),
         (tr("or click to choose a file ({key})", key=OPEN.key_name), 1.0, SECONDARY),
     )
-    gap, line_height = 8 * scale, imgui.get_font_size()
+    gap, line_height = min(8 * scale, 0.06 * height), imgui.get_font_size()
     y = corner.y + (height - line_height * sum(size for _, size, _ in lines) - 2 * gap) / 2
     for text, size, color in lines:
         imgui.push_font(None, imgui.get_style().font_size_base * size)

@@ -35,16 +35,17 @@ TEXT = _hex("#E8E9EC")
 SECONDARY = _hex("#B4B8C0")
 PANEL = _hex("#212328")
 DARK = _hex("#18191C")
+WELL = _hex("#1B1D21")  # of lists in panels
 POPUP = _hex("#26282E")
 FRAME = _hex("#2E3138")
 HOVER = _hex("#3A3E47")
-ACTIVE = _hex("#464B56")
+ACTIVE = _hex("#434853")
 LINE = _hex("#34373E")
 STRONG_LINE = _hex("#767B86")  # of items that only their line shows
 
 _COLORS: dict[imgui.Col_, Rgba] = {
     imgui.Col_.text: TEXT,
-    imgui.Col_.text_disabled: _hex("#969AA3"),
+    imgui.Col_.text_disabled: _hex("#A6AAB3"),
     imgui.Col_.window_bg: PANEL,
     imgui.Col_.child_bg: (0, 0, 0, 0),
     imgui.Col_.popup_bg: POPUP,

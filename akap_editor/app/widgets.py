@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect_left
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
@@ -29,6 +29,8 @@ _PRINTF_NUMBER = re.compile(r"%(\+?(?:\.\d+)?[dfg])")
 _MIN_NUMBER_WIDTH = 3.2  # beside a slider, times the font size, so that sliders have the same width
 _SWITCH_PADDING = 0.18  # times the font size
 _TOOLTIP_WIDTH = 22  # times the font size
+_TITLE_WIDTH = 26  # of a dialog, at most, times the font size
+_LABEL_GAP = 0.9  # between a column of labels and their fields, times the font size
 
 
 def run(state: AppState, command: Command) -> None:
@@ -115,17 +117,19 @@ def slider(
     flags: int = 0,
     tooltip: str = "",
     word: str = "",
+    width: float = 0.0,
 ) -> tuple[bool, float, bool]:
     """Draw a slider with its number beside it.
 
     Returns whether it was moved, its value, and whether it was released after a change. text_format: of the
-    number, as for printf; word: is shown instead of the number. ImGui itself would write the number over the
-    knob, so it is drawn in a transparent color there.
+    number, as for printf; word: is shown instead of the number; width: of both in points, by default all the
+    available room. ImGui itself would write the number over the knob, so it is drawn in a transparent color
+    there.
     """
     font_size = imgui.get_font_size()
     number_width = max(imgui.calc_text_size(text_format % limits[1]).x, _MIN_NUMBER_WIDTH * font_size)
     room = number_width + 0.6 * font_size
-    imgui.set_next_item_width(-room)
+    imgui.set_next_item_width(width - room)
     is_typing = imgui.internal.temp_input_is_active(imgui.get_id(name))
     imgui.push_style_color(imgui.Col_.text, ImVec4(*TEXT) if is_typing else ImVec4(0, 0, 0, 0))
     clamp = imgui.SliderFlags_.always_clamp
@@ -136,9 +140,8 @@ def slider(
     text, right = word or number_with_unit(value, text_format), imgui.get_item_rect_max().x + room
     top = imgui.get_item_rect_min().y + imgui.get_style().frame_padding.y
     corner = ImVec2(right - imgui.calc_text_size(text).x, top)
-    imgui.get_window_draw_list().add_text(
-        corner, packed(TEXT), text
-    )  # no item: the slider stays the last one
+    draw = imgui.get_window_draw_list()
+    draw.add_text(corner, packed(TEXT), text)  # no item: the slider stays the last one
     return bool(is_moved), float(value), bool(is_released)
 
 
@@ -170,6 +173,25 @@ def number_in_language(
     return is_changed, value
 
 
+def combo(name: str, index: int, labels: Sequence[str]) -> tuple[bool, int]:
+    """Draw a list that opens; return whether another entry was chosen, and its index.
+
+    index: of the chosen entry, -1 for none. Its label is shortened to the room.
+    """
+    chosen, current = index, labels[index] if 0 <= index < len(labels) else ""
+    room = imgui.calc_item_width() - imgui.get_frame_height() - 2 * imgui.get_style().frame_padding.x
+    if imgui.begin_combo(name, shortened(current, room), imgui.ComboFlags_.height_largest):
+        for number, label in enumerate(labels):
+            imgui.push_id(number)
+            if imgui.selectable(label, number == index)[0]:
+                chosen = number
+            if number == index:
+                imgui.set_item_default_focus()
+            imgui.pop_id()
+        imgui.end_combo()
+    return chosen != index, chosen
+
+
 def color(name: str, value: tuple[float, float, float]) -> tuple[float, float, float]:
     """Draw a field that opens a color picker; return the color."""
     flags = imgui.ColorEditFlags_.no_inputs | imgui.ColorEditFlags_.no_label
@@ -179,7 +201,7 @@ def color(name: str, value: tuple[float, float, float]) -> tuple[float, float, f
 
 def button(label: str, primary: bool = False) -> bool:
     """Draw a button of a dialog; return whether it was pressed. primary: the one that Enter presses."""
-    width = max(imgui.calc_text_size(label).x + 2.5 * imgui.get_font_size(), 6 * imgui.get_font_size())
+    width = max(imgui.calc_text_size(label, True).x + 2.5 * imgui.get_font_size(), 6 * imgui.get_font_size())
     if primary:
         imgui.push_style_color(imgui.Col_.button, ImVec4(*ACCENT))
         imgui.push_style_color(imgui.Col_.button_hovered, ImVec4(*ACCENT_HOVER))
@@ -189,30 +211,6 @@ def button(label: str, primary: bool = False) -> bool:
     if primary:
         imgui.pop_style_color(4)
     return is_pressed
-
-
-# -- lists --------------------------------------------------------------------------------------------------
-
-
-def begin_list(name: str, rows: int) -> None:
-    """Begin a list that is always as high as ``rows``, so that nothing below it moves when it changes.
-
-    `imgui.end_child` must follow.
-    """
-    height = rows * imgui.get_text_line_height_with_spacing()
-    imgui.begin_child(name, ImVec2(0, height), NAV_FLATTENED)
-    # the highlight of a row extends by half of the space between rows, above the first one, too
-    imgui.set_cursor_pos_y(0.5 * imgui.get_style().item_spacing.y)
-
-
-def scroll_to_row(index: int, most: int) -> None:
-    """Scroll to the last row that was drawn, unless it is visible or the pointer is over the list."""
-    top = imgui.get_window_pos().y
-    bottom = top + imgui.get_window_size().y
-    is_visible = top <= imgui.get_item_rect_min().y and imgui.get_item_rect_max().y <= bottom
-    if not is_visible and not imgui.is_window_hovered():
-        first = max(index - most // 2, 0)
-        imgui.set_scroll_y(first * imgui.get_text_line_height_with_spacing())
 
 
 # -- text ---------------------------------------------------------------------------------------------------
@@ -329,17 +327,16 @@ def begin_dialog(title: str) -> bool:
     title: in English, which also identifies it; it is shown in the user's language.
     Returns whether it is shown; if it is, `imgui.end_popup` must follow.
     """
-    name = f"{tr(title)}###dialog {title}"
+    name = f"{shortened(tr(title), _TITLE_WIDTH * imgui.get_font_size())}###dialog {title}"
     if not imgui.is_popup_open(name):
         imgui.open_popup(name)
     viewport = imgui.get_main_viewport()
     imgui.set_next_window_pos(viewport.get_center(), imgui.Cond_.always, ImVec2(0.5, 0.5))
-    room, viewport.work_size = (
-        viewport.work_size,
-        viewport.size,
-    )  # ImGui limits the size to that of the canvas
-    padding = imgui.get_style().window_padding.x, 1.6 * imgui.get_style().frame_padding.y
-    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(*padding))  # aligns the title with the content
+    room, viewport.work_size = viewport.work_size, viewport.size  # or else ImGui limits it to the canvas
+    style, font_size = imgui.get_style(), imgui.get_font_size()
+    # aligns the title with the content; in whole points, or else a gap is seen below the title
+    padding = style.window_padding.x, (round(font_size + 3.2 * style.frame_padding.y) - font_size) / 2
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(*padding))
     is_shown = imgui.begin_popup_modal(name, None, _DIALOG)[0]
     imgui.pop_style_var()
     viewport.work_size = room
@@ -351,11 +348,23 @@ def popup_is_open() -> bool:
     return bool(imgui.is_popup_open("", imgui.PopupFlags_.any_popup))
 
 
-def label(text: str, width: float) -> None:
-    """Draw the label of the field that is drawn next, which begins at ``width`` points."""
+def label_column(*labels: str) -> float:
+    """Where fields begin, points, so that the longest of the labels before them has room."""
+    widest = max(imgui.calc_text_size(label).x for label in labels)
+    return float(imgui.get_cursor_start_pos().x + widest + _LABEL_GAP * imgui.get_font_size())
+
+
+def label(text: str, width: float, tooltip: str = "") -> None:
+    """Draw the label of the field that is drawn next, which begins at ``width`` points.
+
+    It begins further to the right if the label is longer.
+    """
+    start = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
     imgui.text_colored(ImVec4(*SECONDARY), text)
-    imgui.same_line(width)
+    end = start + imgui.get_item_rect_size().x + 0.5 * imgui.get_font_size()
+    show_tooltip(tooltip)
+    imgui.same_line(max(width, end))
     imgui.align_text_to_frame_padding()
 
 

@@ -33,12 +33,14 @@ def document(drawing: Drawing) -> Document:
 
 @pytest.fixture(scope="module")
 def new_window() -> Iterator[Callable[..., WindowDriver]]:
-    """Makes the module's window."""
+    """Makes the module's window; the one before it is closed."""
     made: list[WindowDriver] = []
     with DeferredPainter().deferring(), pytest.MonkeyPatch.context() as patch:
         patch.setattr("akap_editor.app.glfw_window.render_imgui", render_unlocked)
 
         def make(**options: object) -> WindowDriver:
+            while made:
+                made.pop().close()
             made.append(WindowDriver(Window(null=True, **options)))
             return made[-1]
 

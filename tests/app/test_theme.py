@@ -7,12 +7,12 @@ import pytest
 from imgui_bundle import imgui
 
 from akap_editor.app import theme
-from akap_editor.app.canvas import vector_field_arrows, view_options
+from akap_editor.app.canvas import legend, vector_field_arrows, view_options
 from akap_editor.app.panels import measurements
 from akap_editor.app.timeline import track
 from akap_editor.render import colormaps
 
-GROUNDS = ("PANEL", "DARK", "POPUP", "FRAME", "HOVER")
+GROUNDS = ("PANEL", "DARK", "WELL", "POPUP", "FRAME", "HOVER", "ACTIVE")
 TEXT_AA, PARTS_AA = 4.5, 3.0  # success criteria 1.4.3 and 1.4.11
 APART = 0.15  # in OKLab, where black is 1 from white: thin lines of two colors are told apart
 
@@ -70,7 +70,7 @@ def test_text(text, ground):
     assert contrast(of(text), of(ground)) >= TEXT_AA
 
 
-@pytest.mark.parametrize("ground", ["PANEL", "POPUP"])
+@pytest.mark.parametrize("ground", ["PANEL", "WELL", "POPUP"])
 def test_text_on_a_chosen_line(ground):
     chosen = over(theme._COLORS[imgui.Col_.header], of(ground))
     for text in ("TEXT", "SECONDARY"):
@@ -84,8 +84,14 @@ def test_text_on_the_button_that_enter_presses(accent):
 
 def test_keys_in_menus_which_imgui_writes_as_disabled_text():
     for ground in ("POPUP", "HOVER"):
-        needed = TEXT_AA if ground == "POPUP" else PARTS_AA
-        assert contrast(theme._COLORS[imgui.Col_.text_disabled], of(ground)) >= needed
+        assert contrast(theme._COLORS[imgui.Col_.text_disabled], of(ground)) >= TEXT_AA
+
+
+@pytest.mark.parametrize("canvas", ["#FFFFFF", "#FFB43A", "#000000"])
+@pytest.mark.parametrize("text", ["TEXT", "SECONDARY"])
+def test_text_on_a_plate_over_any_drawing(text, canvas):
+    plate = over((*theme.DARK[:3], legend.PLATE_OPACITY), theme._hex(canvas))
+    assert contrast(of(text), plate) >= TEXT_AA
 
 
 @pytest.mark.parametrize("part", [imgui.Col_.check_mark, imgui.Col_.slider_grab, imgui.Col_.nav_cursor])
@@ -94,7 +100,7 @@ def test_parts_that_show_a_state(part):
     assert contrast(theme._COLORS[part], ground) >= PARTS_AA
 
 
-@pytest.mark.parametrize("ground", ["PANEL", "DARK", "POPUP", "FRAME"])
+@pytest.mark.parametrize("ground", ["PANEL", "DARK", "WELL", "POPUP", "FRAME"])
 def test_lines_that_alone_show_where_something_is(ground):
     assert contrast(theme.STRONG_LINE, of(ground)) >= PARTS_AA
     assert contrast(theme._COLORS[imgui.Col_.scrollbar_grab], of(ground)) >= PARTS_AA

@@ -200,7 +200,7 @@ def test_the_fitted_drawing_follows_the_size_of_the_window(ui):
         glfw.set_window_size(handle, 900, 700)
         ui.settle()
         left, _, right, _ = ui.editor.canvas
-        assert (left, right) == (48.0, 900.0 - 268.0)
+        assert (left, right) == (48.0, 900.0 - 288.0)
         assert ui.editor.camera.zoom < before.zoom
         ui.editor.camera = moved = ui.editor.camera.panned(5, 5)
         glfw.set_window_size(handle, 1280, 800)

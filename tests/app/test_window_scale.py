@@ -13,7 +13,7 @@ def module_window(new_window):
 
 def test_panels_take_twice_the_room(ui):
     left, top, right, bottom = ui.editor.canvas
-    assert (left, right) == (2 * 48.0, 2560 - 2 * 268.0)
+    assert (left, right) == (2 * 48.0, 2560 - 2 * 288.0)
     assert 0 < top < bottom < 1600
     assert ui.screenshot().shape == (1600, 2560, 3)
 

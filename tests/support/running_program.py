@@ -22,7 +22,7 @@ Point = Sequence[float]
 SIZE = (1280, 800)  # of the window by default
 DEADLINE = 300.0  # seconds; a slow machine takes minutes to compile the engine at the first start
 PAUSE = 0.05  # seconds between two looks at the screen
-LEFT, TOP, RIGHT, BOTTOM = 48, 64, 1280 - 268, 760  # within the canvas, without menu, options and status bar
+LEFT, TOP, RIGHT, BOTTOM = 48, 64, 1280 - 288, 760  # within the canvas, without menu, options and status bar
 CORNER = (LEFT + 12, TOP + 12)  # on the canvas, beside the drawing
 MARKER = 12  # pixels around a pin's center that its marker covers, without the handles of its ring
 

@@ -1,4 +1,4 @@
-"""The legend of the overlays, in the lower left corner of the canvas."""
+"""Words on the canvas: the legend of the overlays in the lower left corner, and plates with a text."""
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
@@ -6,10 +6,13 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from ...deform.methods import get_method
 from ...editor.editor import Editor
 from ...editor.session.session import Session
+from ...render.overlays import Rgba
 from ...words import number_text, tr
-from ..theme import SECONDARY, TEXT, packed
+from ..theme import DARK, SECONDARY, TEXT, packed
 from .vector_field_arrows import U_OPT_COLOR, U_SMOOTH_COLOR
 from .view_options import DISTORTION_RANGES, DISTORTION_SCALES, Measure, ViewOptions
+
+PLATE_OPACITY = 0.85  # of the dark plates under texts
 
 
 def draw_legend(view: ViewOptions, editor: Editor, scale: float) -> None:
@@ -20,7 +23,7 @@ def draw_legend(view: ViewOptions, editor: Editor, scale: float) -> None:
     imgui.set_next_window_pos(
         ImVec2(left + 12 * scale, bottom - 12 * scale), imgui.Cond_.always, ImVec2(0, 1)
     )
-    imgui.set_next_window_bg_alpha(0.82)
+    imgui.set_next_window_bg_alpha(PLATE_OPACITY)
     flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.always_auto_resize
     flags |= imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
     flags |= imgui.WindowFlags_.no_focus_on_appearing
@@ -81,3 +84,15 @@ def _draw_distortion_scale(view: ViewOptions, measure: Measure, scale: float) ->
     for position, label in zip((0.0, 0.5, 1.0), labels, strict=True):
         x = corner.x + position * (size.x - imgui.calc_text_size(label).x)
         draw.add_text(ImVec2(x, corner.y + size.y + gap), packed(TEXT), label)
+
+
+def draw_plate(draw: imgui.ImDrawList, corner: ImVec2, text: str, margin: ImVec2, color: Rgba = TEXT) -> None:
+    """Draw a text on a dark plate, on which it is readable over any drawing.
+
+    corner: upper left one of the text; margin: of the plate around it, points.
+    """
+    end, size = corner + margin, imgui.calc_text_size(text)
+    high = ImVec2(end.x + size.x, end.y + size.y)
+    rounding = 0.3 * imgui.get_font_size()
+    draw.add_rect_filled(corner - margin, high, packed(DARK, PLATE_OPACITY), rounding)
+    draw.add_text(corner, packed(color), text)

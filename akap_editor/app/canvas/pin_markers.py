@@ -17,6 +17,7 @@ from ...words import number_text
 from ..app_state import AppState
 from ..theme import ACCENT, DARK, packed
 from ..timeline.motion_paths import draw_motion_paths
+from .legend import draw_plate
 from .rig_markers import draw_cuts, draw_joints
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
@@ -246,12 +247,8 @@ def _draw_label(
     draw: imgui.ImDrawList, corner: Point, text: str, padding: tuple[float, float], scale: float
 ) -> None:
     """Draw text on a dark plate. corner: left edge of the plate and top of the text."""
-    size = imgui.calc_text_size(text)
     across, along = padding[0] * scale, padding[1] * scale
-    low = ImVec2(corner[0], corner[1] - along)
-    high = ImVec2(corner[0] + size.x + 2 * across, corner[1] + size.y + along)
-    draw.add_rect_filled(low, high, packed(DARK, 0.8), 4 * scale)
-    draw.add_text(ImVec2(corner[0] + across, corner[1]), packed(_WHITE), text)
+    draw_plate(draw, ImVec2(corner[0] + across, corner[1]), text, ImVec2(across, along))
 
 
 def _draw_sign(

@@ -9,8 +9,10 @@ from ...editor.events import ScrollEvent
 from ...editor.session.session import Session
 from ...geometry.distortion import Distortion
 from ...words import number_text, tr
+from .. import widgets
 from ..app_state import AppState
-from ..theme import SECONDARY, TEXT, packed
+from ..theme import SECONDARY, packed
+from .legend import draw_plate
 from .pin_markers import draw_pin
 
 Rectangle = tuple[float, float, float, float]  # left, top, right, bottom in points of the window
@@ -79,7 +81,7 @@ def _draw_right_half(state: AppState, half: Rectangle, scale: float) -> None:
     imgui.set_next_item_width(min(220 * scale, right - left - 24 * scale))
     specs = [preset.spec for preset in presets()]
     labels = [tr(preset.label) for preset in presets()]
-    changed, index = imgui.combo("##beside", specs.index(comparison.spec), labels, len(labels))
+    changed, index = widgets.combo("##beside", specs.index(comparison.spec), labels)
     if changed:
         comparison.spec = specs[index]
     wheel, pointer = imgui.get_io().mouse_wheel, imgui.get_mouse_pos()
@@ -102,7 +104,11 @@ def _draw_caption(
     """The name of the method at the top of a half, its numbers at the bottom."""
     background = imgui.get_background_draw_list()
     left, top, right, bottom = half
-    background.add_text(ImVec2(left + 12 * scale, top + 14 * scale), packed(TEXT), method)
+    margin = 12 * scale
+    name = widgets.shortened(method, right - left - 2 * margin)
+    plate_margin = ImVec2(6 * scale, 3 * scale)
+    if name:
+        draw_plate(background, ImVec2(left + margin, top + 14 * scale), name, plate_margin)
     if distortion is None:
         return
     first_line = [
@@ -119,7 +125,8 @@ def _draw_caption(
     width = right - left - 24 * scale
     numbers = "\n".join(_fit_into(width, line) for line in (first_line, second_line))
     height = imgui.calc_text_size(numbers).y
-    background.add_text(ImVec2(left + 12 * scale, bottom - height - 12 * scale), packed(SECONDARY), numbers)
+    corner = ImVec2(left + margin, bottom - height - margin)
+    draw_plate(background, corner, numbers, plate_margin, SECONDARY)
 
 
 def _fit_into(width: float, texts: list[str]) -> str:

@@ -8,7 +8,7 @@ from ...words import tr
 from ..app_state import AppState
 from ..jobs.engine_preparation import TEXT as PREPARATION_TEXT
 from ..jobs.task import LATE_SECONDS
-from ..theme import DARK, TEXT, packed
+from .legend import draw_plate
 
 _TOP = 16  # design points between the canvas and the plate
 
@@ -42,6 +42,4 @@ def _draw_plate(state: AppState, text: str, scale: float) -> None:
     size, margin = imgui.calc_text_size(text), 10 * scale
     x, y = (left + right - size.x) / 2, top + _TOP * scale
     draw = imgui.get_background_draw_list()
-    low, high = ImVec2(x - margin, y - margin / 2), ImVec2(x + size.x + margin, y + size.y + margin / 2)
-    draw.add_rect_filled(low, high, packed(DARK, 0.85), 5 * scale)
-    draw.add_text(ImVec2(x, y), packed(TEXT), text)
+    draw_plate(draw, ImVec2(x, y), text, ImVec2(margin, margin / 2))

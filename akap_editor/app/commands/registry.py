@@ -333,6 +333,8 @@ ERASE = Command("Erase Stiffness", _toggle_erasing, (Key.e,), "", _has_brush, _i
 DECREASE_BRUSH = Command("Decrease Brush Size", _resize_brush(False), (Key.left_bracket,), "", _has_brush)
 INCREASE_BRUSH = Command("Increase Brush Size", _resize_brush(True), (Key.right_bracket,), "", _has_brush)
 
+GO_TO_PIN = CommandGroup("Selected Pin", (NEXT_PIN, PREVIOUS_PIN, None, PIN_VALUES, CONTEXT_MENU))
+ORDER = CommandGroup("Order", (LIMB_TO_FRONT, LIMB_TO_BACK, None, RAISE_DEPTH, LOWER_DEPTH))
 ARRANGE = CommandGroup("Align Pins", (*ALIGN_PINS, None, *DISTRIBUTE_PINS))
 
 # -- the tables ---------------------------------------------------------------------------------------------
@@ -353,10 +355,8 @@ MENUS: tuple[Menu, ...] = (
         (
             *(UNDO, REDO, None),
             *(COPY_PICTURE, COPY_POSE, PASTE, None),
-            *(SUGGEST_PINS, REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT),
-            *(NEXT_PIN, PREVIOUS_PIN, PIN_VALUES, CONTEXT_MENU, FINISH, None),
-            *(LIMB_TO_FRONT, LIMB_TO_BACK, RAISE_DEPTH, LOWER_DEPTH, HOLD_ANGLE),
-            *(ARRANGE, CommandGroup("Mirror", MIRROR), None),
+            *(SUGGEST_PINS, REMOVE_SELECTED, REMOVE_LAST_PIN, SELECT_ALL, DESELECT, FINISH, None),
+            *(GO_TO_PIN, ORDER, ARRANGE, CommandGroup("Mirror", MIRROR), HOLD_ANGLE, None),
             *(RESET_POSE, SET_REST_POSE, REMEMBER_REST_SHAPE, RESET_PARAMETERS),
             *(CLEAR_STIFFNESS, CLEAR_LOOSE, None),
             PREFERENCES,

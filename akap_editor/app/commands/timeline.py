@@ -13,7 +13,7 @@ from ..dialogs.clips import ClipsDialog, request_clip_file
 from ..dialogs.export.animation import ExportAnimationDialog
 from ..dialogs.take import TakeDialog
 from ..timeline.timeline import snap_time
-from .command import CTRL, SHIFT, Command, Key, has_drawing
+from .command import CTRL, SHIFT, Command, CommandGroup, Key, MenuItem, has_drawing
 
 _ZOOM_FACTOR = 1.5
 
@@ -271,13 +271,21 @@ SPEED_GRAPH = Command(
 ZOOM_IN_TIMELINE = Command("Zoom In Timeline", _on_playback(_zoom(_ZOOM_FACTOR)), (), "", _is_shown)
 ZOOM_OUT_TIMELINE = Command("Zoom Out Timeline", _on_playback(_zoom(1 / _ZOOM_FACTOR)), (), "", _is_shown)
 
-ANIMATION: tuple[Command | None, ...] = (
+GO_TO = CommandGroup(
+    "Go To",
+    (
+        *(STEP_BACK, STEP_FORWARD, SECOND_BACK, SECOND_FORWARD, None),
+        *(PREVIOUS_KEYFRAME, NEXT_KEYFRAME, None, GO_TO_START, GO_TO_END),
+    ),
+)
+RANGE = CommandGroup("Range", (SET_RANGE_START, SET_RANGE_END, CLEAR_RANGE))
+
+ANIMATION: tuple[MenuItem, ...] = (
     *(PLAY, EXPORT_ANIMATION, None),
-    *(STEP_BACK, STEP_FORWARD, SECOND_BACK, SECOND_FORWARD, GO_TO_START, GO_TO_END, None),
-    *(SET_RANGE_START, SET_RANGE_END, CLEAR_RANGE, None),
     *(ADD_KEYFRAME, DELETE_KEYFRAME, DUPLICATE_KEYFRAME, SELECT_ALL_KEYFRAMES),
-    *(COPY_KEYFRAMES, PASTE_KEYFRAMES, PASTE_REVERSED, REVERSE_KEYFRAMES, DUPLICATE_REVERSED, None),
+    *(COPY_KEYFRAMES, PASTE_KEYFRAMES, PASTE_REVERSED, REVERSE_KEYFRAMES, DUPLICATE_REVERSED),
+    *(MOVE_EARLIER, MOVE_LATER, None),
+    *(GO_TO, RANGE, None),
     *(AUTO_KEY, KEYFRAMES_FROM_TAKE, CLIPS, SAVE_CLIP, None),
-    *(PREVIOUS_KEYFRAME, NEXT_KEYFRAME, MOVE_EARLIER, MOVE_LATER, None),
     *(ONION_SKIN, SPEED_GRAPH, ZOOM_IN_TIMELINE, ZOOM_OUT_TIMELINE),
 )

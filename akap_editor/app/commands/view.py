@@ -66,7 +66,7 @@ FIT = Command(
     "Fit in Window",
     lambda state: state.editor.fit(),
     (Key.f, CTRL | Key._0),
-    icons.ICON_FA_MAXIMIZE,
+    icons.ICON_FA_EXPAND,
     has_drawing,
 )
 ACTUAL_SIZE = Command("Actual Size", _show_actual_size, (Key._1, CTRL | Key._1), "", has_drawing)
@@ -87,7 +87,7 @@ ZOOM_OUT = Command(
     has_drawing,
     repeats=True,
 )
-SHOW_MESH = _switch("Show Mesh", "show_mesh", (SHIFT | Key.m,), icons.ICON_FA_CIRCLE_NODES)
+SHOW_MESH = _switch("Show Mesh", "show_mesh", (SHIFT | Key.m,), icons.ICON_FA_DRAW_POLYGON)
 SHOW_PINS = _switch("Show Pins", "show_pins", (SHIFT | Key.p,))
 SHOW_FIELD = _switch("Show Vector Field", "show_vector_fields", (SHIFT | Key.v,), "", has_drawing)
 SHOW_AREA = _distortion("Show Area Distortion", "area", SHIFT | Key.d)

@@ -13,7 +13,7 @@ from ..commands.command import Command
 from ..commands.keymap import KEYMAP, pressed_chord, shown_chord
 from ..theme import ACCENT, SECONDARY
 
-_WIDTH, _HEIGHT = 620, 380  # of the list, in design points
+_WIDTH, _HEIGHT = 620, 380  # of the list, at most, in design points
 _OTHER_HEIGHT = 240  # of everything around the list, in design points
 _NAME_WIDTH = 270  # design points
 _HINT = mark("Type a few letters of a command")
@@ -39,27 +39,26 @@ class PreferencesPage:
         """Draw one frame. scale: points per design point."""
         if not widgets.begin_dialog("Preferences"):
             return
-        was_awaiting = self._awaited is not None
+        was_awaiting, size = self._awaited is not None, _list_size(scale)
         self._read_key(state)
         self._draw_language(state)
-        imgui.set_next_item_width(_WIDTH * scale)
+        imgui.set_next_item_width(size.x)
         imgui.begin_disabled(was_awaiting)
         _, self._query = imgui.input_text_with_hint("##query", tr(_HINT), self._query)
         imgui.end_disabled()
-        height = min(_HEIGHT * scale, imgui.get_main_viewport().size.y - _OTHER_HEIGHT * scale)
-        imgui.begin_child("##keys", ImVec2(_WIDTH * scale, height), widgets.NAV_FLATTENED)
+        imgui.begin_child("##keys", size, widgets.NAV_FLATTENED)
         for command in self._commands:
             if self._query.lower() in command.name.lower():
                 self._draw_command(state, command, scale)
         imgui.end_child()
         waiting = tr("Press the new key, or Esc to keep the old one")
         note = waiting if self._awaited is not None else self._note
-        imgui.text_colored(ImVec4(*ACCENT), widgets.shortened(note, _WIDTH * scale))
+        imgui.text_colored(ImVec4(*ACCENT), widgets.shortened(note, size.x))
+        is_closed = widgets.button(tr("Close"), primary=True) or widgets.cancel_pressed()
+        imgui.same_line()
         if widgets.button(tr("Reset All Keys")) and not was_awaiting:
             KEYMAP.reset()
             self._store(state, tr("All commands have their first keys again"))
-        imgui.same_line()
-        is_closed = widgets.button(tr("Close"), primary=True) or widgets.cancel_pressed()
         if is_closed and not was_awaiting:
             self.is_open = False
             widgets.close_popup()
@@ -73,7 +72,7 @@ class PreferencesPage:
         labels = [tr("System ({language})", language=own), *words.LANGUAGES.values()]
         chosen = state.preferences.language
         index = _LANGUAGES.index(chosen) if chosen in _LANGUAGES else 0
-        is_changed, index = imgui.combo("##language", index, labels)
+        is_changed, index = widgets.combo("##language", index, labels)
         if is_changed:
             state.preferences.language = _LANGUAGES[index]
             state.save_preferences()
@@ -137,3 +136,11 @@ class PreferencesPage:
         self._note = note
         state.preferences.put("keys", KEYMAP.to_json())
         state.save_preferences()
+
+
+def _list_size(scale: float) -> ImVec2:
+    """The size of the list, points: of whole rows that have room. scale: points per design point."""
+    room, row = imgui.get_main_viewport().size, imgui.get_frame_height_with_spacing()
+    width = min(_WIDTH * scale, room.x - 4 * imgui.get_style().window_padding.x)
+    height = min(_HEIGHT * scale, room.y - _OTHER_HEIGHT * scale)
+    return ImVec2(width, max(1, height // row) * row - imgui.get_style().item_spacing.y)

@@ -22,8 +22,10 @@ def draw(state: AppState, task: Task, scale: float) -> None:
     percent = f"{100 * task.progress.share:.0f} %"
     imgui.progress_bar(task.progress.share, ImVec2(_WIDTH * scale, 8 * scale), "")
     imgui.pop_style_color()
-    imgui.text_colored(ImVec4(*SECONDARY), tr(task.progress.text))
-    imgui.same_line(_WIDTH * scale + imgui.get_style().window_padding.x - imgui.calc_text_size(percent).x)
+    room = _WIDTH * scale - imgui.calc_text_size(percent).x
+    text = widgets.shortened(tr(task.progress.text), room - imgui.get_font_size())
+    imgui.text_colored(ImVec4(*SECONDARY), text)
+    imgui.same_line(imgui.get_style().window_padding.x + room)
     imgui.text(percent)
     imgui.spacing()
     if task.finish_early is not None and widgets.button(tr("Stop Here"), primary=True):

@@ -9,8 +9,8 @@ Tab = Literal["Pose", "Animate", "Mesh"]
 
 TABS: tuple[Tab, ...] = get_args(Tab)
 
-MIN_WIDTH, DEFAULT_WIDTH, MAX_WIDTH = 236, 268, 560  # of the side panel, design points
-MAX_SHARE = 0.5  # of the window's width
+MIN_WIDTH, DEFAULT_WIDTH, MAX_WIDTH = 236, 288, 560  # of the side panel, design points
+MAX_SHARE = 0.45  # of the window's width
 _HIDDEN, _WIDTH, _TAB = "hidden panels", "side panel width", "tab"  # names of preferences
 
 

@@ -27,23 +27,30 @@ TOOLBAR: tuple[Command | None, ...] = (
     None,
     *(FIT, SHOW_MESH),
 )
-_WIDTH, _BUTTON_SIZE = 48, 36  # design points
+_WIDTH, _BUTTON_SIZE, _MIN_BUTTON_SIZE, _GAP = 48, 36, 20, 4  # design points
 
 
 def draw(state: AppState, scale: float) -> None:
-    """Draw the buttons, smaller in a low window, so that all of them are visible.
+    """Draw the buttons, smaller in a low window, in two columns in a very low one, so that all are visible.
 
     scale: points per design point.
     """
-    separators = TOOLBAR.count(None)
-    gaps = 16 * scale + separators * 12 * scale
-    room = (imgui.get_main_viewport().work_size.y - gaps) / (len(TOOLBAR) - separators)
-    size = min(_BUTTON_SIZE * scale, room - 4 * scale)
-    padding = ImVec2((_WIDTH * scale - size) / 2, 8 * scale)
+    separators, gap = TOOLBAR.count(None), _GAP * scale
+    commands = [command for command in TOOLBAR if command is not None]
+    height = imgui.get_main_viewport().work_size.y - 16 * scale
+    size = min(_BUTTON_SIZE * scale, (height - separators * 3 * gap) / len(commands) - gap)
+    has_one_column = size >= _MIN_BUTTON_SIZE * scale
+    if not has_one_column:
+        gap, height = gap / 2, height + 8 * scale
+        size = min(_MIN_BUTTON_SIZE * scale, height / ((len(commands) + 1) // 2) - gap)
+    columns, top = (1, 8 * scale) if has_one_column else (2, 4 * scale)
+    padding = ImVec2((_WIDTH * scale - columns * (size + gap) + gap) / 2, top)
     if widgets.side_bar("Tools", imgui.Dir.left, _WIDTH * scale, padding):
-        imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(4 * scale, 4 * scale))
+        imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(gap, gap))
         imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))  # or else it covers small icons
-        for command in TOOLBAR:
+        for number, command in enumerate(TOOLBAR if has_one_column else commands):
+            if not has_one_column and number % 2:
+                imgui.same_line()
             if command is None:
                 _draw_separator(size, scale)
             else:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
-from imgui_bundle import ImVec4, imgui
+from imgui_bundle import ImVec2, imgui
 
 from ...deform.follow_through import MAX_BOUNCE, MAX_SPEED, MIN_SPEED
 from ...deform.methods import get_method
@@ -16,12 +16,11 @@ from .. import widgets
 from ..app_state import AppState
 from ..commands.registry import CLEAR_LOOSE, CLEAR_STIFFNESS, ERASE
 from ..pending_values import PendingValues
-from ..theme import ACCENT
 from .items import Item, command_button, draw_label, text
 
 T = TypeVar("T")
 
-_SLIDER_WIDTH = 8.4  # times the font size
+_SLIDER_WIDTH = 9.0  # with its number, times the font size
 
 
 def is_shown(state: AppState) -> bool:
@@ -107,36 +106,37 @@ def _draw_erase(state: AppState) -> None:
 
 def _slider(label: str, value: float, limits: tuple[float, float], text_format: str, tooltip: str) -> float:
     """Draw a label (English) and a logarithmic slider; return its value."""
-    flags = imgui.SliderFlags_.always_clamp | imgui.SliderFlags_.logarithmic
-    return _labeled(
-        label, tooltip, lambda: imgui.slider_float(f"##{label}", value, *limits, text_format, flags)[1]
-    )
+    flags = imgui.SliderFlags_.logarithmic
+    return _labeled(label, tooltip, lambda: _bare_slider(label, value, limits, text_format, flags)[1])
 
 
 def _pending_slider(
     state: AppState, label: str, value: float, limits: tuple[float, float], text_format: str, tooltip: str
 ) -> float | None:
     """Draw a label (English) and a slider; return the new value in the frame in which its edit ends."""
-    name, flags = f"##{label}", imgui.SliderFlags_.always_clamp
     return _labeled(
         label,
         tooltip,
         lambda: state.part(PendingValues).edit(
-            (label, "of the brush"),
-            value,
-            lambda shown: widgets.number_in_language(
-                name, text_format, lambda: imgui.slider_float(name, shown, *limits, text_format, flags)
-            ),
+            (label, "of the brush"), value, lambda shown: _bare_slider(label, shown, limits, text_format)
         ),
     )
+
+
+def _bare_slider(
+    label: str, value: float, limits: tuple[float, float], text_format: str, flags: int = 0
+) -> tuple[bool, float]:
+    """Draw a slider with its number; return whether it was moved, and its value."""
+    width = _SLIDER_WIDTH * imgui.get_font_size()
+    return widgets.slider(f"##{label}", value, limits, text_format, flags, width=width)[:2]
 
 
 def _labeled(label: str, tooltip: str, draw: Callable[[], T]) -> T:
     """Draw a label (English) and a slider of a fixed width; return what ``draw`` returns."""
     draw_label(tr(label), tooltip)
-    imgui.set_next_item_width(_SLIDER_WIDTH * imgui.get_font_size())
-    imgui.push_style_color(imgui.Col_.slider_grab, ImVec4(*ACCENT[:3], 0.45))  # the number is over it
     value = draw()
-    imgui.pop_style_color()
     widgets.show_tooltip(tooltip)
+    number_width = _SLIDER_WIDTH * imgui.get_font_size() - imgui.get_item_rect_size().x
+    imgui.same_line(0, 0)
+    imgui.dummy(ImVec2(number_width, 0))  # the number is no item
     return value

@@ -11,9 +11,9 @@ from ..commands.command import Command
 from ..commands.timeline import ADD_KEYFRAME, AUTO_KEY, EXPORT_ANIMATION, PLAY
 from ..commands.view import SHOW_MOTION_PATHS, SHOW_TIMELINE
 from ..timeline.keyframe_menus import draw_onion_options
+from . import parts
 
 _ROWS = 6  # keyframes that are visible at once
-_LABEL_WIDTH = 6.4  # times the font size
 
 
 def keyframe_count(state: AppState) -> str:
@@ -29,22 +29,22 @@ def draw_keyframes(state: AppState, scale: float) -> None:
     """Draw the list of keyframes and what adds and eases them. scale: points per design point."""
     playback = state.timeline.keyframe_playback
     keyframes = _keyframes(state)
-    widgets.begin_list("##keyframes", _ROWS)
+    parts.begin_list("##keyframes", _ROWS)
     if not keyframes:
         widgets.secondary_text(
             tr("None yet. Bend the drawing, then add a keyframe; the next one at another time.")
         )
     for number, keyframe in enumerate(keyframes):
         _draw_row(state, keyframe, number)
-    imgui.end_child()
+    parts.end_list()
     _button(state, ADD_KEYFRAME)
     auto_key_tooltip = tr("Each change of the pose becomes a keyframe at the playhead.")
     _switch(state, AUTO_KEY, tr("Auto Key"), auto_key_tooltip)
-    widgets.label(tr("Easing"), _LABEL_WIDTH * imgui.get_font_size())
+    widgets.label(tr("Easing"), widgets.label_column(tr("Easing")))
     imgui.set_next_item_width(widgets.FULL)
     names = list(KEYFRAME_EASINGS)
     imgui.begin_disabled(not keyframes)
-    is_changed, index = imgui.combo(
+    is_changed, index = widgets.combo(
         "##default easing", names.index(playback.animation.ease), [tr(EASING_LABELS[name]) for name in names]
     )
     imgui.end_disabled()
@@ -69,7 +69,7 @@ def _draw_row(state: AppState, keyframe: Keyframe, number: int) -> None:
         imgui.same_line(right - imgui.calc_text_size(label).x - 0.5 * imgui.get_font_size())
         widgets.secondary_text(label)
     if is_selected:
-        widgets.scroll_to_row(number, _ROWS)
+        parts.scroll_to_row(number, _ROWS)
 
 
 def draw_onion_skin(state: AppState, scale: float) -> None:

@@ -36,7 +36,7 @@ def _draw_method(state: AppState, settings: Settings) -> None:
     choices, current = presets(), nearest_preset(settings.method, dict(settings.parameters))
     imgui.set_next_item_width(widgets.FULL)
     labels = [tr(preset.label) for preset in choices]
-    is_changed, index = imgui.combo("##method", choices.index(current), labels, len(labels))
+    is_changed, index = widgets.combo("##method", choices.index(current), labels)
     widgets.show_tooltip(current.description)
     if is_changed:
         chosen = Settings.parse(choices[index].spec)

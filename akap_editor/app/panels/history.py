@@ -12,6 +12,7 @@ from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import SECONDARY
+from . import parts
 
 _ROWS = 6  # steps that are visible at once
 _FIRST = mark("Open")  # the state before the first step
@@ -46,19 +47,19 @@ def draw(state: AppState, scale: float) -> None:
     session = state.editor.session
     assert session is not None
     depth, labels = session.history.depth, [_FIRST, *session.history.labels]
-    widgets.begin_list("##history", _ROWS)
+    parts.begin_list("##history", _ROWS)
     for index, label in enumerate(labels):
         is_undone = index > depth
         if is_undone:
             imgui.push_style_color(imgui.Col_.text, ImVec4(*SECONDARY))
-        if imgui.selectable(f"  {widgets.as_label(shown_label(label))}##step {index}", index == depth)[0]:
+        if imgui.selectable(f"{widgets.as_label(shown_label(label))}##step {index}", index == depth)[0]:
             state.notice = ""
             state.run_reporting_errors(lambda index=index: state.editor.undo_or_redo_to(index))  # type: ignore[misc]
         if is_undone:
             imgui.pop_style_color()
         if index == depth:
-            widgets.scroll_to_row(index, _ROWS)
-    imgui.end_child()
+            parts.scroll_to_row(index, _ROWS)
+    parts.end_list()
 
 
 def shown_label(label: str) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor import gestures
@@ -15,13 +15,13 @@ from ..app_state import AppState
 from ..commands.command import context_menu_pressed
 from ..pending_values import NameField
 from ..theme import SECONDARY, TEXT, packed
+from . import parts
 from .rig.layer_thumbnails import THUMBNAIL_SIDE, draw_thumbnail
 from .rig.slots import SlotPickers, switch_to
 
 LAYER_PAYLOAD = "LAYER"  # of drag and drop: the number of a layer
 _ROWS = 8  # layers that are visible at once
 _ICON_WIDTH = 1.7  # times the font size
-_LABEL_WIDTH = 5.2  # times the font size
 _INDENT = 0.9  # of what is in a group, times the font size
 
 
@@ -62,7 +62,8 @@ class LayerList:
         shown = shown_layers(drawing.layers)
         step = THUMBNAIL_SIDE * scale + imgui.get_style().item_spacing.y
         rows = list(_rows(drawing.layers, drawing.layer_order))
-        imgui.begin_child("##layers", ImVec2(0, min(len(rows), _ROWS) * step), widgets.NAV_FLATTENED)
+        parts.begin_well("##layers", min(len(rows), _ROWS) * step)
+        imgui.set_cursor_pos_y(0.5 * imgui.get_style().item_spacing.y)
         for index, (path, place) in enumerate(rows):
             if any(path[:depth] in self._folded for depth in range(1, len(path) + (place is not None))):
                 continue
@@ -73,7 +74,7 @@ class LayerList:
             imgui.indent(max(_INDENT * imgui.get_font_size() * len(path), 0.01))
             self._draw_row(state, number, place, bool(shown[number]), scale)
             imgui.unindent(max(_INDENT * imgui.get_font_size() * len(path), 0.01))
-        imgui.end_child()
+        parts.end_list()
         self._slot_pickers.draw(state, scale)
         selected = selected_layer(state)
         imgui.begin_disabled(selected is None)
@@ -117,9 +118,8 @@ class LayerList:
         text = widgets.shortened(f"{icon}  {path[-1]}", room)
         place = ImVec2(corner.x + 0.3 * font_size, corner.y + middle - top)
         imgui.get_window_draw_list().add_text(place, packed(TEXT if is_open else SECONDARY), text)
-        imgui.set_cursor_pos(ImVec2(left, top + side + imgui.get_style().item_spacing.y))
+        imgui.set_cursor_pos(ImVec2(left, top + side))
         imgui.dummy(ImVec2(0, 0))
-        imgui.set_cursor_pos(ImVec2(left, top + side + imgui.get_style().item_spacing.y))
 
     def _draw_row(self, state: AppState, number: int, place: int, shown: bool, scale: float) -> None:
         assert state.document is not None
@@ -128,6 +128,8 @@ class LayerList:
         left, room = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
         side = round(THUMBNAIL_SIDE * scale)
         middle = top + (side - imgui.get_text_line_height()) / 2
+        if selected_layer(state) == number or number in self._more:
+            parts.draw_highlight(side)
         imgui.set_cursor_pos_y(middle)
         _draw_eye(state, layer, number)
         imgui.set_cursor_pos(ImVec2(left + _ICON_WIDTH * font_size, top))
@@ -173,15 +175,13 @@ class LayerList:
                 number,
                 locked=not layer.locked,
             )
-        imgui.set_cursor_pos(ImVec2(left, top + side + imgui.get_style().item_spacing.y))
+        imgui.set_cursor_pos(ImVec2(left, top + side))
         imgui.dummy(ImVec2(0, 0))
-        imgui.set_cursor_pos(ImVec2(left, top + side + imgui.get_style().item_spacing.y))
 
     def _draw_name(self, state: AppState, layer: DrawingLayer, number: int, place: int, size: ImVec2) -> None:
         """Draw the part of a row that is clicked, dragged and has a menu."""
         flags = imgui.SelectableFlags_.allow_double_click
-        is_selected = selected_layer(state) == number or number in self._more
-        if imgui.selectable(f"###layer {number}", is_selected, flags, size)[0]:
+        if imgui.selectable(f"###layer {number}", False, flags, size)[0]:
             self._select(state, number)
             if imgui.is_mouse_double_clicked(0):
                 self._name_field.begin(number)
@@ -338,9 +338,7 @@ def _drag_and_drop(state: AppState, number: int, place: int) -> None:
 def _draw_opacity(state: AppState, layers: Sequence[DrawingLayer], selected: int | None) -> None:
     """Draw the opacity of the selected layer; a whole drag of the slider is one entry of the history."""
     value = 100.0 if selected is None else 100 * layers[selected].opacity
-    imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*SECONDARY), tr("Opacity"))
-    imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
+    widgets.label(tr("Opacity"), widgets.label_column(tr("Opacity")))
     begins = not imgui.is_mouse_dragging(0, 0.0)
     is_moved, percent, _ = widgets.slider("##layer opacity", value, (0, 100), "%.0f %%")
     if is_moved and selected is not None:

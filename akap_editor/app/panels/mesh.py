@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 
-from imgui_bundle import ImVec2, ImVec4, imgui
+from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...editor.document.drawing import Meshing
@@ -16,14 +16,13 @@ from ...meshing.quality import smallest_angles
 from ...words import mark, number_text, tr
 from .. import widgets
 from ..app_state import AppState
-from ..theme import SECONDARY
-from . import folding
+from . import parts
 
 MIN_VERTICES, MAX_VERTICES = 200, 50_000
 MAX_MARGIN = 20.0  # pixels
 MAX_TOLERANCE = 60.0  # percent
 _CUT_ROWS = 5  # cuts that are visible at once
-_LABEL_WIDTH = 7.6  # times the font size
+_LABELS = mark("Detail"), mark("Margin"), mark("Alpha threshold"), mark("Tolerance"), mark("Mesher")
 
 
 def draw(state: AppState, scale: float) -> None:
@@ -42,7 +41,7 @@ def draw(state: AppState, scale: float) -> None:
     )
     if vertices is not None:
         state.remesher.request(replace(meshing, vertices=_two_digits(vertices)), imgui.is_item_active())
-    if folding.draw_advanced(state, "Mesh parameters"):
+    if parts.draw_advanced(state, "Mesh parameters"):
         _draw_outline(state, meshing)
         _draw_mesher(state, meshing)
     _draw_cuts(state, meshing)
@@ -110,18 +109,14 @@ def _draw_mesher(state: AppState, meshing: Meshing) -> None:
     names = meshers.installed_meshers()
     if len(names) < 2:
         return
-    imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*SECONDARY), tr("Mesher"))
-    widgets.show_tooltip(
-        tr(
-            "Program that makes the mesh. Triangle's license allows non-commercial use only; "
-            "PythonCDT may be used for everything."
-        )
+    tooltip = tr(
+        "Program that makes the mesh. Triangle's license allows non-commercial use only; "
+        "PythonCDT may be used for everything."
     )
-    imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
+    widgets.label(tr("Mesher"), _label_column(), tooltip)
     imgui.set_next_item_width(widgets.FULL)
     current = names.index(meshers.nearest_mesher(meshing.mesher))
-    is_changed, index = imgui.combo("##Mesher", current, [meshers.MESHERS[name] for name in names])
+    is_changed, index = widgets.combo("##Mesher", current, [meshers.MESHERS[name] for name in names])
     if is_changed:
         state.notice = ""
         state.preferences.mesher = names[index]
@@ -137,7 +132,7 @@ def _draw_cuts(state: AppState, meshing: Meshing) -> None:
     widgets.row(
         tr("Cuts"), f"{len(meshing.cuts)}", tr("Strokes of the knife (X), along which limbs come apart.")
     )
-    widgets.begin_list("##cuts", min(len(meshing.cuts), _CUT_ROWS))
+    parts.begin_list("##cuts", min(len(meshing.cuts), _CUT_ROWS))
     width = imgui.get_content_region_avail().x
     for index, cut in enumerate(meshing.cuts):
         length = sum(math.dist(*pair) for pair in pairwise(cut))
@@ -146,10 +141,14 @@ def _draw_cuts(state: AppState, meshing: Meshing) -> None:
         imgui.selectable(f"{shown}###cut {index}", False, size=size)
         if imgui.is_item_hovered() or imgui.is_item_focused():
             knife.highlighted = index
-        imgui.same_line(width - 1.7 * imgui.get_font_size())
+        imgui.same_line(imgui.get_cursor_start_pos().x + width - 1.7 * imgui.get_font_size())
         if widgets.icon_switch(icons.ICON_FA_TRASH, f"remove cut {index}", True, tr("Remove this cut"), 1.7):
             knife.remove(index)
-    imgui.end_child()
+    parts.end_list()
+
+
+def _label_column() -> float:
+    return widgets.label_column(*map(tr, _LABELS))
 
 
 def _slider(
@@ -160,10 +159,7 @@ def _slider(
     limits: lowest and highest value, and the printf format.
     """
     low, high, text_format = limits
-    imgui.align_text_to_frame_padding()
-    imgui.text_colored(ImVec4(*SECONDARY), label)
-    widgets.show_tooltip(tooltip)
-    imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
+    widgets.label(label, _label_column(), tooltip)
     is_moved, value, is_released = widgets.slider(f"##{label}", value, (low, high), text_format, flags)
     if is_released:
         state.remesher.end_drag()

@@ -12,9 +12,7 @@ from .. import widgets
 from ..app_state import AppState
 from ..pending_values import PendingValues
 from ..theme import SECONDARY
-from . import folding
-
-_LABEL_WIDTH = 8.3  # times the font size
+from . import parts
 
 
 def default_value(method: str, name: str) -> Any:
@@ -37,7 +35,7 @@ def draw_value(kind: Switch | Choice | NumberRange, value: Any) -> tuple[bool, A
             return widgets.switch("##value", bool(value))
         case Choice(labels):
             names = list(labels)
-            is_changed, index = imgui.combo(
+            is_changed, index = widgets.combo(
                 "##value", names.index(value), [tr(label) for label in labels.values()]
             )
             return is_changed, names[index]
@@ -55,13 +53,17 @@ def draw(state: AppState) -> None:
     parameters = get_method(settings.method).parameters
     if not parameters:
         return
-    if folding.draw_advanced(state, "Parameters"):
+    if parts.draw_advanced(state, "Parameters"):
+        column = widgets.label_column(*(tr(parameter.label) for parameter in parameters))
         for parameter in parameters:
-            _draw_parameter(state, settings, parameter)
+            _draw_parameter(state, settings, parameter, column)
 
 
-def _draw_parameter(state: AppState, settings: Settings, parameter: Parameter) -> None:
-    """Draw label and item of a parameter. Its value is applied when the edit of the item ends."""
+def _draw_parameter(state: AppState, settings: Settings, parameter: Parameter, column: float) -> None:
+    """Draw label and item of a parameter. Its value is applied when the edit of the item ends.
+
+    column: where the item begins, points.
+    """
     default = default_value(settings.method, parameter.name)
     value = settings.get(parameter.name, default)
     imgui.push_id(parameter.name)
@@ -72,7 +74,7 @@ def _draw_parameter(state: AppState, settings: Settings, parameter: Parameter) -
         imgui.text(tr(parameter.label))
     widgets.show_tooltip(f"{tr(parameter.tooltip)} {tr('Double-click to reset.')}")
     is_reset = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(0)
-    imgui.same_line(_LABEL_WIDTH * imgui.get_font_size())
+    imgui.same_line(column)
     imgui.set_next_item_width(widgets.FULL)
     item = partial(draw_value, parameter.kind)
     new_value = state.part(PendingValues).edit((settings.method, parameter.name), value, item)

@@ -9,9 +9,10 @@ from ...words import tr
 from .. import widgets
 from ..app_state import AppState
 from ..pending_values import NameField, PendingValues
+from . import parts
 
 _ROWS = 6  # pins that are visible at once
-_ICON_WIDTH, _DEPTH_WIDTH = 1.7, 3.0  # times the font size
+_ICON_WIDTH, _NAME_GAP, _DEPTH_WIDTH = 1.7, 0.3, 3.0  # times the font size
 
 
 def pin_count(state: AppState) -> str:
@@ -35,16 +36,18 @@ class PinList:
         """Draw the list, which has the same height for any number of pins."""
         assert state.document is not None
         pins = state.document.state.pins
-        widgets.begin_list("##pins", _ROWS)
+        parts.begin_list("##pins", _ROWS)
         if not pins:
             widgets.secondary_text(tr("None yet. Click on the drawing where it should hold still."))
         for index, pin in enumerate(pins):
             self._draw_row(state, pin, index)
-        imgui.end_child()
+        parts.end_list()
 
     def _draw_row(self, state: AppState, pin: Pin, index: int) -> None:
         editor, font_size = state.editor, imgui.get_font_size()
         left, room = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
+        if pin.id in editor.selection:
+            parts.draw_highlight(imgui.get_text_line_height())
         eye = icons.ICON_FA_EYE_SLASH if pin.is_hidden else icons.ICON_FA_EYE
         if widgets.icon_switch(
             eye,
@@ -64,8 +67,8 @@ class PinList:
             _ICON_WIDTH,
         ):
             state.run_reporting_errors(lambda: gestures.set_pin_locked(editor, pin.id, not pin.is_locked))
-        imgui.same_line(left + 2 * _ICON_WIDTH * font_size)
-        name_width = room - (2 * _ICON_WIDTH + _DEPTH_WIDTH + 0.4) * font_size
+        imgui.same_line(left + (2 * _ICON_WIDTH + _NAME_GAP) * font_size)
+        name_width = room - (2 * _ICON_WIDTH + _NAME_GAP + _DEPTH_WIDTH + 0.4) * font_size
         if self._name_field.key == pin.id:
             name = self._name_field.draw("##new name", pin.label, name_width)
             if name is not None:
@@ -73,7 +76,7 @@ class PinList:
         else:
             self._draw_name(state, pin, name_width)
         if editor.selection == {pin.id}:
-            widgets.scroll_to_row(index, _ROWS)
+            parts.scroll_to_row(index, _ROWS)
         imgui.same_line(left + room - _DEPTH_WIDTH * font_size)
         _draw_depth(state, pin)
 
@@ -81,9 +84,7 @@ class PinList:
         editor = state.editor
         label = widgets.shortened(pin.label, width)
         flags = imgui.SelectableFlags_.allow_double_click
-        if imgui.selectable(f"{label}###name {pin.id}", pin.id in editor.selection, flags, ImVec2(width, 0))[
-            0
-        ]:
+        if imgui.selectable(f"{label}###name {pin.id}", False, flags, ImVec2(width, 0))[0]:
             if imgui.is_mouse_double_clicked(0):
                 self._name_field.begin(pin.id)
             extends = imgui.get_io().key_shift

@@ -18,9 +18,9 @@ from ..commands.command import context_menu_pressed
 from ..pending_values import NameField
 from ..theme import ACCENT, FRAME, HOVER, SECONDARY, packed
 from ..timeline.keyframe_track import POSE_PAYLOAD
+from . import parts
 
-_SIDE, _GAP, _MARGIN = 66, 6, 4  # of a thumbnail, in design points
-_COLUMNS = 3  # of thumbnails
+_MIN_SIDE, _GAP, _MARGIN = 60, 6, 4  # of a thumbnail, in design points
 _TALL = 780  # design points: a panel of this height shows two rows of thumbnails, a lower one shows one
 _NAME_SIZE = 0.86  # of the font, relative to that of other text
 
@@ -61,20 +61,26 @@ class PosesSection:
     def _draw_poses(self, state: AppState, poses: Sequence[NamedPose], scale: float) -> None:
         """Draw the thumbnails in a list of fixed height, so that nothing below it moves when one is added."""
         rows = 2 if imgui.get_window_height() >= _TALL * scale else 1
-        gaps = 2 * imgui.get_style().item_spacing.y
-        row_height = round(_SIDE * scale) + _NAME_SIZE * imgui.get_text_line_height() + gaps
-        imgui.begin_child("##poses", ImVec2(0, rows * row_height), widgets.NAV_FLATTENED)
+        spacing, padding = imgui.get_style().item_spacing.y, parts.well_padding()
+        _, side = _columns(imgui.get_content_region_avail().x - 2 * padding, scale)
+        row_height = side + _NAME_SIZE * imgui.get_text_line_height() + 2 * spacing
+        parts.begin_well("##poses", rows * row_height + spacing)
+        imgui.set_cursor_pos_y(spacing)
         if not poses:
             widgets.secondary_text(tr("None yet. Add a pose to return to it with a click."))
+        columns, side = _columns(imgui.get_content_region_avail().x, scale)
         for number, pose in enumerate(poses):
-            if number % _COLUMNS:
+            if number % columns:
                 imgui.same_line(0, _GAP * scale)
-            self._draw_pose(state, pose, scale)
+            self._draw_pose(state, pose, side, scale)
         imgui.end_child()
 
-    def _draw_pose(self, state: AppState, pose: NamedPose, scale: float) -> None:
-        """Draw a thumbnail with its name: a click applies the pose, a right-click opens its menu."""
-        corner, side = imgui.get_cursor_screen_pos(), round(_SIDE * scale)
+    def _draw_pose(self, state: AppState, pose: NamedPose, side: int, scale: float) -> None:
+        """Draw a thumbnail with its name: a click applies the pose, a right-click opens its menu.
+
+        side: of the thumbnail in points.
+        """
+        corner = imgui.get_cursor_screen_pos()
         imgui.begin_group()
         if imgui.invisible_button(f"pose {pose.name}", ImVec2(side, side), imgui.ButtonFlags_.enable_nav):
             state.notice = ""
@@ -143,10 +149,10 @@ class PosesSection:
         gap = 8 * scale
         width = (imgui.get_content_region_avail().x - gap) / 2
         imgui.set_next_item_width(width)
-        has_new_start, start = imgui.combo("##mix from", start, names)
+        has_new_start, start = widgets.combo("##mix from", start, names)
         imgui.same_line(0, gap)
         imgui.set_next_item_width(width)
-        has_new_end, end = imgui.combo("##mix to", end, names)
+        has_new_end, end = widgets.combo("##mix to", end, names)
         if has_new_start or has_new_end:
             blend.start, blend.end, blend.share = names[start], names[end], 0.0
         tooltip = tr("Blends the two poses: every edge rotates and grows at a constant rate.")
@@ -163,6 +169,13 @@ class PosesSection:
                 state.run_reporting_errors(
                     lambda: gestures.set_pose(state.editor, blended[0], mark("Apply Blend"), blended[1])
                 )
+
+
+def _columns(room: float, scale: float) -> tuple[int, int]:
+    """How many thumbnails are in a row of ``room`` points, and their side, so that they fill it."""
+    gap = _GAP * scale
+    columns = max(1, int((room + gap) / (_MIN_SIDE * scale + gap)))
+    return columns, max(1, int((room - (columns - 1) * gap) / columns))
 
 
 def _draw_thumbnail(

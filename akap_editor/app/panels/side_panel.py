@@ -11,7 +11,7 @@ from ..app_state import AppState
 from ..commands.command import has_drawing
 from ..frame import layout
 from ..theme import ACCENT, SECONDARY, TEXT, packed
-from . import animate, bending, folding, history, layers, measurements, mesh, pins, poses, view
+from . import animate, bending, history, layers, measurements, mesh, parts, pins, poses, view
 from .rig import joints
 
 _TAB_LABELS: dict[layout.Tab, str] = {
@@ -88,10 +88,10 @@ def draw(state: AppState, scale: float) -> None:
 
 def _draw_sections(state: AppState, scale: float) -> None:
     current = layout.current_tab(state)
-    for section in SECTIONS:
-        if section.tab != current or not section.shown(state):
-            continue
-        if folding.draw_heading(state, section.title, section.note(state), section.opened):
+    shown = [section for section in SECTIONS if section.tab == current and section.shown(state)]
+    for section in shown:
+        note, is_first = section.note(state), section is shown[0]
+        if parts.draw_heading(state, section.title, note, section.opened, is_first):
             section.draw(state, scale)
             imgui.spacing()
 

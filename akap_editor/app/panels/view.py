@@ -42,26 +42,24 @@ def draw(state: AppState, scale: float) -> None:
         label, tooltip = tr(_LABELS[command.label]), tr("Key: {key}", key=command.key_name)
         if widgets.switch(label, command.is_checked(state), tooltip)[0]:
             widgets.run(state, command)
+    has_scale = state.view.distortion_measure is not None
+    column = widgets.label_column(tr("Board"), *([tr("Scale ends at")] if has_scale else []))
     if state.view.show_checkerboard:
-        imgui.align_text_to_frame_padding()
-        imgui.text(tr("Board"))
-        imgui.same_line()
-        imgui.set_next_item_width(-1)
+        widgets.label(tr("Board"), column)
+        imgui.set_next_item_width(widgets.FULL)
         names = list(BOARD_LABELS)
-        _, index = imgui.combo(
+        _, index = widgets.combo(
             "##board", names.index(state.view.board), [tr(label) for label in BOARD_LABELS.values()]
         )
         state.view.board = names[index]
         widgets.show_tooltip(
             tr("Shade of the checkerboard. Automatic: so that the rim of the drawing is seen.")
         )
-    if state.view.distortion_measure is not None:
-        imgui.align_text_to_frame_padding()
-        imgui.text(tr("Scale ends at"))
-        imgui.same_line()
-        imgui.set_next_item_width(-1)
+    if has_scale:
+        widgets.label(tr("Scale ends at"), column)
+        imgui.set_next_item_width(widgets.FULL)
         ends = [f"× {number_text(limit, 'g')}" for limit in DISTORTION_RANGES]
-        _, state.view.distortion_range = imgui.combo("##range", state.view.distortion_range, ends)
+        _, state.view.distortion_range = widgets.combo("##range", state.view.distortion_range, ends)
         widgets.show_tooltip(
             tr("Change of area or shape at the ends of the color scale. Shift+R selects the next one.")
         )

@@ -46,7 +46,9 @@ class KeyframeTrack:
         """Draw one frame and return the scale of its time. scale: points per design point."""
         playback = state.timeline.keyframe_playback
         label = time_label(playback)
-        label_width = imgui.calc_text_size("000.00* / 000.00 s").x + 12 * scale
+        duration = number_text(playback.duration, ".2f")
+        longest = f"{duration}* / {duration} s"
+        label_width = max(imgui.calc_text_size(each).x for each in (label, longest)) + 12 * scale
         corner, height = imgui.get_cursor_screen_pos(), _BOTTOM * scale
         width = max(imgui.get_content_region_avail().x - label_width, 40 * scale)
         margin = MARK_REACH * scale

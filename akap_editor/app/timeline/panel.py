@@ -19,6 +19,7 @@ from .track import RED
 
 _HEIGHT = 64  # design points, as all sizes here; the same in both modes, so that the canvas stays
 _BUTTON_WIDTH, _BUTTON_HEIGHT = 30, 28
+_LABEL_PADDING = 9  # at the left and right of an icon with its name
 _MIN_LABELED_WIDTH = 800  # of the panel for names beside the icons of the modes
 _GRAPH_GAP = 8  # between the track and the speed graph
 _TRACK_RISE = 10  # the top of the keyframe track above that of the buttons
@@ -86,7 +87,7 @@ def _draw_mode_buttons(state: AppState, scale: float) -> None:
     has_room = imgui.get_window_width() >= _MIN_LABELED_WIDTH * scale
     for number, (mode, name, icon, tooltip) in enumerate(_MODES):
         if number:
-            imgui.same_line(0, 2 * scale)
+            imgui.same_line(0, 4 * scale)
         label = f"{icon}  {tr(name)}" if has_room else icon
         if _icon_button(label, mode, scale, ACCENT if state.timeline.mode == mode else SECONDARY):
             state.timeline.set_mode(mode)
@@ -139,8 +140,8 @@ def _draw_playback_buttons(state: AppState, scale: float) -> None:
 def _icon_button(icon: str, name: str, scale: float, color: Rgba) -> bool:
     """Draw a button with an icon, or with icon and text; return whether it was pressed."""
     imgui.push_style_color(imgui.Col_.text, ImVec4(*color))
-    padding = 12 * scale
-    width = max(_BUTTON_WIDTH * scale, imgui.calc_text_size(icon).x + padding)
+    padding = 2 * _LABEL_PADDING * scale
+    width = _BUTTON_WIDTH * scale if len(icon) == 1 else imgui.calc_text_size(icon).x + padding
     is_pressed = imgui.button(f"{icon}##{name}", ImVec2(width, _BUTTON_HEIGHT * scale))
     imgui.pop_style_color()
     return bool(is_pressed)

@@ -32,8 +32,9 @@ class SessionTrack:
     def draw(self, state: AppState, scale: float) -> TimeScale:
         """Draw one frame and return the scale of its time. scale: points per design point."""
         playback = state.timeline.session_playback
-        label = f"{number_text(playback.playhead, '.1f')} / {number_text(playback.duration, '.1f')} s"
-        label_width = imgui.calc_text_size("000.0 / 000.0 s").x + 12 * scale
+        duration = number_text(playback.duration, ".1f")
+        label = f"{number_text(playback.playhead, '.1f')} / {duration} s"
+        label_width = imgui.calc_text_size(f"{duration} / {duration} s").x + 12 * scale
         corner, margin = imgui.get_cursor_screen_pos(), _MARGIN * scale
         width = max(imgui.get_content_region_avail().x - label_width, 40 * scale)
         height = _HEIGHT * scale

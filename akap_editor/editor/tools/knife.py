@@ -135,6 +135,12 @@ class KnifeIdle(IdleTool):
             cuts = cuts_of(session.drawing)
             self.request = CutsRequest(mark("Remove Cut"), (*cuts[:index], *cuts[index + 1 :]))
 
+    def remove_all(self) -> None:
+        """Ask for the mesh without any stroke."""
+        session = self.context.session
+        if session is not None and cuts_of(session.drawing):
+            self.request = CutsRequest(mark("Remove All Cuts"), ())
+
     def add(self, lines: list[list[Floats]]) -> None:
         """Ask for the mesh with more strokes, whose points are in pixels of the rest pose."""
         session = self.context.session

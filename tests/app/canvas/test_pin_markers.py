@@ -71,8 +71,8 @@ def test_pins_are_drawn_where_they_are_and_only_when_shown(pinned):
     around = [pinned.to_screen(pinned.pin_position(pin)) for pin in (1, 2, 3)]
     distances = np.min([np.hypot(*(changed[:, ::-1] + 0.5 - place).T) for place in around], axis=0)
     assert distances.max() < PICK_RADIUS
-    ring = marker_pixels(shown, (at[0] + 6, at[1]), 0)[0, 0]
-    assert ring.min() > 240, "a white ring around the dot"
+    across = marker_pixels(shown, at, 9)[9, 13:18]  # from the middle of the dot to beyond the ring
+    assert across.min(axis=1).max() > 240, "a white ring around the dot"
     disc = changed[np.hypot(*(changed[:, ::-1] + 0.5 - at).T) < 2 * PICK_RADIUS]
     np.testing.assert_allclose(
         disc.mean(axis=0)[::-1] + 0.5, pinned.editor.camera.to_screen(pinned.pin_position(2)), atol=0.5

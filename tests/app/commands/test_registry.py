@@ -128,7 +128,7 @@ def is_rest(ui):
 
 def zoom_is(factor):
     def holds(ui):
-        middle = 48 + (1280 - 48 - 268) / 2
+        middle = 48 + (1280 - 48 - 288) / 2
         assert ui.editor.canvas[0] == 48
         assert (ui.editor.canvas[0] + ui.editor.canvas[2]) / 2 == middle
         return ui.editor.camera.zoom == pytest.approx(0.7 * factor)

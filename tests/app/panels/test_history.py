@@ -20,7 +20,7 @@ def test_a_click_on_a_step_goes_there_and_back(pinned):
     pinned.state.notice = "Saved figure.akap"
     for index in (1, 0, 3, 2):
         name = "Drag Pin" if index else "Open"
-        pinned.do(lambda hand, label=f"**/  {name}##step {index}": click(hand, label))
+        pinned.do(lambda hand, label=f"**/{name}##step {index}": click(hand, label))
         assert pinned.session.history.depth == index
         assert not pinned.state.notice, "it is about something else"
         assert pinned.session.state.positions.tobytes() == poses[index].positions.tobytes()

@@ -20,7 +20,7 @@ def test_defaults_are_those_of_new_drawings(drawing, method):
 
 def labels_at(ui, hand):
     hand.set_ref("Panel")
-    hand.item_open(TREE)
+    hand.item_click(TREE)
     hand.yield_(2)
 
 

@@ -40,7 +40,7 @@ DRAW_AXIS = Command(
     "Draw Mirror Axis",
     lambda state: draw_axis(state.editor),
     (),
-    icons.ICON_FA_GRIP_LINES_VERTICAL,
+    icons.ICON_FA_RULER_VERTICAL,
     has_drawing,
 )
 PAIR_PINS = Command(

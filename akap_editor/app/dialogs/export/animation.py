@@ -299,7 +299,7 @@ def _draw_options(options: AnimationExportOptions, scale: float) -> None:
     widgets.label(tr("Easing"), LABEL_WIDTH * scale)
     imgui.set_next_item_width(widgets.FULL)
     names = list(EASINGS)
-    _, chosen = imgui.combo(
+    _, chosen = widgets.combo(
         "##easing", names.index(options.ease), [tr(EASING_LABELS[name]) for name in names]
     )
     options.ease = names[chosen]

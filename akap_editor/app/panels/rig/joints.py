@@ -11,9 +11,9 @@ from ... import widgets
 from ...app_state import AppState
 from ...commands.command import Command
 from ...theme import SECONDARY
+from .. import parts
 
 _ROWS = 5  # joints that are visible at once
-_LABEL_WIDTH = 4.6  # times the font size
 _KIND_LABELS = {"hinge": mark("Hinge"), "weld": mark("Weld")}
 
 
@@ -26,12 +26,12 @@ def draw(state: AppState, scale: float) -> None:
     """Draw the section. scale: points per design point."""
     assert state.document is not None
     joints = state.document.state.joints
-    widgets.begin_list("##joints", _ROWS)
+    parts.begin_list("##joints", _ROWS)
     if not joints:
         widgets.secondary_text(tr("None. With the joint tool, click where two layers overlap."))
     for index, joint in enumerate(joints):
         _draw_row(state, joint, index)
-    imgui.end_child()
+    parts.end_list()
     selected = next((joint for joint in joints if joint.id == state.view.selected_joint), None)
     imgui.begin_disabled(selected is None)
     _draw_values(state, selected)
@@ -66,18 +66,18 @@ def _draw_row(state: AppState, joint: Joint, index: int) -> None:
     proposed = tr("Proposed: it holds already; accept, move or remove it.") if joint.is_proposed else ""
     widgets.show_tooltip(f"{tr(hangs, limb=limb, carrier=carrier)} {proposed}".strip())
     if is_selected:
-        widgets.scroll_to_row(index, _ROWS)
+        parts.scroll_to_row(index, _ROWS)
 
 
 def _draw_values(state: AppState, joint: Joint | None) -> None:
     """Draw kind and parent of the selected joint."""
     assert state.document is not None
     drawing = state.document.drawing
-    width = _LABEL_WIDTH * imgui.get_font_size()
+    width = widgets.label_column(tr("Kind"), tr("Parent"))
     widgets.label(tr("Kind"), width)
     imgui.set_next_item_width(widgets.FULL)
     kind = 0 if joint is None else KINDS.index(joint.kind)
-    is_changed, kind = imgui.combo("##joint kind", kind, [tr(_KIND_LABELS[each]) for each in KINDS])
+    is_changed, kind = widgets.combo("##joint kind", kind, [tr(_KIND_LABELS[each]) for each in KINDS])
     if is_changed and joint is not None:
         state.run_reporting_errors(lambda: gestures.set_joint_kind(state.editor, joint.id, KINDS[kind]))
     widgets.label(tr("Parent"), width)
@@ -86,7 +86,7 @@ def _draw_values(state: AppState, joint: Joint | None) -> None:
     others = [number for number in reversed(drawing.layer_order) if number != limb]
     names = [widgets.as_label(drawing.layers[number].name) for number in others]
     current = others.index(carrier) if carrier in others else -1
-    is_changed, current = imgui.combo("##joint parent", current, names)
+    is_changed, current = widgets.combo("##joint parent", current, names)
     if is_changed and joint is not None:
         state.run_reporting_errors(lambda: gestures.hang_joint(state.editor, joint.id, others[current]))
 

@@ -11,8 +11,6 @@ from ...pending_values import NameField
 from ...theme import SECONDARY
 from .layer_thumbnails import THUMBNAIL_SIDE, draw_thumbnail
 
-_LABEL_WIDTH = 4.6  # times the font size
-
 
 class SlotPickers:
     """The rows; a double click on the name of a slot, or F2, renames it."""
@@ -28,7 +26,7 @@ class SlotPickers:
 
     def _draw_slot(self, state: AppState, slot: str, members: list[int], scale: float) -> None:
         side, left = round(THUMBNAIL_SIDE * scale), imgui.get_cursor_pos_x()
-        label_width, gap = _LABEL_WIDTH * imgui.get_font_size(), 4 * scale
+        label_width, gap = widgets.label_column(tr("Opacity")) - left, 4 * scale  # as the slider below
         top, right = imgui.get_cursor_pos_y(), left + imgui.get_content_region_avail().x
         imgui.set_cursor_pos_y(top + (side - imgui.get_text_line_height()) / 2)
         self._draw_name(state, slot, members, label_width - gap)
