@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
 
@@ -15,12 +15,14 @@ from ...editor.document.drawing import make_drawing
 from ...editor.session.replay import replay
 from ...errors import AkapError
 from ...io.akap.recording import read_recording
-from ...io.images import read_image
+from ...io.images import Picture, read_image
+from ...io.layers.open_layers import open_layers
+from ...layers.layered_picture import LayeredPicture, trimmed
 from ...resources import PUPPET_SUFFIX, resource
 from .background_thread import BackgroundThread, Wake
 
 VERTICES, FRAMES_PER_SECOND = 300, 24
-_SIDE = 320  # of the picture that is bent, pixels at most
+_LONG_SIDE, _SHORT_SIDE = 320, 64  # of the picture that is bent, pixels: not more, and not less
 _PAUSE = 0.6  # longest pause that is kept, seconds
 
 
@@ -38,19 +40,15 @@ class TileMotion:
 
 
 def recorded_motion(path: Path) -> TileMotion:
-    """The motion of the recording that is bundled with a drawing; none if there is none, or for a puppet.
-
-    A puppet's recording belongs to its own fine mesh, whose replay takes too long for a tile.
-    """
-    if path.suffix == PUPPET_SUFFIX:
-        return TileMotion(())
+    """The motion of the recording that is bundled with a drawing, on a coarse mesh; none if there is none."""
     try:
         recording = read_recording(resource("assets", "recordings", f"{path.stem}.akaprec"))
     except (FileNotFoundError, AkapError):
         return TileMotion(())
-    picture = Image.fromarray(read_image(path))
-    picture.thumbnail((_SIDE, _SIDE), Image.Resampling.LANCZOS)
-    drawing = make_drawing(np.asarray(picture), vertices=VERTICES, name=path.stem)
+    if path.suffix == PUPPET_SUFFIX:
+        drawing = make_drawing(layers=_small_layers(open_layers(path)), vertices=VERTICES, name=path.stem)
+    else:
+        drawing = make_drawing(_small(read_image(path)), vertices=VERTICES, name=path.stem)
     document, frames = new_document(drawing), [Frame(drawing, drawing.mesh.vertices)]
     time, shown, due = 0.0, 0.0, 0.0
     for event in replay(recording, drawing):
@@ -59,9 +57,35 @@ def recorded_motion(path: Path) -> TileMotion:
         if event.step is None or shown < due:
             continue
         due = shown + 1 / FRAMES_PER_SECOND
-        order = document.with_state(event.state).draw_order
-        frames.append(Frame(drawing, event.state.positions, order))
+        shown_drawing = event.state.drawing or drawing  # of a puppet, with other layers visible
+        order = replace(document, drawing=shown_drawing, state=event.state).draw_order
+        frames.append(Frame(shown_drawing, event.state.positions, order))
     return TileMotion(tuple(frames))
+
+
+def _small(picture: Picture) -> Picture:
+    """A picture (h, w, 4) of `_LONG_SIDE` pixels, or of more where it would be too thin for its proportions."""
+    height, width = picture.shape[:2]
+    scale = max(_LONG_SIDE / max(width, height), _SHORT_SIDE / min(width, height))
+    if scale >= 1:
+        return picture
+    size = round(scale * width), round(scale * height)
+    return np.asarray(Image.fromarray(picture).resize(size, Image.Resampling.LANCZOS))
+
+
+def _small_layers(layered: LayeredPicture) -> LayeredPicture:
+    """A picture in layers on a canvas of the size that `_small` gives."""
+    width, height = layered.size
+    layers = []
+    for layer in layered.layers:
+        canvas = np.zeros((height, width, 4), np.uint8)
+        left, top, right, bottom = layer.box
+        canvas[top:bottom, left:right] = layer.picture
+        canvas = _small(canvas)
+        cut = trimmed(canvas, (0, 0))
+        if cut is not None:
+            layers.append(replace(layer, picture=cut[0], offset=cut[1]))
+    return LayeredPicture((canvas.shape[1], canvas.shape[0]), tuple(layers))
 
 
 class TileMotions:

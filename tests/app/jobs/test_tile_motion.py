@@ -8,23 +8,31 @@ import pytest
 from akap_editor.app.jobs.background_thread import no_window
 from akap_editor.app.jobs.tile_motion import FRAMES_PER_SECOND, TileMotion, TileMotions, recorded_motion
 from akap_editor.geometry.mesh import signed_areas
-from akap_editor.resources import bundled_drawings, resource
+from akap_editor.layers.drawing_layer import shown_layers
+from akap_editor.resources import bundled_files, resource
+
+PATHS = {path.stem: path for path in bundled_files()}
 
 
 @pytest.fixture(scope="module")
 def raptor():
-    (path,) = (each for each in bundled_drawings() if each.stem == "raptor")
-    return path
+    return PATHS["raptor"]
 
 
-@pytest.fixture(scope="module")
-def motion(raptor):
-    return recorded_motion(raptor)
+@pytest.fixture(scope="module", params=["raptor", "robot", "rope"])
+def motion(request):
+    return recorded_motion(PATHS[request.param])
 
 
 def test_every_bundled_drawing_has_a_recording():
     recordings = {path.stem for path in resource("assets", "recordings").glob("*.akaprec")}
-    assert {path.stem for path in bundled_drawings()} <= recordings
+    assert set(PATHS) <= recordings
+
+
+def test_the_robot_talks():
+    frames = recorded_motion(PATHS["robot"]).frames
+    shown = {tuple(shown_layers(frame.drawing.layers).tolist()) for frame in frames}
+    assert len(shown) == 4  # mouths
 
 
 def test_it_starts_at_rest_moves_and_flips_nothing(motion):
