@@ -64,7 +64,7 @@ def recorded_motion(path: Path) -> TileMotion:
 
 
 def _small(picture: Picture) -> Picture:
-    """A picture (h, w, 4) of `_LONG_SIDE` pixels, or of more where it would be too thin for its proportions."""
+    """A picture (h, w, 4) of `_LONG_SIDE` pixels, or of more where it would be too thin."""
     height, width = picture.shape[:2]
     scale = max(_LONG_SIDE / max(width, height), _SHORT_SIDE / min(width, height))
     if scale >= 1:
