@@ -18,19 +18,37 @@ _DRAWN: dict[Cursor, str] = {
     "zoom": icons.ICON_FA_MAGNIFYING_GLASS,
 }
 _SIZE = 1.2  # times the font size
-_RIM = 1.5  # design points
+_RIM = 1.5  # design points, as the sizes of the cross
+_CROSS_GAP, _CROSS_ARM = 3.0, 9.0  # where its arms begin and end
 
 
 def show_cursor(cursor: Cursor, scale: float) -> None:
     """Give the mouse pointer a shape for this frame. scale: points per design point."""
     if cursor in _DRAWN:
         imgui.set_mouse_cursor(imgui.MouseCursor_.none)
-        _draw(_DRAWN[cursor], scale)
+        _draw_icon(_DRAWN[cursor], scale)
+    elif cursor == "cross":
+        imgui.set_mouse_cursor(imgui.MouseCursor_.none)
+        _draw_cross(scale)
     elif cursor in _SYSTEM:
         imgui.set_mouse_cursor(_SYSTEM[cursor])
 
 
-def _draw(icon: str, scale: float) -> None:
+def _draw_cross(scale: float) -> None:
+    """Draw four arms around the pointer, white with a dark rim; between them the drawing is seen."""
+    draw, pointer = imgui.get_foreground_draw_list(), imgui.get_mouse_pos()
+    x, y, gap, arm = pointer.x, pointer.y, _CROSS_GAP * scale, _CROSS_ARM * scale
+    for color, width, more in (
+        (packed(DARK, 0.8), 3.5 * scale, scale),
+        (packed((1, 1, 1, 1)), 1.5 * scale, 0),
+    ):
+        for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+            start = ImVec2(x + dx * (gap - more), y + dy * (gap - more))
+            end = ImVec2(x + dx * (arm + more), y + dy * (arm + more))
+            draw.add_line(start, end, color, width)
+
+
+def _draw_icon(icon: str, scale: float) -> None:
     """Draw an icon with its center at the pointer, white with a dark rim."""
     imgui.push_font(None, imgui.get_style().font_size_base * _SIZE)
     draw, pointer, size, rim = (

@@ -17,7 +17,7 @@ from ..session.session import Session
 
 DRAG_DISTANCE = 3.0  # points of the screen: a shorter movement between press and release is a click
 
-Cursor = Literal["arrow", "hand", "grab", "rotate", "pan", "panning", "zoom", "hidden"]
+Cursor = Literal["arrow", "hand", "grab", "rotate", "pan", "panning", "zoom", "cross", "hidden"]
 
 
 def distance(a: Point, b: Point) -> float:

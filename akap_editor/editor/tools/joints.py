@@ -8,7 +8,7 @@ from ..camera import Point
 from ..document.drawing import visible_point
 from ..events import PointerEvent
 from ..session.session import Session
-from .base import IdleTool, Markers, Pointing, Tool, ToolContext, distance
+from .base import Cursor, IdleTool, Markers, Pointing, Tool, ToolContext, distance
 
 PICK_RADIUS = 14.0  # design points
 
@@ -60,9 +60,17 @@ class JointsIdle(IdleTool):
     keyboard_hint = mark("Enter adds a joint, Alt+Enter removes one, arrows move, Esc ends")
 
     @property
+    def cursor(self) -> Cursor:
+        return "cross" if self._hovered is None else "hand"
+
+    @property
     def markers(self) -> Markers:
+        return Markers(hovered_joint=self._hovered)
+
+    @property
+    def _hovered(self) -> int | None:
         pointer = self.context.pointer
-        return Markers(hovered_joint=None if pointer is None else joint_at(self.context, pointer))
+        return None if pointer is None else joint_at(self.context, pointer)
 
     def press(self, event: PointerEvent) -> None:
         if self.context.session is not None and event.button == "left":
@@ -73,6 +81,7 @@ class PointingJoint(Pointing):
     """The canvas is pressed and not dragged yet."""
 
     hint = mark("Release to add or remove a joint, or drag one")
+    cursor = "cross"
 
     def __init__(self, context: ToolContext, event: PointerEvent) -> None:
         super().__init__(context, event)

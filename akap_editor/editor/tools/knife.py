@@ -106,6 +106,7 @@ class KnifeIdle(IdleTool):
         return tr("Drag across the drawing, from outside, to cut limbs apart; Shift draws a straight line")
 
     keyboard_hint = mark("The knife needs a mouse; Esc ends")
+    cursor = "cross"
 
     @property
     def _hovered(self) -> int | None:
@@ -153,6 +154,7 @@ class Cutting(Tool):
     """A stroke of the knife; with Shift it is a straight line. It cuts when the button is released."""
 
     hint = mark("Release to cut, Shift for a straight line, Esc to cancel")
+    cursor = "cross"
 
     def __init__(self, context: ToolContext, event: PointerEvent, idle_tool: KnifeIdle) -> None:
         super().__init__(context)

@@ -25,9 +25,7 @@ class AxisIdle(IdleTool):
     def press_hint(self) -> str:
         return tr("Drag along the middle of the drawing, Shift snaps to 15°, Esc cancels")
 
-    @property
-    def cursor(self) -> Cursor:
-        return "arrow"
+    cursor: Cursor = "cross"
 
     def press(self, event: PointerEvent) -> None:
         if event.button == "left":

@@ -100,7 +100,7 @@ CASES = {
         "OpeningMenu", press(NECK, "right"), button="right", tool="hand_tool"
     ),
     "canvas pressed right": Case("OpeningMenu", press(OUTSIDE, "right"), button="right"),
-    "joint pressed": Case("PointingJoint", press(NECK), cursor="arrow", tool="joint_tool"),
+    "joint pressed": Case("PointingJoint", press(NECK), cursor="cross", tool="joint_tool"),
     "zoom pressed": Case("PointingZoom", press(NECK), cursor="zoom", tool="zoom_tool"),
     "zoomed": Case("Zooming", drag(NECK, (70.0, 70.0)), cursor="zoom", tool="zoom_tool"),
     "canvas pressed": Case("PointingCanvas", press(OUTSIDE), cursor="arrow"),
@@ -222,3 +222,13 @@ def test_every_state_has_a_hint_a_cursor_and_markers_of_its_own(pinned: Driver, 
     none = Markers()
     assert {name for name in vars(none) if getattr(tool.markers, name) != getattr(none, name)} == case.markers
     assert tool.drags_pins == (case.state == "DraggingPin")
+
+
+@pytest.mark.parametrize(
+    ("tool", "cursor"),
+    [("hand_tool", "pan"), ("zoom_tool", "zoom"), ("joint_tool", "cross"), ("knife_tool", "cross")],
+)
+def test_a_tool_that_waits_has_a_cursor_of_its_own(pinned: Driver, tool: str, cursor: Cursor) -> None:
+    pinned.editor.chosen_tool = getattr(pinned.editor, tool)
+    pinned.move(NECK)
+    assert pinned.editor.tool.cursor == cursor
