@@ -32,7 +32,8 @@ _WINDOW = (
     | imgui.WindowFlags_.no_bring_to_front_on_focus
 ) & ~imgui.WindowFlags_.no_scrollbar
 _BUTTON = imgui.ButtonFlags_.enable_nav  # the keyboard can press it
-_WIDTH = 720  # of the column in the middle, in design points, as all sizes here
+_WIDTH, _MAX_WIDTH = 720, 960  # of the column in the middle, in design points, as all sizes here
+_SHARE = 0.6  # of the page's width, between these two
 _DROP_HEIGHT, _MIN_DROP_HEIGHT = 132, 84
 _DROP_SHARE = 0.22  # of the page's height, between these two
 _GAP = 12
@@ -48,7 +49,8 @@ def draw(state: AppState, scale: float, pixels_per_point: float) -> None:
     left, top, right, bottom = state.editor.canvas
     imgui.set_next_window_pos(ImVec2(left, top))
     imgui.set_next_window_size(ImVec2(right - left, bottom - top))
-    column = min(_WIDTH * scale, right - left - 48 * scale)
+    width = right - left
+    column = min(max(_SHARE * width, _WIDTH * scale), _MAX_WIDTH * scale, width - 48 * scale)
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
     imgui.push_style_var(

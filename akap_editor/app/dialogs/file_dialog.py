@@ -236,7 +236,10 @@ def _draw_entries(request: FileRequest, scale: float) -> bool:
     height = min(_HEIGHT * scale, imgui.get_main_viewport().size.y - _OTHER_HEIGHT * scale)
     child_flags = imgui.ChildFlags_.borders | widgets.NAV_FLATTENED
     imgui.begin_child("##entries", ImVec2(_WIDTH * scale, height), child_flags)
-    for name, is_folder in request.entries():
+    entries = request.entries()
+    if not entries and not request.saving:
+        widgets.secondary_text(tr("There is no file here that can be opened."))
+    for name, is_folder in entries:
         icon = icons.ICON_FA_FOLDER if is_folder else icons.ICON_FA_FILE
         flags = imgui.SelectableFlags_.allow_double_click | imgui.SelectableFlags_.no_auto_close_popups
         shown = display_text(name)

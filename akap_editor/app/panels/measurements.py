@@ -13,7 +13,7 @@ from ...render.overlays import Rgba
 from ...words import number_text, tr
 from .. import widgets
 from ..app_state import AppState
-from ..theme import FRAME, packed
+from ..theme import SECONDARY, WELL, packed
 
 MAX_SHARE = 0.1  # of the time may be spent on measuring while something moves
 MAX_FRAME_SECONDS = 0.25  # a longer time between two frames was a sleep, and does not count for the rate
@@ -116,7 +116,11 @@ def _draw_sparkline(lines: Sequence[tuple[Sequence[float], Rgba]], scale: float)
     """Draw the last energies, from 2 at the bottom to the largest one."""
     corner, width, height = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x, 34 * scale
     draw = imgui.get_window_draw_list()
-    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + height), packed(FRAME), 4 * scale)
+    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + height), packed(WELL), 4 * scale)
+    if all(len(values) < 2 for values, _ in lines):
+        hint = widgets.shortened(tr("Their curves, once a pin is dragged"), width - 16 * scale)
+        place = ImVec2(corner.x + 8 * scale, corner.y + (height - imgui.get_text_line_height()) / 2)
+        draw.add_text(place, packed(SECONDARY), hint)
     finite = (value for values, _ in lines for value in values if value < float("inf"))
     span = max(max(finite, default=_UNDISTORTED) - _UNDISTORTED, MIN_SPAN)
     plot_height = height - 8 * scale
