@@ -328,7 +328,7 @@ DRAWING = frozenset(
         "Task",
         "Progress",
         "FileRequest",
-        "ReplaceQuestion",
+        "replace_question",
         "InputError",
         "FileError",
         "SolverError",

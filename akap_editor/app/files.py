@@ -23,8 +23,8 @@ from ..resources import bundled_files
 from ..words import tr
 from .app_state import AppState, error_message
 from .dialogs.file_dialog import FileDialog, FileRequest
-from .dialogs.replace_files import ReplaceFilesDialog, ReplaceQuestion
-from .dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
+from .dialogs.question import Question, QuestionDialog
+from .dialogs.replace_files import replace_question
 from .jobs.background_task import background_task
 from .jobs.engine_preparation import TEXT as PREPARATION_TEXT
 from .jobs.open_recording import ReadRecording, read_for_replay, replay_task
@@ -196,7 +196,7 @@ def save(state: AppState, then: Callable[[], None] | None = None) -> None:
         )
         replace_it = partial(write_document, state, path, then)
         rename = partial(save_as, state, then)
-        state.part(ReplaceFilesDialog).ask(ReplaceQuestion(text, replace_it, tr("Save As..."), rename))
+        state.part(QuestionDialog).ask(replace_question(text, replace_it, tr("Save As..."), rename))
     else:
         write_document(state, path, then)
 
@@ -244,8 +244,10 @@ def confirm_unsaved(state: AppState, proceed: Callable[[], None]) -> None:
         proceed()
         return
     name = display_name(document.path) if document.path is not None else document.drawing.name
-    question = UnsavedChangesQuestion(name, save=lambda: save(state, proceed), discard=proceed)
-    state.part(UnsavedChangesDialog).ask(question)
+    text = tr("Save changes to “{name}” before closing?", name=name)
+    state.part(QuestionDialog).ask(
+        Question("Unsaved changes", text, tr("Save"), lambda: save(state, proceed), tr("Don't Save"), proceed)
+    )
 
 
 def close_document(state: AppState) -> None:

@@ -8,8 +8,7 @@ import pytest
 from PIL import Image
 
 from akap_editor.app.commands.command import CTRL, SHIFT, Key
-from akap_editor.app.dialogs.replace_files import ReplaceFilesDialog
-from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog
+from akap_editor.app.dialogs.question import QuestionDialog
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.io.akap.project import load, save
@@ -45,7 +44,7 @@ def test_save_as_and_open_again_restore_every_bit(bent, tmp_path):
     bent.menu("Edit", "Undo")
     bent.menu("File", "Open...")
     bent.type_name(OPEN, "posed.akap")
-    assert not bent.state.part(UnsavedChangesDialog).is_open, "undo has brought back what was saved"
+    assert not bent.state.part(QuestionDialog).is_open, "undo has brought back what was saved"
     finish(bent)
     assert bent.document.path == tmp_path / "posed.akap"
     assert state_bits(bent.session.state) == before
@@ -91,7 +90,7 @@ def test_a_file_that_another_program_has_changed_is_not_replaced_unasked(bent, c
         assert bent.document.path == saved
     assert (changed_elsewhere.read_bytes() == b"of another program") == (button != "Replace")
     bent.key(CTRL | Key.s)
-    assert bent.state.part(ReplaceFilesDialog).is_open == (button == "Cancel"), "it is asked until answered"
+    assert bent.state.part(QuestionDialog).is_open == (button == "Cancel"), "it is asked until answered"
     bent.key(Key.escape)
 
 
@@ -180,7 +179,7 @@ def test_cancel_stays(bent, tmp_path, end, answer):
         bent.dialog(UNSAVED, "Cancel")
     finish(bent)
     assert not gone_on(bent)
-    assert not bent.state.part(UnsavedChangesDialog).is_open
+    assert not bent.state.part(QuestionDialog).is_open
     assert bent.session.state is state
     assert bent.editor.is_modified
 

@@ -14,8 +14,8 @@ from akap_editor.app.dialogs.clips import ClipsDialog
 from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
 from akap_editor.app.dialogs.first_steps import FirstSteps
-from akap_editor.app.dialogs.replace_files import ReplaceFilesDialog, ReplaceQuestion
-from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
+from akap_editor.app.dialogs.question import Question, QuestionDialog
+from akap_editor.app.dialogs.replace_files import replace_question
 from akap_editor.app.frame import layout
 from akap_editor.app.glfw_window import MIN_SIZE
 from akap_editor.app.jobs.task import Progress, Task
@@ -211,14 +211,15 @@ def save_as(ui):
 
 @state
 def unsaved_changes(ui):
-    question = UnsavedChangesQuestion(LONG, lambda: None, lambda: None)
-    ui.state.part(UnsavedChangesDialog).ask(question)
+    text = f"Save changes to “{LONG}” before closing?"
+    question = Question("Unsaved changes", text, "Save", lambda: None, "Don't Save", lambda: None)
+    ui.state.part(QuestionDialog).ask(question)
 
 
 @state
 def replaced_files(ui):
-    question = ReplaceQuestion(f"“{LONG}” exists already.", lambda: None, "Other Name...", lambda: None)
-    ui.state.part(ReplaceFilesDialog).ask(question)
+    question = replace_question(f"“{LONG}” exists already.", lambda: None, "Other Name...", lambda: None)
+    ui.state.part(QuestionDialog).ask(question)
 
 
 @pytest.fixture(

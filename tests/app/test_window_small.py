@@ -10,10 +10,11 @@ from akap_editor.app import files, widgets
 from akap_editor.app.commands import registry as commands
 from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
-from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog, UnsavedChangesQuestion
+from akap_editor.app.dialogs.question import QuestionDialog
 from akap_editor.app.glfw_window import MIN_SIZE
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
+from akap_editor.editor.session.edits import AddPose
 
 LONG = "a drawing whose name somebody has typed without thinking of panels at all, final version 27"
 
@@ -40,8 +41,9 @@ def ask_animation(state):
 
 
 def ask_question(state):
-    question = UnsavedChangesQuestion(state.document.drawing.name, lambda: None, lambda: None)
-    state.part(UnsavedChangesDialog).ask(question)
+    state.editor.apply("Add Pose", AddPose("pose"))
+    files.close_document(state)
+    assert state.part(QuestionDialog).is_open
 
 
 def show_keys(state):

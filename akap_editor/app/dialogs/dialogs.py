@@ -12,10 +12,9 @@ from .export.animation import ExportAnimationDialog
 from .export.pose import ExportPoseDialog
 from .file_dialog import FileDialog
 from .preferences_page import PreferencesPage
+from .question import QuestionDialog
 from .recovery import RecoveryDialog
-from .replace_files import ReplaceFilesDialog
 from .take import TakeDialog
-from .unsaved_changes import UnsavedChangesDialog
 
 
 class Dialog(Protocol):
@@ -30,8 +29,7 @@ class Dialog(Protocol):
 
 
 DIALOGS: tuple[type[Dialog], ...] = (
-    ReplaceFilesDialog,
-    UnsavedChangesDialog,
+    QuestionDialog,
     RecoveryDialog,
     FileDialog,
     ExportPoseDialog,

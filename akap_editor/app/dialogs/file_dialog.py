@@ -18,7 +18,7 @@ from ...words import mark, tr
 from .. import widgets
 from ..app_state import AppState
 from ..theme import ACCENT, SECONDARY
-from .replace_files import ReplaceFilesDialog
+from .replace_files import ask_unless_new
 
 _WIDTH, _HEIGHT = 520, 260  # of the list of files, in design points
 _OTHER_HEIGHT = 220  # of everything around the list in a low window, in design points
@@ -147,7 +147,7 @@ class FileDialog:
             has_new_ending = request.saving and request.path != Path(path)
             unconfirmed = [request.path] if has_new_ending and os.path.lexists(request.path) else []
             use, ask_again = partial(request.use, request.path), partial(self.ask, request)
-            state.part(ReplaceFilesDialog).ask_unless_new(unconfirmed, use, ask_again)
+            ask_unless_new(state, unconfirmed, use, ask_again)
 
     def _draw_native_note(self, request: FileRequest) -> None:
         """Say that the window waits; the system's dialog may take a second to appear, or be hidden."""

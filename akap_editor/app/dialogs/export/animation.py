@@ -30,7 +30,7 @@ from ...jobs.frame_encoder import FrameEncoder
 from ...jobs.task import Progress, Steps, Task
 from ...preferences import Preferences
 from ..file_dialog import FileDialog, FileRequest
-from ..replace_files import ReplaceFilesDialog
+from ..replace_files import ask_unless_new
 from .animation_size import AnimationSize
 from .fields import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
 from .preview import AnimationPreview
@@ -218,7 +218,7 @@ def export_animation(state: AppState, options: AnimationExportOptions, path: Pat
         animation_format(path, sheet)  # raises InputError
         rename = partial(request_file, state, options)
         source = path if state.document is not None and is_source(path, state.document.sources) else None
-        state.part(ReplaceFilesDialog).ask_unless_new(replaced_files(path, sheet), begin, rename, source)
+        ask_unless_new(state, replaced_files(path, sheet), begin, rename, source)
 
     def begin() -> None:
         state.task = Task(

@@ -19,7 +19,7 @@ from ...app_state import AppState
 from ...jobs.file_manager import folder_button
 from ...theme import ACCENT
 from ..file_dialog import FileDialog, FileRequest
-from ..replace_files import ReplaceFilesDialog
+from ..replace_files import ask_unless_new
 from .fields import LABEL_WIDTH, background_field, format_list, number_field, preset_buttons
 
 SCALES = (0.5, 1.0, 2.0, 4.0)
@@ -123,7 +123,7 @@ def export_pose(state: AppState, options: PoseExportOptions, path: Path) -> None
         return
     rename, write = partial(request_file, state, options), partial(_begin_export, state, options, path)
     source = path if is_source(path, state.document.sources) else None
-    state.part(ReplaceFilesDialog).ask_unless_new(replaced_companions(path), write, rename, source)
+    ask_unless_new(state, replaced_companions(path), write, rename, source)
 
 
 def _begin_export(state: AppState, options: PoseExportOptions, path: Path) -> None:

@@ -1,9 +1,9 @@
-"""The question about unsaved changes."""
+"""The question before something is lost."""
 
 import pytest
 
 from akap_editor.app.commands.command import CTRL, Key
-from akap_editor.app.dialogs.unsaved_changes import UnsavedChangesDialog
+from akap_editor.app.dialogs.question import QuestionDialog
 
 UNSAVED = "Unsaved changes"
 
@@ -11,8 +11,8 @@ UNSAVED = "Unsaved changes"
 @pytest.mark.parametrize(("button", "left"), [("Don't Save", False), ("Cancel", True)])
 def test_enter_uses_the_button_that_the_keyboard_is_at(bent, button, left):
     bent.key(CTRL | Key.w)
-    assert bent.state.part(UnsavedChangesDialog).is_open
+    assert bent.state.part(QuestionDialog).is_open
     bent.enter_at(f"//{UNSAVED}###dialog {UNSAVED}/{button}")
-    assert not bent.state.part(UnsavedChangesDialog).is_open
+    assert not bent.state.part(QuestionDialog).is_open
     assert bent.file_request is None, "nothing is to be saved"
     assert (bent.state.document is not None) == left
