@@ -57,7 +57,7 @@ def suggest_places(drawing: Drawing, joints: Sequence[Joint] = ()) -> SuggestedP
         return SuggestedPlaces(rest, np.full(len(rest), -1))
     owners = [_owner(drawing, joints, place, index < len(limbs.tips)) for index, place in enumerate(rest)]
     places = SuggestedPlaces(rest, np.array(owners, dtype=np.int64))
-    return places.among(places.layers >= 0)
+    return places.among(np.flatnonzero(places.layers >= 0))
 
 
 def _mesher(drawing: Drawing) -> str | None:
