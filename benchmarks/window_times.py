@@ -181,9 +181,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", choices=[[], *MEASUREMENTS], default=[])
     os.environ["AKAP_EDITOR_FILE_DIALOG"] = "own"
+    os.environ["AKAP_EDITOR_LANGUAGE"] = "en"
     for name in parser.parse_args().names or MEASUREMENTS:
         with tempfile.TemporaryDirectory() as folder, x_server() as server:
             (Path(folder) / "preferences").mkdir()
+            os.environ["AKAP_EDITOR_STATE"] = folder  # no recovery copies of programs that were killed
             MEASUREMENTS[name](server.display, Path(folder))
 
 

@@ -7,6 +7,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -34,8 +35,7 @@ from akap_editor.editor.tools.rotate import RING_RADIUS
 
 te = imgui.test_engine
 Point = tuple[float, float]
-MAX_FRAMES = 2000
-DEADLINE = 60.0  # seconds; a slow machine takes a few
+MAX_FRAMES, DEADLINE = 2000, 60.0  # frames and seconds for one action; it fails when it has taken both
 
 # ImGui::Render waits for the thread of the Test Engine, which runs Python. Its binding keeps the interpreter
 # locked, a deadlock; a call through ctypes releases the lock.
@@ -74,6 +74,15 @@ class DeferredPainter:
             draw()
         self._due = []
         return _take_screenshot(window)
+
+
+def _patience() -> Iterator[None]:
+    """Until an action has taken too many frames and too long: a thread may need thousands of fast frames."""
+    deadline = time.monotonic() + DEADLINE
+    for number in count():
+        if number >= MAX_FRAMES and time.monotonic() > deadline:
+            return
+        yield
 
 
 class WindowDriver:
@@ -191,7 +200,7 @@ class WindowDriver:
     def settle(self) -> None:
         """Draw frames until nothing moves and no thread computes; a thread that is done must wake it."""
         self.window.wake()
-        for _ in range(MAX_FRAMES):
+        for _ in _patience():
             if self.window.needs_frame:
                 self.frame()
             elif self.state.is_busy:
@@ -254,7 +263,7 @@ class WindowDriver:
 
     def _run_queue(self) -> None:
         """Draw frames until the Test Engine has nothing left to do."""
-        for _ in range(MAX_FRAMES):
+        for _ in _patience():
             if te.is_test_queue_empty(self._engine):
                 return
             while self._main_thread_actions:

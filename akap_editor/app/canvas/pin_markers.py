@@ -164,13 +164,11 @@ def _draw_new_pin(draw: imgui.ImDrawList, center: Point, scale: float) -> None:
 def _draw_suggestion(
     draw: imgui.ImDrawList, center: Point, scale: float, is_hovered: bool, is_removed: bool
 ) -> None:
-    """Draw the ghost of a pin: paler, and only a ring."""
-    position, radius = ImVec2(*center), (8.0 if is_hovered else 7.0) * scale
-    draw.add_circle_filled(position, radius, packed(ACCENT, 0.45 if is_hovered else 0.25))
-    draw.add_circle(position, radius, packed(DARK, 0.65), 0, 4.0 * scale)
+    """Draw the ghost of a pin: a plus, or a cross, on a dark disc in a ring, seen on any picture."""
+    position, radius = ImVec2(*center), (9.0 if is_hovered else 8.0) * scale
+    draw.add_circle_filled(position, radius + 2.0 * scale, packed(DARK, 0.75))
     draw.add_circle(position, radius, packed(ACCENT), 0, 2.0 * scale)
-    if is_removed:
-        _draw_sign(draw, center, 4.0 * scale, scale, _TIMES)
+    _draw_sign(draw, center, 3.5 * scale, scale, _TIMES if is_removed else _PLUS)
 
 
 def _draw_scale_handle(draw: imgui.ImDrawList, ring: RotationRing, scale: float) -> None:
