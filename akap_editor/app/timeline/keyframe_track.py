@@ -178,7 +178,7 @@ class KeyframeTrack:
 
 
 def time_label(playback: KeyframePlayback) -> str:
-    """The time of the playhead, and the duration if there are keyframes; * for a pose without a keyframe."""
+    """The time of the playhead, and the duration if there is one; * for a pose without a keyframe."""
     time = number_text(playback.time, ".2f") + "*" * playback.shows_unkeyed_pose
     if not playback.animation.keyframes:
         return f"{time} s"
