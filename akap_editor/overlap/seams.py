@@ -277,9 +277,9 @@ def _cut(
                     signs[i] = sign
                 else:
                     added.append((part_f, part_g, sign))
-    added += _pairs_of_parts(mesh, pairs, cut, parts, other_low, other_high)
+    others = _pairs_of_parts(mesh, pairs, cut, parts, other_low, other_high)
     total = m + len(extra_faces)
-    extra = np.array(added, dtype=np.int32).reshape(-1, 3)
+    extra = np.concatenate([np.array(added, dtype=np.int32).reshape(-1, 3), others])
     first, second = np.concatenate([pairs.first, extra[:, 0]]), np.concatenate([pairs.second, extra[:, 1]])
     low, high = low_and_high(first, second, np.concatenate([signs, extra[:, 2].astype(np.int8)]))
     levels, placed = face_levels(total, low, high)
@@ -309,8 +309,8 @@ def _pairs_of_parts(
     parts: dict[int, list[tuple[int, int]]],
     low: Ints,
     high: Ints,
-) -> list[tuple[int, int, int]]:
-    """First and second part and sign of each pair of other poses that is not among the ``pairs``.
+) -> Ints:
+    """First and second part and sign of each pair of other poses that is not among the ``pairs``, (r, 3).
 
     A part of a cut face is in front of faces beside those that the cut is for, or behind them, as it is of
     these: there the seam of the other pose is replaced by that of this one.
@@ -319,13 +319,17 @@ def _pairs_of_parts(
     known = pairs.first.astype(np.int64) * m + pairs.second, pairs.second.astype(np.int64) * m + pairs.first
     codes = low.astype(np.int64) * m + high
     is_new = ~np.isin(codes, np.concatenate(known))
+    low, high = low[is_new], high[is_new]
+    has_parts = np.zeros(m, dtype=bool)
+    has_parts[list(parts)] = True
+    is_whole = ~(has_parts[low] | has_parts[high])
     neighbors = mesh_topology(mesh).neighbors
     partners: dict[int, set[int]] = {}
     for face, (block, _) in cut.items():
         faces = pairs.second[pairs.starts[block] : pairs.starts[block + 1]]
         partners[face] = {*faces.tolist(), *neighbors[faces].ravel().tolist()}
     result = []
-    for lower, upper in zip(low[is_new].tolist(), high[is_new].tolist(), strict=True):
+    for lower, upper in zip(low[~is_whole].tolist(), high[~is_whole].tolist(), strict=True):
         for part, sign in parts.get(lower, [(lower, -1)]):
             for other, other_sign in parts.get(upper, [(upper, 1)]):
                 if upper in partners.get(lower, ()):
@@ -334,4 +338,5 @@ def _pairs_of_parts(
                     result.append((part, other, -other_sign))
                 else:
                     result.append((part, other, -1))
-    return result
+    whole = np.stack([low[is_whole], high[is_whole], np.full(is_whole.sum(), -1)], axis=1)
+    return np.concatenate([whole.astype(np.int32), np.array(result, dtype=np.int32).reshape(-1, 3)])

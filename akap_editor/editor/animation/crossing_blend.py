@@ -68,11 +68,16 @@ class CrossingBlend:
         things = mesh, start.positions, start.crossings, end.positions, end.crossings
         key = tuple(map(id, things))
         if key not in self._changes:
-            shares = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-            areas = [_disputed_area(mesh, pose_at(float(share)), first, second) for share in shares]
+            least, change = np.inf, 0.0
+            for share in ((np.arange(_SAMPLES) + 0.5) / _SAMPLES).tolist():
+                area = _disputed_area(mesh, pose_at(share), first, second)
+                if area < least:
+                    least, change = area, share
+                if area == 0:  # less is not possible
+                    break
             while len(self._changes) >= _MAX_CACHED:
                 del self._changes[next(iter(self._changes))]
-            self._changes[key] = things, float(shares[int(np.argmin(areas))])
+            self._changes[key] = things, change
         return self._changes[key][1]
 
 

@@ -1,5 +1,6 @@
 """The poses of an animation between its keyframes, by the easing of each interval."""
 
+from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -9,15 +10,15 @@ from ...deform.pose_interpolation import InterpolationCache
 from ...geometry.mesh import TriMesh
 from ...geometry.validation import Floats, Ints
 from ...layers.layer_view import LayerView
-from ..document.crossings import draw_order
-from ..document.document import Document
 from ..document.drawing import Drawing
 from ..document.easing import end_velocities
 from ..document.keyframes import Animation, Keyframe
 from ..document.pin import Pin
 from .crossing_blend import CrossingBlend
-from .frames import POSE_TOLERANCE, Frame
+from .frames import POSE_TOLERANCE
 from .pose_spline import Interval, PoseSpline
+
+_MAX_MOMENTS = 8  # that are kept
 
 
 class Moment(NamedTuple):
@@ -47,6 +48,8 @@ class KeyframePoses:
         self._spline: PoseSpline | None = None
         self._drawing: Drawing | None = None
         self._views: dict[LayerView | None, Drawing] = {}  # of the drawing
+        # By the identity of a mesh and an animation, which keep their ids meanwhile, and the time.
+        self._moments: OrderedDict[tuple[int, int, float], tuple[TriMesh, Animation, Moment]] = OrderedDict()
 
     def drawing(self, drawing: Drawing, animation: Animation, time: float) -> Drawing:
         """The drawing with the layers that are visible at a time; the same object for the same ones."""
@@ -58,7 +61,18 @@ class KeyframePoses:
         return self._views[view]
 
     def moment(self, mesh: TriMesh, animation: Animation, time: float) -> Moment:
-        """The moment of an animation of a mesh at a time in seconds; there must be keyframes."""
+        """The moment of an animation of a mesh at a time in seconds; there must be keyframes.
+
+        The last moments are kept with their poses.
+        """
+        key = id(mesh), id(animation), time
+        if key not in self._moments:
+            self._moments[key] = mesh, animation, self._new_moment(mesh, animation, time)
+            if len(self._moments) > _MAX_MOMENTS:
+                self._moments.popitem(last=False)
+        return self._moments[key][2]
+
+    def _new_moment(self, mesh: TriMesh, animation: Animation, time: float) -> Moment:
         start, end, share = animation.keyframes_around(time)
         if start is end or animation.easing_after(start) != "smooth":
 
@@ -72,7 +86,7 @@ class KeyframePoses:
             def pose_at(share: float) -> Floats:
                 return spline.pose(before, interval, after, share)
 
-        return Moment(start, end, share, pose_at)
+        return Moment(start, end, share, _remembering(pose_at, share))
 
     def _spline_of(self, mesh: TriMesh) -> PoseSpline:
         if self._spline is None or mesh is not self._mesh:
@@ -94,14 +108,18 @@ def animation_crossings(
     return blend.crossings(mesh, pins, start, end, share, pose_at)
 
 
-def animation_frame(
-    document: Document, poses: KeyframePoses, time: float, blend: CrossingBlend | None = None
-) -> Frame:
-    """The frame of a document's animation at a time; there must be keyframes."""
-    mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
-    pose, crossings = animation_crossings(poses, blend or CrossingBlend(), mesh, pins, animation, time)
-    drawing = poses.drawing(document.drawing, animation, time)
-    return Frame(drawing, pose, draw_order(drawing, animation.pins_at(pins, time), pose, crossings))
+def _remembering(pose_at: Callable[[float], Floats], share: float) -> Callable[[float], Floats]:
+    """The same function; the pose at ``share`` is computed once."""
+    kept: list[Floats] = []
+
+    def pose(other: float) -> Floats:
+        if other != share:
+            return pose_at(other)
+        if not kept:
+            kept.append(pose_at(share))
+        return kept[0]
+
+    return pose
 
 
 def _intervals_around(

@@ -16,7 +16,7 @@ from ..document.drawing import Drawing
 from ..document.pin import Pin
 from .crossing_blend import CrossingBlend
 from .frames import Frame
-from .keyframe_poses import KeyframePoses, animation_crossings, animation_frame
+from .keyframe_poses import KeyframePoses, animation_crossings
 
 _CHUNK = 240  # steps that are computed from one beginning at rest
 _FADED = 1e-3  # share of a swing: what was before it does not matter
@@ -193,19 +193,24 @@ class AnimationFrames:
         self._poses, self._blend = KeyframePoses(), CrossingBlend()
         self._loose = LooseMotion(self._instant)
 
-    def pose(self, time: float) -> Floats | None:
-        """The pose (n, 2) at a time in seconds if something swings then, else None."""
-        return None if self._document.state.loose is None else self._loose.pose(time)
-
     def frame(self, time: float) -> Frame:
         """The frame at a time in seconds; there must be keyframes."""
-        document, positions = self._document, self.pose(time)
-        if positions is None:
-            return animation_frame(document, self._poses, time, self._blend)
-        mesh, pins, animation = document.drawing.mesh, document.state.pins, document.state.animation
-        pose, crossings = animation_crossings(self._poses, self._blend, mesh, pins, animation, time)
-        drawing = self._poses.drawing(document.drawing, animation, time)
-        return shown_frame(drawing, Crossed(animation.pins_at(pins, time), pose, crossings), positions)
+        drawing, crossed = self.crossed(time)
+        return Frame(drawing, crossed.positions, draw_order(drawing, *crossed))
+
+    def crossed(self, time: float) -> tuple[Drawing, Crossed]:
+        """The drawing, with the layers that are visible at a time in seconds, and its pose."""
+        document = self._document
+        mesh, animation = document.drawing.mesh, document.state.animation
+        pose, crossings = animation_crossings(
+            self._poses, self._blend, mesh, document.state.pins, animation, time
+        )
+        pins = animation.pins_at(document.state.pins, time)
+        swinging = None if document.state.loose is None else self._loose.pose(time)
+        if swinging is not None:
+            crossings = crossings_in_pose(mesh, pins, pose, crossings, swinging)
+            pose = swinging
+        return self._poses.drawing(document.drawing, animation, time), Crossed(pins, pose, crossings)
 
     def _instant(self, time: float) -> Instant:
         document = self._document

@@ -10,10 +10,11 @@ from ...deform.pose_interpolation import PoseInterpolation
 from ...geometry.area_bounds import bound_face_areas, worst_area_factor
 from ...geometry.mesh import TriMesh
 from ...geometry.operators import to_complex, to_points
-from ...geometry.validation import Complexes, Floats
+from ...geometry.validation import Complexes, Floats, Ints
 
 _T = TypeVar("_T", Floats, Complexes)
 _MAX_PAIRS = 64  # of poses, for which what was prepared is kept
+_MAX_MOTIONS = 4  # intervals between their neighbors, for which what was prepared is kept
 _STATIONARY = 1e-3  # share of √area: vertices that move less count as stationary, all with the same weight
 _NO_CENTER = 1e-6  # |1 − eˢ| below which s is a translation: no center to rotate about
 _STEEPEST = 2.0  # times the mean slope of an interval: with steeper ends, `_curve` may not be monotone
@@ -38,7 +39,7 @@ class _Path(NamedTuple):
     """What is prepared for two poses a and b (n,).
 
     edges: (e,) of a; rates: (e,) s of each edge, see `PoseInterpolation`; vertex_rates: (n,) their means;
-    max_factor: the worst area factor of both.
+    distances: (n,) of the vertices in both poses, squared; max_factor: the worst area factor of both.
     """
 
     a: Complexes
@@ -46,12 +47,8 @@ class _Path(NamedTuple):
     edges: Complexes
     rates: Complexes
     vertex_rates: Complexes
+    distances: Floats
     max_factor: float
-
-    @property
-    def ways(self) -> Floats:
-        """Squared distances (n,) of the vertices in both poses."""
-        return np.asarray(np.abs(self.b - self.a) ** 2)
 
 
 class _Slopes(NamedTuple):
@@ -63,6 +60,39 @@ class _Slopes(NamedTuple):
     rates: Complexes
     vertex_rates: Complexes
     velocities: Complexes
+
+
+class _Curve(NamedTuple):
+    """A line plus half a wave from 0 to a rise, with given slopes at both ends; see `_curve`.
+
+    mean: of the slopes; rest: the rise without it; difference: of the slopes.
+    """
+
+    mean: Complexes
+    rest: Complexes
+    difference: Complexes
+
+    def at(self, t: float) -> Complexes:
+        """The values (n,) at a share of the time."""
+        wave = self.rest * (1 - cos(pi * t)) / 2 + self.difference * sin(pi * t) / (2 * pi)
+        return np.asarray(t * self.mean + wave)
+
+
+class _Motion(NamedTuple):
+    """What is prepared for an interval between its neighbors.
+
+    logs: (e,) of what the edges are multiplied by; vertex_logs: (n,) their means; has_center: (n,) whether
+    a vertex rotates about one; totals: (n,) e to its rate, minus 1; corrections: (n,) of its place on its
+    spiral; weights: (n,) of the vertices that place the pose, without and with the neighbor before and after.
+    """
+
+    path: _Path
+    logs: _Curve
+    vertex_logs: _Curve
+    has_center: Ints
+    totals: Complexes
+    corrections: _Curve
+    weights: tuple[Floats, Floats | None, Floats | None]
 
 
 class PoseSpline(PoseInterpolation):
@@ -80,7 +110,7 @@ class PoseSpline(PoseInterpolation):
     def __init__(self, mesh: TriMesh) -> None:
         super().__init__(mesh)
         self._paths: OrderedDict[tuple[int, int], tuple[Floats, Floats, _Path]] = OrderedDict()
-        self._last_slopes: tuple[tuple[Interval | None, ...], tuple[_Slopes, _Slopes]] | None = None
+        self._motions: OrderedDict[object, tuple[tuple[Interval | None, ...], _Motion]] = OrderedDict()
 
     def pose(
         self, before: Interval | None, interval: Interval, after: Interval | None, share: float
@@ -93,13 +123,11 @@ class PoseSpline(PoseInterpolation):
             return interval.start
         if share >= 1:
             return interval.end
-        path = self._path(interval)
-        first, last = self._end_slopes(before, interval, after)
-        seconds = interval.seconds
-        logs = _curve(share, path.rates, seconds * first.rates, seconds * last.rates)
-        fitted = self._fit(path.edges * np.exp(logs))
-        offsets = self._targets(path, first, last, seconds, share) - fitted
-        offsets *= self._weights_at(path, before, after, share)
+        motion = self._motion(before, interval, after)
+        path = motion.path
+        fitted = self._fit(path.edges * np.exp(motion.logs.at(share)))
+        offsets = _targets(motion, share) - fitted
+        offsets *= _weights_at(motion, share)
         component = self._mesh.component
         shift = np.bincount(component, offsets.real) + 1j * np.bincount(component, offsets.imag)
         placed = to_points(fitted + shift[component])
@@ -112,22 +140,50 @@ class PoseSpline(PoseInterpolation):
             a, b = to_complex(interval.start), to_complex(interval.end)
             rates = self._rates(a, b)
             factors = (worst_area_factor(self._mesh, pose) for pose in interval[:2])
-            path = _Path(a, b, self._edges_of(a), rates, self._mean @ rates, max(factors))
+            distances = np.asarray(np.abs(b - a) ** 2)
+            path = _Path(a, b, self._edges_of(a), rates, self._mean @ rates, distances, max(factors))
             self._paths[pair] = interval.start, interval.end, path
             if len(self._paths) > _MAX_PAIRS:
                 self._paths.popitem(last=False)
         self._paths.move_to_end(pair)
         return self._paths[pair][2]
 
-    def _end_slopes(
-        self, before: Interval | None, interval: Interval, after: Interval | None
-    ) -> tuple[_Slopes, _Slopes]:
-        """The speeds at both ends of an interval; those of the last one are kept."""
+    def _motion(self, before: Interval | None, interval: Interval, after: Interval | None) -> _Motion:
+        """What is prepared for an interval; kept for the last ones."""
         intervals = before, interval, after
-        if self._last_slopes is None or not all(map(_is_same, intervals, self._last_slopes[0])):
-            slopes = self._slopes(before, interval), self._slopes(interval, after)
-            self._last_slopes = intervals, slopes
-        return self._last_slopes[1]
+        key = tuple(None if each is None else (id(each.start), id(each.end), *each[2:]) for each in intervals)
+        if key not in self._motions:
+            self._motions[key] = intervals, self._new_motion(*intervals)  # the intervals keep their ids
+            if len(self._motions) > _MAX_MOTIONS:
+                self._motions.popitem(last=False)
+        self._motions.move_to_end(key)
+        return self._motions[key][1]
+
+    def _new_motion(self, before: Interval | None, interval: Interval, after: Interval | None) -> _Motion:
+        path, seconds = self._path(interval), interval.seconds
+        first, last = self._slopes(before, interval), self._slopes(interval, after)
+        logs = _curve(path.rates, seconds * first.rates, seconds * last.rates)
+        slopes = seconds * first.vertex_rates, seconds * last.vertex_rates
+        totals = np.expm1(path.vertex_rates)
+        has_center = np.abs(totals) > _NO_CENTER
+        totals = np.where(has_center, totals, 1.0)
+        at_start = np.where(has_center, slopes[0] / totals, 1.0)
+        at_end = np.where(has_center, slopes[1] * np.exp(path.vertex_rates) / totals, 1.0)
+        way = path.b - path.a
+        corrections = seconds * first.velocities - at_start * way, seconds * last.velocities - at_end * way
+        both = (
+            None if each is None else self._stillness(path.distances + self._path(each).distances)
+            for each in (before, after)
+        )
+        return _Motion(
+            path,
+            logs,
+            _curve(path.vertex_rates, *slopes),
+            has_center,
+            totals,
+            _curve(0 * way, *corrections),
+            (self._stillness(path.distances), *both),
+        )
 
     def _slopes(self, left: Interval | None, right: Interval | None) -> _Slopes:
         """The speeds at the key between two intervals, at least one of which joins its neighbors smoothly."""
@@ -150,48 +206,32 @@ class PoseSpline(PoseInterpolation):
         )
         return _Slopes(rates, vertex_rates, _limited(factor * speeds[2][fixed], speeds[2][1 - fixed]))
 
-    def _targets(self, path: _Path, first: _Slopes, last: _Slopes, seconds: float, share: float) -> Complexes:
-        """Where each vertex (n,) would be on its own spiral, with its velocities at the ends."""
-        slopes = seconds * first.vertex_rates, seconds * last.vertex_rates
-        total = np.expm1(path.vertex_rates)
-        has_center = np.abs(total) > _NO_CENTER
-        total = np.where(has_center, total, 1.0)
-        logs = _curve(share, path.vertex_rates, *slopes)
-        progress = np.where(has_center, np.expm1(logs) / total, share)
-        growth = np.exp(path.vertex_rates)
-        at_start = np.where(has_center, slopes[0] / total, 1.0)
-        at_end = np.where(has_center, slopes[1] * growth / total, 1.0)
-        way = path.b - path.a
-        corrections = seconds * first.velocities - at_start * way, seconds * last.velocities - at_end * way
-        return np.asarray(path.a + progress * way + _curve(share, 0 * way, *corrections))
-
-    def _weights_at(
-        self, path: _Path, before: Interval | None, after: Interval | None, share: float
-    ) -> Floats:
-        """Weights (n,) of the vertices that place the pose, with the sum 1 in each component.
-
-        Those that move least in this interval weigh most. At its ends, those that move least in both adjacent
-        intervals do: there the weights, too, are continuous.
-        """
-        weights = self._stillness(path.ways)
-        for neighbor, distance in ((before, share), (after, 1 - share)):
-            fade = max(1 - distance / _BLEND, 0.0) ** 2
-            if neighbor is not None and fade:
-                both = self._stillness(path.ways + self._path(neighbor).ways)
-                weights = weights + fade * (both - weights)
-        return weights
-
-    def _stillness(self, ways: Floats) -> Floats:
-        weights = 1.0 / (ways + (_STATIONARY * self._mesh.length) ** 2)
+    def _stillness(self, distances: Floats) -> Floats:
+        """Weights (n,) with the sum 1 in each component; what moves by less, squared pixels, weighs more."""
+        weights = 1.0 / (distances + (_STATIONARY * self._mesh.length) ** 2)
         component = self._mesh.component
         return np.asarray(weights / np.bincount(component, weights)[component])
 
 
-def _is_same(first: Interval | None, second: Interval | None) -> bool:
-    """Whether two intervals are the same; poses are compared by identity."""
-    if first is None or second is None:
-        return first is second
-    return first.start is second.start and first.end is second.end and first[2:] == second[2:]
+def _targets(motion: _Motion, share: float) -> Complexes:
+    """Where each vertex (n,) would be on its own spiral, with its velocities at the ends."""
+    path, logs = motion.path, motion.vertex_logs.at(share)
+    progress = np.where(motion.has_center, np.expm1(logs) / motion.totals, share)
+    return np.asarray(path.a + progress * (path.b - path.a) + motion.corrections.at(share))
+
+
+def _weights_at(motion: _Motion, share: float) -> Floats:
+    """Weights (n,) of the vertices that place the pose, with the sum 1 in each component.
+
+    Those that move least in this interval weigh most. At its ends, those that move least in both adjacent
+    intervals do: there the weights, too, are continuous.
+    """
+    weights, *with_neighbors = motion.weights
+    for both, distance in zip(with_neighbors, (share, 1 - share), strict=True):
+        fade = max(1 - distance / _BLEND, 0.0) ** 2
+        if both is not None and fade:
+            weights = weights + fade * (both - weights)
+    return weights
 
 
 def _end_velocity(path: _Path, end: int) -> Complexes:
@@ -202,14 +242,13 @@ def _end_velocity(path: _Path, end: int) -> Complexes:
     return np.asarray(factor * (path.b - path.a))
 
 
-def _curve(t: float, rise: Complexes, first: Complexes, last: Complexes) -> Complexes:
+def _curve(rise: Complexes, first: Complexes, last: Complexes) -> _Curve:
     """A line plus half a wave from 0 to ``rise``, with the slopes ``first`` at 0 and ``last`` at 1.
 
     It is monotone if both slopes are from 0 to twice ``rise``.
     """
     mean = (first + last) / 2
-    wave = (rise - mean) * (1 - cos(pi * t)) / 2 + (first - last) * sin(pi * t) / (2 * pi)
-    return np.asarray(t * mean + wave)
+    return _Curve(mean, rise - mean, first - last)
 
 
 def _passing_components(left: Complexes, right: Complexes, seconds: tuple[float, float]) -> Complexes:

@@ -5,10 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...editor.animation.crossing_blend import CrossingBlend
-from ...editor.animation.keyframe_poses import KeyframePoses, animation_crossings
 from ...editor.animation.loose_motion import AnimationFrames
-from ...editor.document.crossings import crossings_in_pose, depth_order, overlaps_of
+from ...editor.document.crossings import depth_order, overlaps_of
 from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
@@ -61,23 +59,18 @@ def bake_animation(document: Document) -> BakedAnimation | None:
     keyframe. One order serves as long as its pairs are in no circle and the same layers are shown. Where
     it has seams, faces are cut along those of its first keyframe that has some.
     """
-    drawing, state = document.drawing, document.state
-    mesh, animation = drawing.mesh, state.animation
+    mesh, animation = document.drawing.mesh, document.state.animation
     if len(animation.keyframes) < 2:
         return None
     collected = _Orders(document)
     times = _sample_times(document)
-    poses, blend, interpolation = [], CrossingBlend(), KeyframePoses()
-    loose, numbers = AnimationFrames(document), []
+    frames = AnimationFrames(document)
+    poses, numbers = [], []
     for time in times:
-        pose, crossings = animation_crossings(interpolation, blend, mesh, state.pins, animation, time)
-        if (swinging := loose.pose(time)) is not None:
-            crossings = crossings_in_pose(mesh, state.pins, pose, crossings, swinging)
-            pose = swinging
-        overlaps = overlaps_of(mesh, animation.pins_at(state.pins, time), pose, crossings)
-        shown = interpolation.drawing(drawing, animation, time)
-        numbers.append(collected.number_for(shown, overlaps, is_keyframe=time in animation.times))
-        poses.append(pose)
+        drawing, crossed = frames.crossed(time)
+        overlaps = overlaps_of(mesh, *crossed)
+        numbers.append(collected.number_for(drawing, overlaps, is_keyframe=time in animation.times))
+        poses.append(crossed.positions)
     orders = collected.orders()
     starts = [k for k, number in enumerate(numbers) if k == 0 or number != numbers[k - 1]]
     for k, after in zip(starts, [*starts[1:], len(times) - 1], strict=True):
@@ -130,7 +123,7 @@ class _Orders:
         if depths is not None:
             self._rank[depths] = np.arange(self._count)
         overlaps = overlaps_of(mesh, state.pins, state.positions, state.crossings)
-        self._pairs = [np.unique(self._codes(*overlaps.low_and_high))]  # of each order
+        self._pairs = [_ascending(self._codes(*overlaps.low_and_high))]  # of each order
         self._drawings = [document.drawing]  # with the layers that each order shows
         self._seams = [(True, overlaps)]  # where each order is cut, and whether that is a keyframe
 
@@ -140,12 +133,12 @@ class _Orders:
         Faces are cut along the seams of a keyframe if there is one with seams. drawing: with the layers that
         are to be visible.
         """
-        codes = np.unique(self._codes(*overlaps.low_and_high))
+        codes = _ascending(self._codes(*overlaps.low_and_high))
         for number in reversed(range(len(self._pairs))):
             if self._drawings[number].layer_view != drawing.layer_view:
                 continue
             seams = self._seams[number]
-            joint = np.union1d(self._pairs[number], codes)
+            joint = _ascending(np.concatenate([self._pairs[number], codes]))
             if overlaps.has_seam and (not seams[1].has_seam or (is_keyframe and not seams[0])):
                 seams = is_keyframe, overlaps
             is_same = len(joint) == len(self._pairs[number]) and seams is self._seams[number]
@@ -195,3 +188,9 @@ class _Orders:
         if not placed.all():
             return False
         return not seams.has_seam or self._cut(seams, np.arange(self._count), low, high) is not None
+
+
+def _ascending(codes: Ints) -> Ints:
+    """Each code once, in order; `np.unique` collects them in a table of hashes, which takes much longer."""
+    codes = np.sort(codes)
+    return codes[np.diff(codes, prepend=-1) > 0]

@@ -8,8 +8,9 @@ import pytest
 from akap_editor.deform.pose_interpolation import InterpolationCache
 from akap_editor.editor import gestures
 from akap_editor.editor.animation.keyframe_playback import KeyframePlayback
-from akap_editor.editor.animation.keyframe_poses import KeyframePoses, animation_frame
+from akap_editor.editor.animation.keyframe_poses import KeyframePoses
 from akap_editor.editor.animation.keyframe_times import mirror_easings, stretch_times
+from akap_editor.editor.animation.loose_motion import AnimationFrames
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import Meshing
 from akap_editor.editor.document.keyframes import Keyframe
@@ -60,7 +61,7 @@ def test_the_pose_between_keyframes_is_the_eased_in_between(playback, pinned, dr
     assert playback.pose(1.0) is end.positions
     document = pinned.session.present_document
     poses = KeyframePoses()
-    assert animation_frame(document, poses, 1.0).pose is end.positions
+    assert AnimationFrames(document).frame(1.0).pose is end.positions
     assert poses.moment(drawing.mesh, document.state.animation, 0.5).pose is start.positions
 
 
@@ -280,9 +281,9 @@ def switched(clock):
 def test_layers_are_switched_at_keyframes_and_never_blended(switched):
     driver, playback = switched
     animation = driver.session.present.animation
-    poses = KeyframePoses()
+    frames = AnimationFrames(driver.session.present_document)
     for time, has_hat in ((0.0, False), (0.5, False), (0.999, False), (1.0, True), (9.0, True)):
-        frame = animation_frame(driver.session.present_document, poses, time)
+        frame = frames.frame(time)
         assert frame.drawing.layers[HAT].visible is has_hat
         assert frame.drawing.layer_order[0] == (SKULL if has_hat else BODY)
         assert playback.frame(time).drawing.layer_view == frame.drawing.layer_view

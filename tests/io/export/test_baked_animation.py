@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from akap_editor.editor.animation.frames import Frame
-from akap_editor.editor.animation.keyframe_poses import KeyframePoses, animation_frame
+from akap_editor.editor.animation.loose_motion import AnimationFrames
 from akap_editor.editor.document.document import Document
 from akap_editor.editor.document.keyframes import NO_ANIMATION, Animation, Keyframe
 from akap_editor.io.export.baked_animation import TOLERANCE, BakedAnimation, bake_animation
@@ -26,7 +26,7 @@ TIMES = (0.0, 0.13, 0.3, 0.4, 0.7, 0.9, 1.0, 1.2)
 
 
 def frame_at(document: Document, time: float) -> Frame:
-    return animation_frame(document, KeyframePoses(), time)
+    return AnimationFrames(document).frame(time)
 
 
 def pose_at(baked: BakedAnimation, time: float) -> np.ndarray:
