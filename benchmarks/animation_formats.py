@@ -1,129 +1,246 @@
-"""Measures how long each animation format takes to encode, beside FFmpeg's encoders on the same frames.
+"""Measures the way from a recording to each format, beside FFmpeg's own encoders on the same frames.
 
-Run from the project's root: python benchmarks/animation_formats.py [--frames 60] [--size 640]
+Run from the project's root: python benchmarks/animation_formats.py [--recording FILE] [--to 3] [--size 640]
+[--only gif webp]. `ffmpeg` must be installed. Prints tables in Markdown. "All": CPU seconds and peak memory
+of the whole program, which replays, draws and encodes; "encoding": CPU seconds of the encoder alone, given
+the frames; "PSNR": of the colors of opaque pixels, for formats that lose some. Keyframes, of which glTF and
+Spine files are made, are those of the recording with a tolerance of 2 pixels.
 """
 
 import argparse
-from collections.abc import Callable, Iterator
-from contextlib import suppress
-from fractions import Fraction
-from io import BytesIO
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import process_time
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from PIL import Image
 
+from akap_editor.editor.animation.keyframing.simplification import Simplification
+from akap_editor.editor.animation.keyframing.take import take_poses
+from akap_editor.editor.animation.session_playback import Snapshot
+from akap_editor.editor.document.keyframes import Animation
+from akap_editor.editor.session.replay import Replay
+from akap_editor.io.akap.project import save
+from akap_editor.io.akap.recording import read_recording, recorded_drawing
 from akap_editor.io.animation.formats import write_animation
-from akap_editor.io.animation.video import require_av
 from akap_editor.io.images import Picture
 from akap_editor.resources import resource
 
-av: Any = require_av()
-FPS = 25
-OURS = ("gif", "webp", "apng", "mp4", "webm", "")
-# container, codec, pixel format and options of FFmpeg for the same purpose
-FFMPEG = {
-    "webp": ("webp", "libwebp_anim", "bgra", {"lossless": "1"}),
-    "apng": ("apng", "apng", "rgba", {"pred": "mixed"}),
-    "mp4": ("mp4", "libx264", "yuv420p", {"crf": "16", "preset": "medium"}),
-    "webm": ("webm", "libvpx-vp9", "yuva420p", {"crf": "18", "b": "0", "deadline": "good", "cpu-used": "4"}),
-}
+FPS = 30
+TOLERANCE = 2.0
+PALETTE = "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none"
+VP9 = "-c:v libvpx-vp9 -pix_fmt yuva420p -crf 18 -b:v 0 -deadline good -cpu-used 4"
 
 
-def turning_elephant(count: int, size: int) -> list[Picture]:
-    """The bundled elephant, turned by 2 degrees from frame to frame."""
-    picture = Image.open(resource("assets", "drawings", "elephant.png")).convert("RGBa")
-    picture.thumbnail((size, size))
-    picture = picture.crop((0, 0, picture.width // 2 * 2, picture.height // 2 * 2))
-    turned = (picture.rotate(2 * number, Image.Resampling.BICUBIC) for number in range(count))
-    return [np.array(each.convert("RGBA")) for each in turned]
+class Row(NamedTuple):
+    """A format.
+
+    name: of the file, or of a folder; options: of `akap-editor replay`; ffmpeg: its options for the same
+    purpose, "" where it has no such format; is_lossy: whether its colors differ from those of the frames.
+    """
+
+    label: str
+    name: str
+    options: tuple[str, ...]
+    ffmpeg: str
+    is_lossy: bool = False
 
 
-def video_frames(frames: list[Picture]) -> Iterator[Any]:
-    for number, image in enumerate(frames):
-        frame = av.VideoFrame.from_ndarray(image, format="rgba")
-        frame.pts, frame.time_base = number, Fraction(1, FPS)
-        yield frame
+ANIMATIONS = (
+    Row("GIF", "a.gif", (), f"-filter_complex {PALETTE}", True),
+    Row("WebP, lossless", "a.webp", (), "-c:v libwebp_anim -lossless 1 -pix_fmt bgra"),
+    Row(
+        "WebP, quality 80",
+        "q.webp",
+        ("--quality", "80"),
+        "-c:v libwebp_anim -quality 80 -pix_fmt yuva420p",
+        True,
+    ),
+    Row("APNG", "a.apng", (), "-f apng -pred mixed -plays 0"),
+    Row("MP4", "a.mp4", (), "-c:v libx264 -pix_fmt yuv420p -crf 16 -preset medium", True),
+    Row("WebM", "a.webm", (), VP9, True),
+    Row("sprite sheet", "sheet.png", ("--sheet",), "-vf tile={columns}x{rows}:padding=2:margin=2"),
+    Row("PNG frames", "frames", (), "-c:v png"),
+    Row("HTML", "a.html", (), ""),
+)
+EXPORTS = (("glTF, keyframes", "a.glb"), ("Spine, keyframes", "a.spine.json"), ("SVG of a pose", "a.svg"))
 
 
-def encode_by_ffmpeg(frames: list[Picture], suffix: str) -> bytes:
-    container_name, codec, pixel_format, options = FFMPEG[suffix]
-    buffer = BytesIO()
-    with av.open(buffer, "w", format=container_name) as container:
-        stream = container.add_stream(codec, rate=FPS, options=options)
-        stream.height, stream.width = frames[0].shape[:2]
-        stream.pix_fmt = pixel_format
-        for frame in video_frames(frames):
-            container.mux(stream.encode(frame.reformat(format=pixel_format)))
-        container.mux(stream.encode())
-    return buffer.getvalue()
+class Cost(NamedTuple):
+    """What a process took: CPU seconds of all its threads, and its peak memory in MiB."""
+
+    seconds: float
+    memory: float
 
 
-def encode_gif_by_ffmpeg(frames: list[Picture]) -> bytes:
-    """By the filters palettegen and paletteuse, without dithering."""
+def run(command: Sequence[str], given: bytes = b"") -> tuple[Cost, str]:
+    """Run a command that reads some bytes; its cost, and what it printed."""
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdin.write(given)
+    process.stdin.close()
+    said = process.stdout.read().decode()
+    _, status, usage = os.wait4(process.pid, 0)
+    if status:
+        raise SystemExit(f"failed: {' '.join(command)}")
+    return Cost(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024), said
+
+
+def program(*arguments: str | Path) -> tuple[Cost, str]:
+    """Run `akap-editor`, with the installed package or the one of this folder."""
+    return run([sys.executable, "-m", "akap_editor.cli", *map(str, arguments)])
+
+
+def by_ffmpeg(frames: Sequence[Picture], row: Row, path: Path) -> Cost:
+    """Let FFmpeg encode the frames."""
     height, width = frames[0].shape[:2]
-    graph = av.filter.Graph()
-    source = graph.add_buffer(width=width, height=height, format="rgba", time_base=Fraction(1, FPS))
-    split, palette, use = graph.add("split"), graph.add("palettegen"), graph.add("paletteuse", "dither=none")
-    sink = graph.add("buffersink")
-    source.link_to(split)
-    split.link_to(palette, 0)
-    split.link_to(use, 1, 0)
-    palette.link_to(use, 0, 1)
-    use.link_to(sink)
-    graph.configure()
-    for frame in video_frames(frames):
-        source.push(frame)
-    source.push(None)
-    buffer = BytesIO()
-    with av.open(buffer, "w", format="gif") as container:
-        stream = container.add_stream("gif", rate=FPS)
-        stream.width, stream.height, stream.pix_fmt = width, height, "pal8"
-        with suppress(av.error.EOFError, av.error.BlockingIOError):
-            while True:
-                frame = sink.pull()
-                frame.time_base = Fraction(1, FPS)
-                container.mux(stream.encode(frame))
-        container.mux(stream.encode())
-    return buffer.getvalue()
+    columns = max(1, round((len(frames) * height / width) ** 0.5))
+    options = row.ffmpeg.format(columns=columns, rows=-(-len(frames) // columns)).split()
+    if path.suffix == ".mp4":
+        frames = [over_white(frame) for frame in frames]
+    if not path.suffix:
+        path.mkdir()
+        path /= "frame-%04d.png"
+    source = f"-f rawvideo -pix_fmt rgba -s {width}x{height} -r {FPS} -i -".split()
+    command = ["ffmpeg", "-loglevel", "error", "-y", *source, *options, str(path)]
+    return run(command, b"".join(frame.tobytes() for frame in frames))[0]
 
 
-def measured(encode: Callable[[], int]) -> str:
-    """CPU seconds of all threads, and the size in kB."""
-    start = process_time()
-    size = encode()
-    return f"{process_time() - start:.1f} s, {size / 1000:,.0f} kB"
+def over_white(image: Picture) -> Picture:
+    """A frame without transparency."""
+    white = Image.new("RGBA", image.shape[1::-1], "white")
+    return np.array(Image.alpha_composite(white, Image.fromarray(image)))
+
+
+def frames_in(path: Path, size: tuple[int, int]) -> list[Picture]:
+    """The frames (h, w, 4) of an animation; of a GIF or WebP as Pillow shows them."""
+    if path.suffix not in (".gif", ".webp"):
+        decoder = ["-c:v", "libvpx-vp9"] if path.suffix == ".webm" else []
+        command = f"-i {path} -f rawvideo -pix_fmt rgba -".split()
+        data = subprocess.check_output(["ffmpeg", "-loglevel", "error", *decoder, *command])
+        return list(np.frombuffer(data, np.uint8).reshape(-1, size[1], size[0], 4))
+    frames, ends = [], []
+    with Image.open(path) as file:
+        for number in range(file.n_frames):
+            file.seek(number)
+            file.load()
+            frames.append(np.array(file.convert("RGBA")))
+            ends.append(file.info["duration"] + (ends[-1] if ends else 0))
+    middles = (np.arange(round(ends[-1] * FPS / 1000)) + 0.5) * 1000 / FPS  # equal frames are stored as one
+    return [frames[np.searchsorted(ends, middle)] for middle in middles]
+
+
+def psnr(shown: Sequence[Picture], frames: Sequence[Picture]) -> float:
+    """In dB, of the colors of opaque pixels."""
+    errors = []
+    for came, frame in zip(shown, frames, strict=True):
+        height, width = frame.shape[:2]
+        is_opaque = frame[..., 3] == 255
+        offsets = came[:height, :width, :3][is_opaque].astype(float) - frame[..., :3][is_opaque]
+        errors.append((offsets**2).mean(axis=1))
+    return float(10 * np.log10(255**2 / np.concatenate(errors).mean()))
+
+
+def size_of(path: Path) -> float:
+    """MB of a file, or of the files in a folder."""
+    files = path.iterdir() if path.is_dir() else [path]
+    return sum(file.stat().st_size for file in files) / 1e6
+
+
+def encode(folder: Path, name: str, options: Sequence[str]) -> None:
+    """Encode frames.npy alone and print the CPU seconds; runs in a process of its own."""
+    frames = np.load(folder / "frames.npy", mmap_mode="r")
+    quality = int(options[1]) if "--quality" in options else None
+    start = time.process_time()
+    write_animation(folder / name, iter(frames), FPS, sheet="--sheet" in options, quality=quality)
+    print(time.process_time() - start)
+
+
+def keyframed(recording: Path, path: Path) -> None:
+    """Save the motion of a recording as keyframes."""
+    events = read_recording(recording)
+    drawing, snapshots, jumps = recorded_drawing(events), [], 0
+    player = Replay(events, drawing)
+    for line, event in enumerate(player.events()):
+        jumps += event.is_jump
+        assert player.session is not None
+        snapshots.append(Snapshot(event.time, line, event.state, player.session.drawing, jumps))
+    assert player.session is not None
+    take = Simplification(drawing.mesh, take_poses(snapshots, 0.0, snapshots[-1].time, drawing))
+    for _ in take.refine(TOLERANCE):
+        pass
+    document = player.session.present_document
+    animation = Animation(tuple(take.keyframes(TOLERANCE)))
+    save(document.with_state(replace(document.state, animation=animation)), path)
+
+
+def print_animations(recording: Path, options: Sequence[str], only: Sequence[str], folder: Path) -> None:
+    """Print a row for each format of animations."""
+    program("replay", recording, "-o", folder / "source", *options)
+    frames = [np.array(Image.open(path)) for path in sorted((folder / "source").iterdir())]
+    np.save(folder / "frames.npy", np.array(frames))
+    height, width = frames[0].shape[:2]
+    print(f"{len(frames)} frames of {width} × {height} pixels\n")
+    print("| | all | peak memory | encoding | size | PSNR | FFmpeg | size | PSNR |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for row in ANIMATIONS:
+        if only and row.name.rpartition(".")[2] not in only:
+            continue
+        ours, theirs = folder / row.name, folder / f"ffmpeg-{row.name}"
+        whole, _ = program("replay", recording, "-o", ours, *options, *row.options)
+        alone = ["", ""]
+        qualities = ["", ""]
+        if row.name != "a.html":
+            script = [sys.executable, __file__, "--encode", str(folder), f"alone-{row.name}", *row.options]
+            alone[0] = f"{float(run(script)[1]):.1f} s"
+        if row.ffmpeg:
+            alone[1] = f"{by_ffmpeg(frames, row, theirs).seconds:.1f} s"
+        for number, path in enumerate((ours, theirs)):
+            if row.is_lossy:
+                even = width + width % 2, height + height % 2
+                qualities[number] = f"{psnr(frames_in(path, even), frames):.1f} dB"
+        cells = [row.label, f"{whole.seconds:.1f} s", f"{whole.memory:.0f} MiB", alone[0]]
+        cells += [f"{size_of(ours):.2f} MB", qualities[0], alone[1]]
+        cells += [f"{size_of(theirs):.2f} MB" if row.ffmpeg else "", qualities[1]]
+        print("|", " | ".join(cells), "|", flush=True)
+
+
+def print_exports(recording: Path, folder: Path) -> None:
+    """Print a row for each format that other programs animate themselves."""
+    keyframed(recording, folder / "keys.akap")
+    print("\n| | all | peak memory | size |\n|---|---|---|---|")
+    for label, name in EXPORTS:
+        options = ["--textured"] if name.endswith(".svg") else []
+        whole, _ = program("export", folder / "keys.akap", "-o", folder / name, *options)
+        cells = label, f"{whole.seconds:.1f} s", f"{whole.memory:.0f} MiB", f"{size_of(folder / name):.2f} MB"
+        print("|", " | ".join(cells), "|", flush=True)
 
 
 def main() -> None:
-    """Print a row for each format."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--frames", type=int, default=60)
-    parser.add_argument("--size", type=int, default=640)
-    arguments = parser.parse_args()
-    frames = turning_elephant(arguments.frames, arguments.size)
-    print(
-        f"{len(frames)} frames of {frames[0].shape[1]} x {frames[0].shape[0]} pixels; CPU time of all threads"
+    """Print both tables."""
+    if sys.argv[1:2] == ["--encode"]:
+        encode(Path(sys.argv[2]), sys.argv[3], sys.argv[4:])
+        return
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument(
+        "--recording", type=Path, default=resource("assets", "recordings", "elephant.akaprec")
     )
+    parser.add_argument("--to", default="3", help="seconds")
+    parser.add_argument("--size", default="640", help="longest side in pixels")
+    parser.add_argument("--only", nargs="*", default=[], help="endings")
+    arguments = parser.parse_args()
+    options = ["--fps", str(FPS), "--to", arguments.to, "--size", arguments.size]
     with TemporaryDirectory() as folder:
-        for suffix in OURS:
-            path = Path(folder) / (f"a.{suffix}" if suffix else "frames")
-
-            def ours(path: Path = path) -> int:
-                write_animation(path, iter(frames), FPS)
-                files = path.iterdir() if path.is_dir() else [path]
-                return sum(file.stat().st_size for file in files)
-
-            def theirs(suffix: str = suffix) -> int:
-                is_gif = suffix == "gif"
-                return len(encode_gif_by_ffmpeg(frames) if is_gif else encode_by_ffmpeg(frames, suffix))
-
-            row = measured(ours)
-            beside = measured(theirs) if suffix == "gif" or suffix in FFMPEG else "-"
-            print(f"{suffix or 'folder':8} {row:24} FFmpeg: {beside}")
+        print_animations(arguments.recording, options, arguments.only, Path(folder))
+        if not arguments.only:
+            print_exports(arguments.recording, Path(folder))
 
 
 if __name__ == "__main__":

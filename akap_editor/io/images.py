@@ -27,6 +27,7 @@ ANIMATED_PICTURE_FORMATS = (
     "TIFF",
 )  # of these a file may have several frames or pages
 MAX_PIXELS = 100_000_000
+_PNG_ROWS = 256  # compressed at once
 STRIP_PIXELS = 2**21  # converted at once
 
 
@@ -211,24 +212,41 @@ def has_transparency(image: Picture) -> bool:
 def encode_png(image: Picture) -> bytes:
     """The bytes of a PNG file of ``image``, (h, w, 4) uint8, straight alpha, lossless even where invisible.
 
-    One filter (each row minus the one above) and zlib's run-length strategy: for cartoons as small as the
-    usual search through filters, and a third of the time. Raises InputError on another shape or dtype.
+    Raises InputError on another shape or dtype.
     """
     image = as_picture(image, "image")
+    chunks = [png_header(image), png_chunk(b"IDAT", png_pixels(image)), png_chunk(b"IEND", b"")]
+    return b"".join(chunks)
+
+
+def png_header(image: Picture) -> bytes:
+    """The signature of PNG files, and the chunk that says the size of a picture (h, w, 4) uint8."""
     height, width = image.shape[:2]
-    rows = np.empty((height, 1 + 4 * width), dtype=np.uint8)
-    rows[:, 0] = 2  # filter type "up"
-    flat = image.reshape(height, -1)
-    rows[0, 1:] = flat[0]
-    np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
-    packer = zlib.compressobj(level=1, strategy=zlib.Z_RLE)
-    pixels = packer.compress(rows.data) + packer.flush()
     header = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)  # 8 bit, RGBA, not interlaced
-    chunks = [(b"IHDR", header), (b"IDAT", pixels), (b"IEND", b"")]
-    return b"\x89PNG\r\n\x1a\n" + b"".join(_png_chunk(kind, content) for kind, content in chunks)
+    return b"\x89PNG\r\n\x1a\n" + png_chunk(b"IHDR", header)
 
 
-def _png_chunk(kind: bytes, content: bytes) -> bytes:
+def png_pixels(image: Picture) -> bytes:
+    """The compressed pixels of a picture (h, w, 4) uint8, for a PNG file.
+
+    One filter (each row minus the one above) and zlib's run-length strategy: for cartoons as small as the
+    usual search through filters but for 4 %, in a fifth of the time.
+    """
+    packer = zlib.compressobj(level=1, strategy=zlib.Z_RLE)
+    packed, above = [], np.zeros(4 * image.shape[1], dtype=np.uint8)
+    for start in range(0, len(image), _PNG_ROWS):
+        flat = image[start : start + _PNG_ROWS].reshape(-1, 4 * image.shape[1])
+        rows = np.empty((len(flat), 1 + flat.shape[1]), dtype=np.uint8)
+        rows[:, 0] = 2  # filter type "up"
+        np.subtract(flat[0], above, out=rows[0, 1:])
+        np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
+        packed.append(packer.compress(rows.data))
+        above = flat[-1]
+    return b"".join([*packed, packer.flush()])
+
+
+def png_chunk(kind: bytes, content: bytes) -> bytes:
+    """A chunk of a PNG file; kind: four letters."""
     checksum = zlib.crc32(content, zlib.crc32(kind))
     return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", checksum)
 

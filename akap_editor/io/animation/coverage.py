@@ -6,6 +6,7 @@ from scipy import ndimage
 
 from ...geometry.validation import Floats, Ints
 from ..images import Picture
+from .frames import bounding_box
 
 OPAQUE = 128  # alpha from which a pixel is opaque whatever is around it
 VISIBLE = 6  # alpha from which a pixel counts as ink; less is rounding and the tail of a blur
@@ -27,24 +28,48 @@ def opaque_pixels(image: Picture) -> Mask:
     ordered pattern; and of anything else at least the pixel of the highest alpha. Soft rims of opaque parts
     are cut at half.
     """
-    alpha = image[..., 3]
+    visible = image[..., 3] >= VISIBLE
+    shown = image[..., 3] >= OPAQUE
+    if (visible != shown).any():
+        left, top, right, bottom = bounding_box(visible)
+        box = slice(max(top - 1, 0), bottom + 1), slice(max(left - 1, 0), right + 1)
+        pattern = _pattern(image.shape[:2])[box]
+        shown[box] = _opaque_pixels(image[..., 3][box], pattern)
+    return shown
+
+
+def _opaque_pixels(alpha: Picture, pattern: Floats) -> Mask:
+    """The pixels (h, w) shown of coverages (h, w) uint8; pattern: (h, w) thresholds of wide faint parts."""
     opaque = alpha >= OPAQUE
     faint = (alpha >= VISIBLE) & ~opaque
-    if not faint.any():
-        return opaque
-    wide = _wide_faint_parts(alpha, opaque, faint)
-    shown = opaque | (wide & (alpha > _pattern(alpha.shape)))
+    wide = _wide_faint_parts(opaque, faint)
+    shown = opaque | (wide & (alpha > pattern))
     shown |= _lines(alpha, faint & ~wide, opaque | wide)
     return shown | _peaks_of_the_rest(alpha, shown)
 
 
-def _wide_faint_parts(alpha: Picture, opaque: Mask, faint: Mask) -> Mask:
+def _wide_faint_parts(opaque: Mask, faint: Mask) -> Mask:
     """Faint pixels of parts that are 3 or more pixels wide and reach beyond the rim of opaque parts."""
-    wide = ndimage.binary_opening(faint, _SQUARE)
+    wide = _dilated(~_dilated(~faint, outside=True))
     if not wide.any():
         return wide
-    beyond = wide & ~ndimage.binary_dilation(opaque, _SQUARE, iterations=_RIM)
+    rim = opaque
+    for _ in range(_RIM):
+        rim = _dilated(rim)
+    beyond = wide & ~rim
+    if not beyond.any():
+        return beyond
     return np.asarray(ndimage.binary_dilation(beyond, _SQUARE, iterations=_RIM, mask=wide) | beyond)
+
+
+def _dilated(mask: Mask, outside: bool = False) -> Mask:
+    """The pixels (h, w) of a mask and all 8 neighbors of each; many times faster than scipy.ndimage.
+
+    outside: whether pixels outside of the picture are of the mask.
+    """
+    padded = np.pad(mask, 1, constant_values=outside)
+    rows = padded[:-2] | padded[1:-1] | padded[2:]
+    return np.asarray(rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:])
 
 
 def _pattern(shape: tuple[int, ...]) -> Floats:
@@ -68,7 +93,7 @@ def _lines(alpha: Picture, where: Mask, parts: Mask) -> Mask:
     crests = _crests(alpha, where)
     labels, count = ndimage.label(crests, _SQUARE)
     is_line = np.zeros(count + 1, dtype=bool)
-    is_line[labels[crests & ~ndimage.binary_dilation(parts, _SQUARE)]] = True
+    is_line[labels[crests & ~_dilated(parts)]] = True
     is_line[labels[crests & (_neighbor_runs(parts | crests) > 1)]] = True
     is_line[0] = False
     return np.asarray(is_line[labels])

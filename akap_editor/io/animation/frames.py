@@ -1,7 +1,12 @@
 """Checks of the pictures that become an animation, and how long each is shown."""
 
-from collections.abc import Iterable, Iterator
+import zlib
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...geometry.validation import as_picture
@@ -36,13 +41,49 @@ def checked_frames(frames: Iterable[Picture]) -> Iterator[Picture]:
         raise InputError(tr("frames: expected at least one frame, got none"))
 
 
-def collect_frames(frames: Iterable[Picture], max_side: int, suffix: str) -> list[Picture]:
-    """Copies of all frames, (h, w, 4) uint8 each.
+Box = tuple[int, int, int, int]  # left, top, right, bottom
+
+
+class PackedFrames(Sequence[NDArray[Any]]):
+    """Arrays of one shape and dtype, compressed in memory: of cartoons a tenth is left."""
+
+    def __init__(self) -> None:
+        self._packed: list[bytes] = []
+        self._shape: tuple[int, ...] = ()
+        self._dtype: np.dtype[Any] = np.dtype(np.uint8)
+
+    def append(self, array: NDArray[Any]) -> None:
+        """Add a copy of an array."""
+        self._shape, self._dtype = array.shape, array.dtype
+        self._packed.append(zlib.compress(np.ascontiguousarray(array).data, 1))
+
+    def __len__(self) -> int:
+        return len(self._packed)
+
+    @overload
+    def __getitem__(self, number: int) -> NDArray[Any]: ...
+    @overload
+    def __getitem__(self, number: slice) -> list[NDArray[Any]]: ...
+    def __getitem__(self, number: int | slice) -> NDArray[Any] | list[NDArray[Any]]:
+        if isinstance(number, slice):
+            return [self[k] for k in range(*number.indices(len(self)))]
+        return np.frombuffer(zlib.decompress(self._packed[number]), self._dtype).reshape(self._shape)
+
+
+def collect_frames(frames: Iterable[Picture], max_side: int, suffix: str) -> PackedFrames:
+    """All frames, (h, w, 4) uint8 each, packed; raises InputError as `bounded_frames`."""
+    packed = PackedFrames()
+    for image in bounded_frames(frames, max_side, suffix):
+        packed.append(image)
+    return packed
+
+
+def bounded_frames(frames: Iterable[Picture], max_side: int, suffix: str) -> Iterator[Picture]:
+    """Yield frames, (h, w, 4) uint8 each, as they come.
 
     Raises InputError as `checked_frames`, for more than ``max_side`` pixels a side, and for more than
     `MAX_ANIMATION_PIXELS`. suffix: the format's ending, for messages.
     """
-    images: list[Picture] = []
     pixels = 0
     for image in checked_frames(frames):
         height, width = image.shape[:2]
@@ -67,8 +108,15 @@ def collect_frames(frames: Iterable[Picture], max_side: int, suffix: str) -> lis
                     height=height,
                 )
             )
-        images.append(image.copy())  # the caller may draw the next frame into the same array
-    return images
+        yield image
+
+
+def bounding_box(mask: NDArray[np.bool_]) -> Box:
+    """The smallest box around the pixels of a mask (h, w), one pixel if there is none."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    if not len(rows):
+        return 0, 0, 1, 1
+    return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
 
 
 def frame_durations(count: int, fps: float, unit: int) -> list[int]:

@@ -4,12 +4,11 @@ Pillow's own writer of several frames begins a new file inside the file where a 
 palette with each frame.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from struct import pack
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import GifImagePlugin, Image
 
 from ...progress import announce, announced, part
@@ -17,8 +16,8 @@ from ...words import tr
 from ..atomic import Write
 from ..images import Picture
 from .coverage import opaque_pixels
-from .frames import ENCODING, collect_frames, frame_durations
-from .palette import NearestColors, find_palette
+from .frames import ENCODING, Box, PackedFrames, bounded_frames, bounding_box, frame_durations
+from .palette import ColorCounts, NearestColors, find_palette, packed_colors
 
 MAX_GIF_FPS = 50  # players show at most 50 frames per second of a GIF
 
@@ -26,8 +25,6 @@ _MAX_SIDE = 65535
 _COLORS = 255
 _TRANSPARENT = 255  # palette index
 _KEEP, _CLEAR = 1, 2  # what becomes of a frame's rectangle before the next one is drawn
-
-Box = tuple[int, int, int, int]  # left, top, right, bottom
 
 
 def write_gif(path: Path, frames: Iterable[Picture], fps: float, plays: int, write: Write) -> str:
@@ -37,34 +34,36 @@ def write_gif(path: Path, frames: Iterable[Picture], fps: float, plays: int, wri
     be shown 10 ms longer than the next, but the sums do not drift. Above `MAX_GIF_FPS` frames are left out,
     so that the speed is right (of 60 fps, each sixth).
     """
-    images = collect_frames(frames, _MAX_SIDE, ".gif")
-    slots = [int(number * min(1.0, MAX_GIF_FPS / fps)) for number in range(len(images))]
-    is_shown = [slot != before for slot, before in zip(slots, [-1, *slots], strict=False)]
-    images = [image for image, shows in zip(images, is_shown, strict=True) if shows]
-    fps = min(fps, MAX_GIF_FPS)
-    write(path, encode_gif(images, frame_durations(len(images), fps, unit=10), plays))
-    return tr("at {fps:g} frames per second", fps=fps)
+    images = bounded_frames(frames, _MAX_SIDE, ".gif")
+    kept = (image for number, image in enumerate(images) if _is_shown(number, fps))
+    shown_fps = min(fps, MAX_GIF_FPS)
+    write(path, encode_gif(kept, shown_fps, plays))
+    return tr("at {fps:g} frames per second", fps=shown_fps)
 
 
-def encode_gif(images: Sequence[Picture], durations: Sequence[int], plays: int) -> bytes:
-    """The bytes of a GIF of frames (h, w, 4) uint8 and their durations in ms, multiples of 10.
+def _is_shown(number: int, fps: float) -> bool:
+    """Whether a frame is kept: at rates that GIF does not have, some are left out."""
+    share = min(1.0, MAX_GIF_FPS / fps)
+    return number == 0 or int(number * share) != int((number - 1) * share)
 
-    plays: how often it is shown, 0 for forever.
+
+def encode_gif(images: Iterable[Picture], fps: float, plays: int) -> bytes:
+    """The bytes of a GIF of frames (h, w, 4) uint8, read once.
+
+    fps: at most `MAX_GIF_FPS`; plays: how often it is shown, 0 for forever.
     """
-    with part(0.0, 0.4):
-        masks = [opaque_pixels(image) for image in announced(images, ENCODING)]
-    announce(0.4, ENCODING)
-    palette = find_palette(images, masks, _COLORS)
-    nearest = NearestColors(palette)
-    with part(0.6, 0.8):
-        indexed = [
-            np.where(mask, nearest.indices(image), np.uint8(_TRANSPARENT))
-            for image, mask in zip(announced(images, ENCODING), masks, strict=True)
-        ]
-    height, width = images[0].shape[:2]
-    blocks = [_header(width, height, palette, plays if len(images) > 1 else 1)]
-    with part(0.8, 1.0):
-        blocks += _frame_blocks(indexed, durations)
+    counts, packed = ColorCounts(), PackedFrames()
+    for image in images:
+        colors = packed_colors(image, opaque_pixels(image))
+        counts.add(colors)
+        packed.append(colors)
+    announce(0.0, ENCODING)
+    nearest = NearestColors(palette := find_palette(counts, _COLORS), hidden=_TRANSPARENT)
+    height, width = packed[0].shape
+    blocks = [_header(width, height, palette, plays if len(packed) > 1 else 1)]
+    with part(0.3, 1.0):
+        indexed = (nearest.indices(colors) for colors in announced(packed, ENCODING))
+        blocks += _frame_blocks(indexed, frame_durations(len(packed), fps, unit=10))
     return b"".join([*blocks, b";"])
 
 
@@ -79,18 +78,17 @@ def _header(width: int, height: int, palette: Picture, plays: int) -> bytes:
     return header + b"!\xff\x0bNETSCAPE2.0\x03\x01" + pack("<H", max(plays - 1, 0)) + b"\0"
 
 
-def _frame_blocks(indexed: Sequence[Picture], durations: Sequence[int]) -> Iterable[bytes]:
+def _frame_blocks(indexed: Iterable[Picture], durations: Sequence[int]) -> Iterator[bytes]:
     """The blocks of each frame (h, w) of palette indices: only the rectangle in which it changes.
 
     A pixel of it that stays is transparent. Where pixels become transparent, the frame before is cleared in
     a rectangle that contains all of them.
     """
-    canvas = np.full_like(indexed[0], _TRANSPARENT)
-    frames = announced(indexed, ENCODING)
-    for number, (frame, duration) in enumerate(zip(frames, durations, strict=True)):
-        following = indexed[number + 1] if number + 1 < len(indexed) else frame
+    canvas: Picture | None = None
+    for (frame, following), duration in zip(_with_following(indexed), durations, strict=True):
+        canvas = np.full_like(frame, _TRANSPARENT) if canvas is None else canvas
         vanishing = (frame != _TRANSPARENT) & (following == _TRANSPARENT)
-        left, top, right, bottom = box = _changed_box((frame != canvas) | vanishing)
+        left, top, right, bottom = box = bounding_box((frame != canvas) | vanishing)
         disposal = _CLEAR if vanishing.any() else _KEEP
         changed = frame[top:bottom, left:right].copy()
         changed[changed == canvas[top:bottom, left:right]] = _TRANSPARENT
@@ -100,12 +98,15 @@ def _frame_blocks(indexed: Sequence[Picture], durations: Sequence[int]) -> Itera
             canvas[top:bottom, left:right] = _TRANSPARENT
 
 
-def _changed_box(changed: NDArray[np.bool_]) -> Box:
-    """The smallest box around the pixels ``changed`` (h, w), one pixel if none is."""
-    rows, columns = np.flatnonzero(changed.any(axis=1)), np.flatnonzero(changed.any(axis=0))
-    if not len(rows):
-        return 0, 0, 1, 1
-    return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
+def _with_following(frames: Iterable[Picture]) -> Iterator[tuple[Picture, Picture]]:
+    """Each frame with the next one; the last one with itself."""
+    frame = None
+    for following in frames:
+        if frame is not None:
+            yield frame, following
+        frame = following
+    if frame is not None:
+        yield frame, frame
 
 
 def _frame_block(changed: Picture, box: Box, duration: int, disposal: int) -> bytes:

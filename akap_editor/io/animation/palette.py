@@ -1,6 +1,5 @@
 """Finds the palette of an animation and the nearest palette color of every pixel."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,53 +9,68 @@ from scipy.spatial import cKDTree
 from ...geometry.validation import Floats, Ints
 from ..images import Picture
 
-_MAX_SAMPLES = 2**22  # pixels of all frames together that the palette is made from
 _MAX_BINS = 2**15  # colors that k-means sees; more are merged to bins of equal leading bits
 _ITERATIONS = 12  # of k-means: then it changes the error by less than 1 %
 
-Mask = NDArray[np.bool_]
+HIDDEN = 2**24  # instead of a packed color: of a pixel that is not shown
 
 
-def find_palette(images: Sequence[Picture], masks: Sequence[Mask], size: int) -> Picture:
+class ColorCounts:
+    """Counts how often each color is shown in the frames of an animation."""
+
+    def __init__(self) -> None:
+        self._counts = np.zeros(HIDDEN + 1, dtype=np.int32)
+
+    def add(self, colors: Ints) -> None:
+        """Count the packed colors (h, w) of a frame, see `packed_colors`."""
+        np.add.at(self._counts, colors.ravel(), 1)
+
+    def shown(self) -> tuple[Ints, Ints]:
+        """The packed colors (c,) that are shown, and how often each is."""
+        colors = np.flatnonzero(self._counts[:HIDDEN])
+        return colors, self._counts[colors]
+
+
+def find_palette(counts: ColorCounts, size: int) -> Picture:
     """At most ``size`` colors (c, 3) for the pixels of all frames: with a palette each, colors would flicker.
 
-    images: (h, w, 4) uint8; masks: (h, w) the pixels of each that are shown. Few colors are kept as they are.
-    Otherwise the cluster with the largest squared error is halved across its longest axis until there are
-    ``size`` of them, and k-means refines their means (Lloyd 1982). Returns black if nothing is shown.
+    Few colors are kept as they are. Otherwise the cluster with the largest squared error is halved across its
+    longest axis until there are ``size`` of them, and k-means refines their means (Lloyd 1982). Returns black
+    if nothing is shown.
     """
-    colors, counts = _histogram(images, masks)
+    colors, numbers = counts.shown()
     if not len(colors):
         return np.zeros((1, 3), dtype=np.uint8)
     if len(colors) <= size:
         return _unpack(colors)
-    points, weights = _bins(colors, counts)
+    points, weights = _bins(colors, numbers)
     return _refined(points, weights, _halved(points, weights, size))
 
 
 class NearestColors:
-    """Gives pixels the nearest color of a palette (c, 3); not dithered, because its noise would flicker."""
+    """Gives pixels the nearest color of a palette (c, 3); not dithered, because its noise would flicker.
 
-    def __init__(self, palette: Picture) -> None:
+    hidden: index of pixels that are not shown.
+    """
+
+    def __init__(self, palette: Picture, hidden: int) -> None:
         self._tree = cKDTree(palette)
-        self._table = np.full(2**24, -1, dtype=np.int16)  # index of each color, filled in as colors appear
+        self._table = np.full(HIDDEN + 1, -1, dtype=np.int16)  # index of each color, filled in as they appear
+        self._table[HIDDEN] = hidden
 
-    def indices(self, image: Picture) -> Picture:
-        """The palette indices (h, w) uint8 of a picture (h, w, 4), whatever its alpha."""
-        colors = _pack(image[..., :3])
-        missing = np.unique(colors[self._table[colors] < 0])
-        self._table[missing] = self._tree.query(_unpack(missing))[1]
-        return self._table[colors].astype(np.uint8)
+    def indices(self, colors: Ints) -> Picture:
+        """The palette indices (h, w) uint8 of packed colors (h, w), see `packed_colors`."""
+        found = self._table[colors]
+        if found.min() < 0:
+            missing = np.unique(colors[found < 0])
+            self._table[missing] = self._tree.query(_unpack(missing))[1]
+            found = self._table[colors]
+        return found.astype(np.uint8)
 
 
-def _histogram(images: Sequence[Picture], masks: Sequence[Mask]) -> tuple[Ints, Ints]:
-    """The packed colors that are shown, and how often each is; of very many pixels every n-th is counted."""
-    samples = []
-    for number, (image, mask) in enumerate(zip(images, masks, strict=True)):
-        shown = image[mask][:, :3]
-        step = 1 + len(shown) * len(images) // _MAX_SAMPLES
-        samples.append(_pack(shown[number % step :: step]))
-    colors, counts = np.unique(np.concatenate(samples), return_counts=True)
-    return colors, counts
+def packed_colors(image: Picture, mask: NDArray[np.bool_]) -> Ints:
+    """A number (h, w) int32 for each color of a picture (h, w, 4); `HIDDEN` outside of the mask (h, w)."""
+    return np.where(mask, _pack(image[..., :3]), np.int32(HIDDEN))
 
 
 def _bins(colors: Ints, counts: Ints) -> tuple[Floats, Floats]:

@@ -13,7 +13,7 @@ from ...errors import FileError, InputError
 from ...words import tr
 from ..atomic import Write, os_error_reason, write_atomic
 from ..images import Picture, encode_png, write_png
-from .frames import checked_frames
+from .frames import PackedFrames, bounding_box, checked_frames
 
 MAX_SHEET_SIDE = 16384
 GUTTER = 2  # empty pixels between frames, so that a game that scales them mixes no neighbors
@@ -65,9 +65,13 @@ def write_sheet(
     Raises InputError, also for a sheet of more than `MAX_SHEET_SIDE` pixels a side.
     """
     path = Path(path)
-    images = [image.copy() for image in checked_frames(frames)]
-    height, width = images[0].shape[:2]
-    left, top, right, bottom = _visible_box(images)
+    images, visible = PackedFrames(), None
+    for image in checked_frames(frames):
+        visible = image[..., 3] > 0 if visible is None else visible | (image[..., 3] > 0)
+        images.append(image)
+    assert visible is not None
+    height, width = visible.shape
+    left, top, right, bottom = bounding_box(visible) if visible.any() else (0, 0, width, height)
     w, h = right - left, bottom - top
     columns = min(len(images), max(1, round(math.sqrt(len(images) * h / w))))
     rows = math.ceil(len(images) / columns)
@@ -112,15 +116,3 @@ def write_sheet(
     write(path, encode_png(sheet))
     write(index_path(path), json.dumps({"frames": index, "meta": meta}, indent=1).encode())
     return columns, rows
-
-
-def _visible_box(images: list[Picture]) -> tuple[int, int, int, int]:
-    """(left, top, right, bottom) of the pixels visible in any of the images; the whole frame if none is."""
-    height, width = images[0].shape[:2]
-    visible = np.zeros((height, width), dtype=bool)
-    for image in images:
-        visible |= image[..., 3] > 0
-    rows, columns = np.flatnonzero(visible.any(axis=1)), np.flatnonzero(visible.any(axis=0))
-    if not len(rows):
-        return 0, 0, width, height
-    return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1

@@ -75,7 +75,7 @@ def test_a_number_of_plays_out_of_range_is_refused(tmp_path):
         write_animation(tmp_path / "a.gif", [dot(0)], 10, plays=-1)
 
 
-@pytest.mark.parametrize("suffix", [".gif", ".webp", ".apng"])
+@pytest.mark.parametrize("suffix", [".gif", ".webp"])
 def test_encoding_after_the_last_frame_announces_how_far_it_is(tmp_path, suffix):
     heard, drawn = [], []
 
