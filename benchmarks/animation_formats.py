@@ -119,8 +119,11 @@ def over_white(image: Picture) -> Picture:
     return np.array(Image.alpha_composite(white, Image.fromarray(image)))
 
 
-def frames_in(path: Path, size: tuple[int, int]) -> list[Picture]:
-    """The frames (h, w, 4) of an animation; of a GIF or WebP as Pillow shows them."""
+def frames_in(path: Path, count: int, size: tuple[int, int]) -> list[Picture]:
+    """The frames (h, w, 4) of an animation; of a GIF or WebP as Pillow shows them.
+
+    count: of the frames, of which equal ones may be stored as one; size: of a video.
+    """
     if path.suffix not in (".gif", ".webp"):
         decoder = ["-c:v", "libvpx-vp9"] if path.suffix == ".webm" else []
         command = f"-i {path} -f rawvideo -pix_fmt rgba -".split()
@@ -133,8 +136,8 @@ def frames_in(path: Path, size: tuple[int, int]) -> list[Picture]:
             file.load()
             frames.append(np.array(file.convert("RGBA")))
             ends.append(file.info["duration"] + (ends[-1] if ends else 0))
-    middles = (np.arange(round(ends[-1] * FPS / 1000)) + 0.5) * 1000 / FPS  # equal frames are stored as one
-    return [frames[np.searchsorted(ends, middle)] for middle in middles]
+    middles = (np.arange(count) + 0.5) * 1000 / FPS
+    return [frames[min(np.searchsorted(ends, middle), len(frames) - 1)] for middle in middles]
 
 
 def psnr(shown: Sequence[Picture], frames: Sequence[Picture]) -> float:
@@ -205,7 +208,7 @@ def print_animations(recording: Path, options: Sequence[str], only: Sequence[str
         for number, path in enumerate((ours, theirs)):
             if row.is_lossy:
                 even = width + width % 2, height + height % 2
-                qualities[number] = f"{psnr(frames_in(path, even), frames):.1f} dB"
+                qualities[number] = f"{psnr(frames_in(path, len(frames), even), frames):.1f} dB"
         cells = [row.label, f"{whole.seconds:.1f} s", f"{whole.memory:.0f} MiB", alone[0]]
         cells += [f"{size_of(ours):.2f} MB", qualities[0], alone[1]]
         cells += [f"{size_of(theirs):.2f} MB" if row.ffmpeg else "", qualities[1]]
