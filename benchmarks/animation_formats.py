@@ -15,7 +15,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import NamedTuple
 
 import numpy as np
@@ -81,16 +81,25 @@ class Cost(NamedTuple):
 
 def run(command: Sequence[str], given: bytes = b"") -> tuple[Cost, str]:
     """Run a command that reads some bytes; its cost, and what it printed."""
-    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-    assert process.stdin is not None
-    assert process.stdout is not None
-    process.stdin.write(given)
-    process.stdin.close()
-    said = process.stdout.read().decode()
-    _, status, usage = os.wait4(process.pid, 0)
-    if status:
-        raise SystemExit(f"failed: {' '.join(command)}")
-    return Cost(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024), said
+    with TemporaryFile() as source, TemporaryFile() as said:
+        source.write(given)
+        source.seek(0)
+        process = subprocess.Popen(command, stdin=source, stdout=said)
+        memory, ended = 0.0, 0
+        while not ended:
+            memory = max(memory, peak_memory(process.pid))
+            time.sleep(0.02)
+            ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+        said.seek(0)
+        if status:
+            raise SystemExit(f"failed: {' '.join(command)}")
+        return Cost(usage.ru_utime + usage.ru_stime, memory), said.read().decode()
+
+
+def peak_memory(pid: int) -> float:
+    """MiB; `ru_maxrss` does not do, because it begins with what the process that started it holds."""
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    return max([float(line.split()[1]) / 1024 for line in lines if line.startswith("VmHWM")], default=0.0)
 
 
 def program(*arguments: str | Path) -> tuple[Cost, str]:

@@ -13,6 +13,7 @@ out vec4 color;
 
 const float MAX_SAMPLES = 8.0;  // a side; beyond that, each sample is a mean of texels itself, from a mipmap
 const float MAX_CUBIC_STEP = 1.5;  // texels per pixel; where more are averaged, linear samples do as well
+const float SLACK = 0.15;   // texels that a pixel may be larger than its samples: then one is as good as two
 const float EXACT = 1e-3;   // texels: this near to the middle of a texel, only that one counts
 
 vec4 texel(ivec2 position) {
@@ -55,7 +56,7 @@ vec4 sharp_sample() {
     vec2 size = vec2(textureSize(picture, 0)), across = dFdx(uv), down = dFdy(uv);
     vec2 lengths = vec2(length(across * size), length(down * size));
     float level = max(ceil(log2(max(lengths.x, lengths.y) / MAX_SAMPLES) - EXACT), 0.0);  // whole: one is read
-    ivec2 count = max(ivec2(ceil(lengths / exp2(level) - EXACT)), ivec2(1));
+    ivec2 count = max(ivec2(ceil(lengths / exp2(level) - SLACK)), ivec2(1));
     vec2 width = clamp(2.0 * (lengths - 1.0), 0.0, 1.0);
     // Two loops, because a processor that draws eight pixels at once computes both branches of an `if`.
     bool few = max(lengths.x, lengths.y) <= MAX_CUBIC_STEP;
