@@ -209,13 +209,18 @@ def has_transparency(image: Picture) -> bool:
     return bool((image[..., 3] < 255).any())
 
 
-def encode_png(image: Picture) -> bytes:
+def encode_png(image: Picture, is_repetitive: bool = False) -> bytes:
     """The bytes of a PNG file of ``image``, (h, w, 4) uint8, straight alpha, lossless even where invisible.
 
-    Raises InputError on another shape or dtype.
+    is_repetitive: whether to look for parts that are equal, which takes longer. Raises InputError on another
+    shape or dtype.
     """
     image = as_picture(image, "image")
-    chunks = [png_header(image), png_chunk(b"IDAT", png_pixels(image)), png_chunk(b"IEND", b"")]
+    chunks = [
+        png_header(image),
+        png_chunk(b"IDAT", png_pixels(image, is_repetitive)),
+        png_chunk(b"IEND", b""),
+    ]
     return b"".join(chunks)
 
 
@@ -226,13 +231,13 @@ def png_header(image: Picture) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + png_chunk(b"IHDR", header)
 
 
-def png_pixels(image: Picture) -> bytes:
+def png_pixels(image: Picture, is_repetitive: bool = False) -> bytes:
     """The compressed pixels of a picture (h, w, 4) uint8, for a PNG file.
 
     One filter (each row minus the one above) and zlib's run-length strategy: for cartoons as small as the
-    usual search through filters but for 4 %, in a fifth of the time.
+    usual search through filters but for 4 %, in a fifth of the time. is_repetitive: see `encode_png`.
     """
-    packer = zlib.compressobj(level=1, strategy=zlib.Z_RLE)
+    packer = zlib.compressobj(6) if is_repetitive else zlib.compressobj(1, strategy=zlib.Z_RLE)
     packed, above = [], np.zeros(4 * image.shape[1], dtype=np.uint8)
     for start in range(0, len(image), _PNG_ROWS):
         flat = image[start : start + _PNG_ROWS].reshape(-1, 4 * image.shape[1])

@@ -91,7 +91,7 @@ ANIMATION_FORMATS = (
         write_gif,
         repeats=True,
         max_fps=MAX_GIF_FPS,
-        encoding_share=0.5,
+        encoding_share=0.1,
     ),
     AnimationFormat(
         "APNG",
@@ -99,7 +99,6 @@ ANIMATION_FORMATS = (
         mark("An animation: all colors, soft edges, large."),
         write_apng,
         repeats=True,
-        encoding_share=0.4,
     ),
     AnimationFormat(
         "MP4",

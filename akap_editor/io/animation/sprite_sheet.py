@@ -113,6 +113,6 @@ def write_sheet(
         "scale": "1",
         "fps": fps,
     }
-    write(path, encode_png(sheet))
+    write(path, encode_png(sheet, is_repetitive=True))
     write(index_path(path), json.dumps({"frames": index, "meta": meta}, indent=1).encode())
     return columns, rows
