@@ -91,7 +91,9 @@ def edit(
         click.echo(f"No window: {error}. Replaying the bundled recording without one.")
         recording = resource("assets", "recordings", f"{FIRST_DRAWING}.akaprec")
         animation = unused_path(OUTPUT_FOLDER / f"{FIRST_DRAWING}.webp", ".png")
-        replay.replay_recording(recording, None, animation, animation.with_suffix(".png"), fps=24.0, size=480)
+        pose = animation.with_suffix(".png")
+        result = replay.replay_recording(recording, None, animation, pose, fps=24.0, size=480)
+        replay.print_replays([result], False, animation)
 
 
 def _stored_preferences() -> "Preferences":

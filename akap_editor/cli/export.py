@@ -202,21 +202,16 @@ def _export_animations(
     as_json: bool,
 ) -> None:
     """Write the keyframes of drawings as animations, as `replay` does by default."""
-    from .replay import replay_recording
+    from .replay import print_replays, replay_recording
 
     with written_path(output, suffix or output.suffix) as target:
         outputs = [target] if suffix is None else output_files(files, target, suffix)
         refuse_unnamed(outputs, target, files, overwrite)
-        for file, path in zip(files, outputs, strict=True):
-            replay_recording(
-                file,
-                None,
-                path,
-                background=background,
-                overwrite=overwrite,
-                as_json=as_json,
-                to_stderr=output == STREAM,
-            )
+        results = [
+            replay_recording(file, None, path, background=background, overwrite=overwrite)
+            for file, path in zip(files, outputs, strict=True)
+        ]
+    print_replays(results, as_json, output)
 
 
 append_formats(

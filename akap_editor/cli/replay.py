@@ -43,6 +43,7 @@ from .options import (
     overwrite_option,
     parse_color,
     progress_bar,
+    say,
     write_picture,
 )
 
@@ -135,12 +136,51 @@ def replay_command(
     """
     if (suffix is None) == (output == STREAM):
         raise InputError("--format: expected the format of an output -, which is stdout, and of no other")
+    as_json = bool(options.pop("as_json"))
     with written_path(output, suffix or "") as path:
-        options["to_stderr"] = output == STREAM
-        replay_recording(recording, drawing, path, pose, **options)  # type: ignore[arg-type]
+        result = replay_recording(recording, drawing, path, pose, **options)  # type: ignore[arg-type]
+    print_replays([result], as_json, output)
 
 
 append_formats(replay_command, _FORMATS)
+
+
+class ReplayResult(NamedTuple):
+    """An animation that was written.
+
+    facts: the record for --json, but for the files; written: a few words on it; pose: the file of the last
+    pose.
+    """
+
+    output: Path
+    facts: dict[str, object]
+    written: str
+    pose: Path | None
+
+    @property
+    def text(self) -> str:
+        """Lines for people."""
+        last = "" if self.pose is None else f"Wrote {display_text(self.pose)}, the last pose\n"
+        return f"{last}Wrote {display_text(self.output)}, {self.facts['frames']} frames, {self.written}"
+
+    @property
+    def record(self) -> dict[str, object]:
+        """The record for --json."""
+        return {**self.facts, "files": [str(path) for path in (self.output, self.pose) if path is not None]}
+
+
+def print_replays(results: Sequence[ReplayResult], as_json: bool, output: Path) -> None:
+    """Print what was written, as JSON an object for one file and a list for several.
+
+    output: the value of --output; on standard output there is only the file then.
+    """
+    if output == STREAM:
+        results = [result._replace(output=STREAM) for result in results]
+    if as_json:
+        records = [result.record for result in results]
+        say(json.dumps(records if len(records) > 1 else records[0], indent=2), output)
+    else:
+        say("\n".join(result.text for result in results), output)
 
 
 def replay_recording(
@@ -165,13 +205,8 @@ def replay_recording(
     quality: int | None = None,
     hover: bool = False,
     overwrite: bool = False,
-    as_json: bool = False,
-    to_stderr: bool = False,
-) -> None:
-    """Do what the command does. Raises InputError before anything is written.
-
-    to_stderr: whether the result is told there, because the output goes to standard output.
-    """
+) -> ReplayResult:
+    """Write what the command writes. Raises InputError before anything is written."""
     from ..render.offscreen import OffscreenRenderer
 
     _check_number("--fps", fps, 1, 120)
@@ -204,7 +239,6 @@ def replay_recording(
     is_loop = plays != 1 and loops_seamlessly(frames[0], frames[-1])
     end_frame, frames = frames[-1], playing_order(frames, ping_pong, is_loop)
     make_folder_of(output)
-    written_files = [STREAM if to_stderr else output]
     with OffscreenRenderer() as renderer:
         shots = animation_shots(chosen, frames, renderer, size, background_color)
         with _writing_bar(shots, len(frames), chosen.encoding_share) as counted:
@@ -216,15 +250,8 @@ def replay_recording(
                 end_frame.drawing, end_frame.pose, background=background_color, order=end_frame.order
             )
             write_picture(pose, picture)
-            written_files.append(pose)
-    if as_json:
-        facts = {"format": chosen.label, "frames": len(frames), "fps": fps, "plays": plays}
-        click.echo(json.dumps({**facts, "files": list(map(str, written_files))}, indent=2), err=to_stderr)
-        return
-    if pose is not None:
-        click.echo(f"Wrote {display_text(pose)}, the last pose", err=to_stderr)
-    name = STREAM if to_stderr else output
-    click.echo(f"Wrote {display_text(name)}, {len(frames)} frames, {written}", err=to_stderr)
+    facts = {"format": chosen.label, "frames": len(frames), "fps": fps, "plays": plays}
+    return ReplayResult(output, facts, written, pose)
 
 
 @contextmanager

@@ -14,12 +14,13 @@ from tests.support.command_line import assert_one_line
 
 
 def test_a_first_run_without_display_replays_the_bundled_recording(run, tmp_path, monkeypatch):
-    wanted = []
+    wanted, written = [], []
 
     def smaller(*arguments, **options):
         wanted.append((arguments, options))
         if len(wanted) == 1:
-            replay(*arguments, fps=6.0, size=96)
+            written.append(replay(*arguments, fps=6.0, size=96))
+        return written[0]
 
     replay = replaying.replay_recording
     monkeypatch.setattr(replaying, "replay_recording", smaller)

@@ -1,13 +1,16 @@
 """`akap-editor export`: what it writes, what it says, and what it refuses."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pygltflib
 import pytest
 import trimesh
 
+from akap_editor.editor.document.keyframes import Animation, Keyframe
 from akap_editor.editor.framing import CROPS, crop_box
+from akap_editor.io.akap.project import load, save
 from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import read_image, write_png
 from akap_editor.io.mesh_files.mesh_drawing import read_mesh
@@ -132,6 +135,18 @@ def test_many_files_become_files_of_one_format_in_a_folder(run, posed, tmp_path)
         f"meshes/{name}.obj" for name in (posed.stem, "bar")
     ]
     assert len(trimesh.load(tmp_path / "meshes" / "bar.obj").faces)
+
+
+def test_many_animations_are_told_as_one_list(run, posed, tmp_path):
+    document = load(posed)
+    keys = Keyframe(0.0, document.state.positions), Keyframe(0.1, document.state.positions + 2.0)
+    for name in ("walk.akap", "wave.akap"):
+        save(document.with_state(replace(document.state, animation=Animation(keys))), tmp_path / name)
+    code, said, _ = run("export", "walk.akap", "wave.akap", "-o", "films", "--format", ".gif", "--json")
+    assert code == 0
+    assert [record["files"] for record in json.loads(said)] == [["films/walk.gif"], ["films/wave.gif"]]
+    code, said, _ = run("export", "walk.akap", "wave.akap", "-o", "films", "--format", ".gif", "--overwrite")
+    assert (code, len(said.splitlines())) == (0, 2)
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from ..session.session import Session
 from .auto_key import AutoKey, KeyedValues, key_edits, keyed_values
 from .crossing_blend import CrossingBlend
 from .frames import Frame
-from .keyframe_poses import KeyframePoses, animation_crossings
+from .keyframe_poses import KeyframePoses, animation_crossings, period_of
 from .keyframe_times import EasingDrag, TimesDrag, mirror_times, within_limits
 from .keyframing.group_edits import insert_edits, reverse_edits
 from .keyframing.keyframe_clipboard import KeyframeClipboard
@@ -112,6 +112,10 @@ class KeyframePlayback(Playback):
         return self._poses.moment(session.drawing.mesh, animation, time).pose
 
     @property
+    def period(self) -> float | None:
+        return period_of(self.animation)
+
+    @property
     def content(self) -> tuple[object, ...]:
         """What the poses depend on; equal as long as they are the same."""
         session = self._editor.session
@@ -136,8 +140,8 @@ class KeyframePlayback(Playback):
     def crossed(self, time: float) -> Crossed:
         session, animation = self._editor.session, self.animation
         assert session is not None
-        mesh, pins = session.drawing.mesh, session.present.pins
-        pose, crossings = animation_crossings(self._poses, self._crossings, mesh, pins, animation, time)
+        mesh, pins, blend = session.drawing.mesh, session.present.pins, self._crossings
+        pose, crossings = animation_crossings(self._poses, blend, mesh, pins, animation, time)
         return Crossed(animation.pins_at(pins, time), pose, crossings)
 
     def plain_frame(self, time: float) -> Frame:
@@ -223,6 +227,10 @@ class KeyframePlayback(Playback):
         )
         session.preview(shown, takes_pose=True)
 
+    def _refresh(self) -> None:
+        if self.is_previewing:
+            self._show()
+
     def show_present(self) -> None:
         """Show the present pose."""
         self._present = self._last_update = None
@@ -233,11 +241,9 @@ class KeyframePlayback(Playback):
     def go_to_keyframe(self, forward: bool) -> None:
         """Move the playhead to the next keyframe or the previous one, and select it."""
         now, times = as_keyframe_time(self.time), self.animation.times
-        if forward:
-            time = next((time for time in times if time > now), None)
-        else:
-            time = next((time for time in reversed(times) if time < now), None)
-        if time is not None:
+        ahead = [time for time in times if (time > now if forward else time < now)]
+        if ahead:
+            time = ahead[0 if forward else -1]
             self.selected = frozenset({time})
             self.scrub(time)
 
@@ -288,8 +294,7 @@ class KeyframePlayback(Playback):
             _counted("Duplicate" if copy else "Reverse", times), *reverse_edits(animation, moves, copy)
         )
         self.selected = frozenset(moves.values())
-        if self.is_previewing:
-            self._show()
+        self._refresh()
 
     def insert_keyframes(
         self, label: str, keyframes: Sequence[Keyframe], pins: tuple[Pin, ...] | None = None
@@ -333,8 +338,7 @@ class KeyframePlayback(Playback):
 
     def set_easing(self, easing: str | None) -> None:
         """Set the easing after the selected keyframes, or the one at the playhead; None: the default."""
-        times = self._affected_times()
-        if times:
+        if times := self._affected_times():
             self._edit(mark("Change Easing"), SetEasing(times, easing))
 
     def set_default_easing(self, easing: str) -> None:
@@ -354,8 +358,7 @@ class KeyframePlayback(Playback):
 
     def _show_drag(self, drag: TimesDrag | EasingDrag) -> None:
         self._drag = drag
-        if self.is_previewing:
-            self._show()
+        self._refresh()
 
     def drop_keyframes(self, keep: bool = True) -> None:
         """End the drag: edit the animation as it is shown, or return to the one before the drag."""
@@ -366,8 +369,8 @@ class KeyframePlayback(Playback):
             self._edit(mark("Change Easing"), SetEasing([drag.time], drag.easing))
         elif keep and isinstance(drag, TimesDrag) and drag.changes_times:
             self._move(drag.moves, drag.copy)
-        elif self.is_previewing:
-            self._show()
+        else:
+            self._refresh()
 
     def _affected_times(self) -> list[float]:
         """Times of the selected keyframes, or of the one at the playhead, ascending."""
@@ -382,8 +385,7 @@ class KeyframePlayback(Playback):
         playhead = as_keyframe_time(self.time)
         if not copy and playhead in moves:
             self.time = moves[playhead]
-            if self.is_previewing:
-                self._show()
+            self._refresh()
 
     def _edit(self, label: str, *edits: Edit) -> None:
         session = self._editor.session
@@ -391,8 +393,7 @@ class KeyframePlayback(Playback):
             return
         session.end_preview()
         self._editor.apply(label, *edits)
-        if self.is_previewing:
-            self._show()
+        self._refresh()
 
 
 def _counted(verb: str, times: Collection[float]) -> str:

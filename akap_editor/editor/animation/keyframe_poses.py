@@ -128,7 +128,7 @@ def _intervals_around(
     """The intervals before, at and after that from the keyframe ``start``; None where the motion rests."""
     keyframes = animation.keyframes
     index, last = keyframes.index(start), len(keyframes) - 2
-    flows_on = animation.loop and _ends_as_it_begins(animation)
+    flows_on = period_of(animation) is not None
     before = index - 1 if index > 0 else last if flows_on else None
     after = index + 1 if index < last else 0 if flows_on else None
     sides = [None if each is None else _interval(animation, each) for each in (before, after)]
@@ -141,6 +141,12 @@ def _interval(animation: Animation, index: int) -> Interval:
     return Interval(start.positions, end.positions, end.time - start.time, velocity)
 
 
-def _ends_as_it_begins(animation: Animation) -> bool:
+def period_of(animation: Animation) -> float | None:
+    """Seconds after which an animation begins anew without a seam; None if it does not."""
+    if not animation.loop or len(animation.keyframes) < 2:
+        return None
     first, last = animation.keyframes[0], animation.keyframes[-1]
-    return first.time == 0 and np.allclose(first.positions, last.positions, rtol=0.0, atol=POSE_TOLERANCE)
+    is_seamless = first.time == 0 and np.allclose(
+        first.positions, last.positions, rtol=0.0, atol=POSE_TOLERANCE
+    )
+    return animation.duration if is_seamless else None

@@ -16,7 +16,7 @@ from ..document.drawing import Drawing
 from ..document.pin import Pin
 from .crossing_blend import CrossingBlend
 from .frames import Frame
-from .keyframe_poses import KeyframePoses, animation_crossings
+from .keyframe_poses import KeyframePoses, animation_crossings, period_of
 
 _CHUNK = 240  # steps that are computed from one beginning at rest
 _FADED = 1e-3  # share of a swing: what was before it does not matter
@@ -86,17 +86,25 @@ class _Chunk:
 class LooseMotion:
     """The poses of a motion with follow-through, at any times and in any order.
 
-    at: the motion itself, from 0 s on. Steps of 1/60 s are computed from a moment so long before that nothing
-    of a swing would be left, so that a pose depends on its time only; they are kept.
+    at: the motion itself, from 0 s on; period: seconds after which it begins anew without a seam, None if it
+    does not. Steps of 1/60 s are computed from a moment so long before that nothing of a swing would be left,
+    in a loop also before its beginning, so that a pose depends on its time only; they are kept.
     """
 
-    def __init__(self, at: Callable[[float], Instant]) -> None:
-        self._at = at
+    def __init__(self, at: Callable[[float], Instant], period: float | None = None) -> None:
+        self._motion, self._period = at, period
         self._swings = Swings()
         self._chunks: dict[int, _Chunk] = {}
 
     def pose(self, time: float) -> Floats | None:
-        """The pose (n, 2) that is shown at a time in seconds; None if nothing swings then."""
+        """The pose (n, 2) that is shown at a time in seconds; None if nothing swings then.
+
+        Nothing does after the end of a loop.
+        """
+        if self._period is not None:
+            if time > self._period:
+                return None
+            time %= self._period
         instant = self._at(time)
         current = self._swings.of(instant.drawing.mesh, instant.state)
         if current is None:
@@ -110,13 +118,17 @@ class LooseMotion:
             state = current.step(state, instant.positions, rest)
         return None if state.is_settled else current.shown(state, instant.positions)
 
+    def _at(self, time: float) -> Instant:
+        return self._motion(time if self._period is None else time % self._period)
+
     def _state(self, step: int) -> tuple[FollowThrough | None, SwingState | None]:
         """What swings after a step, and how."""
         number = step // _CHUNK
         chunk = self._chunks.get(number)
         if chunk is None:
             instant = self._at(number * _CHUNK * STEP_SECONDS)
-            chunk = self._chunks[number] = _Chunk(max(number * _CHUNK - _fading_steps(instant.state), 0))
+            first = number * _CHUNK - _fading_steps(instant.state)
+            chunk = self._chunks[number] = _Chunk(first if self._period is not None else max(first, 0))
             while len(self._chunks) > _CACHED_CHUNKS:
                 del self._chunks[next(iter(self._chunks))]
         while chunk.first + len(chunk.states) <= step:
@@ -191,7 +203,7 @@ class AnimationFrames:
     def __init__(self, document: Document) -> None:
         self._document = document
         self._poses, self._blend = KeyframePoses(), CrossingBlend()
-        self._loose = LooseMotion(self._instant)
+        self._loose = LooseMotion(self._instant, period_of(document.state.animation))
 
     def frame(self, time: float) -> Frame:
         """The frame at a time in seconds; there must be keyframes."""

@@ -96,10 +96,15 @@ class Playback(ABC):
     def plain_frame(self, time: float) -> Frame:
         """The frame at a time without follow-through; there must be a motion."""
 
+    @property
+    def period(self) -> float | None:
+        """Seconds after which the motion begins anew without a seam; None if it does not."""
+        return None
+
     def loose_pose(self, time: float) -> Floats | None:
         """The pose (n, 2) at a time with follow-through; None if nothing swings then."""
         if self._loose is None or self._loose[0] != self.content:
-            self._loose = self.content, LooseMotion(self.instant)
+            self._loose = self.content, LooseMotion(self.instant, self.period)
         return self._loose[1].pose(time)
 
     def frame(self, time: float) -> Frame:

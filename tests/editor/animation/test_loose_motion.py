@@ -63,6 +63,26 @@ def test_chunks_join_without_a_jump(loose: Document) -> None:
     assert second[3:5].max() < 1.5 * max(second[0], second[-1])
 
 
+def test_a_loop_swings_on_over_its_seam(loose: Document) -> None:
+    mesh = loose.drawing.mesh
+    up = Keyframe(0.21, mesh.vertices - [0.0, 12.0])
+    keyframes = Keyframe(0.0, mesh.vertices), up, Keyframe(0.5, mesh.vertices)
+    looped = loose.with_state(replace(loose.state, animation=Animation(keyframes, loop=True)))
+    frames = AnimationFrames(looped)
+    at_seam = frames.frame(0.0).pose
+    assert np.abs(at_seam - mesh.vertices).max() > 0.5, "it swings"
+    np.testing.assert_array_equal(frames.frame(0.5).pose, at_seam)
+    times = np.arange(-12, 13) / 100
+    second = np.diff([frames.frame(time % 0.5).pose for time in times.tolist()], n=2, axis=0)
+    jerks = np.abs(second).max(axis=(1, 2))
+    assert jerks[10:13].max() < 1.5 * np.median(jerks)
+    np.testing.assert_array_equal(frames.frame(0.6).pose, mesh.vertices)
+    once = AnimationFrames(
+        looped.with_state(replace(looped.state, animation=Animation(keyframes, loop=False)))
+    )
+    np.testing.assert_array_equal(once.frame(0.0).pose, mesh.vertices)
+
+
 def test_the_canvas_swings_until_it_settles_and_not_after_undo(loose: Document) -> None:
     now = [0.0]
     canvas = LooseCanvas(lambda: now[0])
