@@ -7,6 +7,7 @@ from pathlib import Path
 
 import imgui_bundle
 from imgui_bundle import ImVec2, ImVec4, imgui
+from PIL import ImageFont
 
 from ..render.overlays import Rgba
 from ..words import current_language
@@ -89,7 +90,8 @@ def load_fonts() -> None:
     folder = Path(imgui_bundle.__path__[0]) / "assets" / "fonts"
     fonts = imgui.get_io().fonts
     fonts.clear_fonts()
-    fonts.add_font_from_file_ttf(str(folder / "Roboto" / "Roboto-Regular.ttf"), FONT_SIZE)
+    roboto = folder / "Roboto" / "Roboto-Regular.ttf"
+    fonts.add_font_from_file_ttf(str(roboto), FONT_SIZE)
     icons = imgui.ImFontConfig()
     icons.merge_mode = True
     icons.glyph_offset = ImVec2(0, 1)
@@ -99,7 +101,17 @@ def load_fonts() -> None:
         other = imgui.ImFontConfig()
         other.merge_mode, other.font_no = True, number
         other.flags |= imgui.ImFontFlags_.no_load_error
-        fonts.add_font_from_file_ttf(str(path), FONT_SIZE, other)
+        # ImGui's size is that of a line, which in Chinese fonts is higher: their characters would be small
+        size = FONT_SIZE * _line_height(path, number) / _line_height(roboto, 0)
+        fonts.add_font_from_file_ttf(str(path), size, other)
+
+
+def _line_height(path: Path, number: int) -> float:
+    """The height of a line of text in a font, times its nominal size; 1 if the file cannot be read."""
+    try:
+        return sum(ImageFont.truetype(path, 1000, number).getmetrics()) / 1000
+    except OSError:
+        return 1.0
 
 
 def system_fonts() -> list[tuple[Path, int]]:

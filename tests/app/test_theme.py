@@ -1,10 +1,13 @@
 """Contrast by the formulas of WCAG 2.2, and colors as those see them who see fewer."""
 
 import itertools
+from pathlib import Path
 
+import imgui_bundle
 import numpy as np
 import pytest
 from imgui_bundle import imgui
+from PIL import ImageFont
 
 from akap_editor.app import theme
 from akap_editor.app.canvas import legend, vector_field_arrows, view_options
@@ -161,3 +164,7 @@ def test_characters_of_the_system_s_fonts_are_shown(ui):
     if not any("CJK" in name for name in names):
         pytest.skip(f"the system has no font for Chinese, only {names}")
     assert all(font.is_glyph_in_font(ord(character)) for character in "猫と한")
+    roboto = Path(imgui_bundle.__path__[0]) / "assets" / "fonts" / "Roboto" / "Roboto-Regular.ttf"
+    em = 1000 * theme.FONT_SIZE / sum(ImageFont.truetype(roboto, 1000).getmetrics())
+    width = font.get_font_baked(theme.FONT_SIZE).get_char_advance(ord("猫"))
+    assert width == pytest.approx(em, abs=0.5), "a Chinese character is an em wide, of the em of Roboto"
