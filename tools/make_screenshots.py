@@ -15,10 +15,10 @@ from pathlib import Path
 
 import numpy as np
 
-from akap_editor.app import files
+from akap_editor.app import files, theme
 from akap_editor.app.app_state import AppState
 from akap_editor.app.commands.palette import Palette
-from akap_editor.app.commands.registry import PALETTE_ITEMS, SHORTCUTS
+from akap_editor.app.commands.registry import PALETTE_ITEMS, PREFERENCES, SHORTCUTS
 from akap_editor.app.dialogs.clips import ClipsDialog
 from akap_editor.app.dialogs.export.animation import ExportAnimationDialog
 from akap_editor.app.dialogs.export.pose import ExportPoseDialog
@@ -37,6 +37,7 @@ from akap_editor.editor.tools.rotate import RING_RADIUS
 from akap_editor.io.akap.recording import read_recording
 from akap_editor.io.images import read_image, write_png
 from akap_editor.resources import resource
+from akap_editor.words import use_language
 
 FOLDER = Path("docs/images")
 SETTLE_FRAMES = 12  # until dialogs have their size and measurements their values
@@ -262,12 +263,22 @@ def animation(window: Window) -> None:
     window.state.part(ExportAnimationDialog).open(window.state)
 
 
+@shot("languages")
+def languages(window: Window) -> None:
+    """The preferences in Japanese; needs a font for it."""
+    window.state.preferences.language = "ja"
+    use_language("ja")
+    theme.load_fonts()
+    PREFERENCES.run(window.state)
+
+
 def take(window: Window, name: str, folder: Path) -> None:
     """Write one screenshot, starting from the posed elephant."""
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         imgui.internal.close_popup_to_level(0, False)
     imgui.set_window_focus(None)
     imgui.set_nav_cursor_visible(False)
+    use_language("en")
     state = window.state = AppState(
         offscreen_renderer=window.state.offscreen_renderer,
         thumbnails=window.state.thumbnails,
