@@ -7,6 +7,7 @@ from .words import mark, tr
 _TITLES = (
     *(mark("Alien"), mark("Bar"), mark("Cat"), mark("Elephant"), mark("Gingerbread")),
     *(mark("Raptor"), mark("Robot"), mark("Rope")),
+    *(mark("Hop"), mark("Nod"), mark("Tail Wag"), mark("Walk in Place"), mark("Wave")),  # clips
 )
 PUPPET_SUFFIX = ".ora"  # of drawings in layers
 _PACKAGE = Path(__file__).resolve().parent
