@@ -234,6 +234,13 @@ def test_translations_have_the_fields_of_their_texts(language):
 
 
 @pytest.mark.parametrize("language", TRANSLATED)
+def test_only_titles_of_menus_name_their_keys(language):
+    """As in 表示(V), where the title itself has no letter."""
+    named = {m.context for m in translations.translation(language) if re.search(r"\([A-Z]\)", str(m.string))}
+    assert named <= {"menu"}
+
+
+@pytest.mark.parametrize("language", TRANSLATED)
 def test_files_are_read_as_babel_reads_them(language):
     read, catalog = read_translations(po_path(language)), translations.translation(language)
     for message in catalog:

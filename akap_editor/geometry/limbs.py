@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
-from scipy.spatial import cKDTree
 
 from .mesh import TriMesh
 from .validation import Floats, Ints
@@ -55,6 +54,8 @@ def find_limbs(mesh: TriMesh) -> Limbs:
     farther (the persistence of Edelsbrunner, Letscher, Zomorodian 2002, "Topological Persistence and
     Simplification").
     """
+    from scipy.spatial import cKDTree
+
     rim = cKDTree(mesh.vertices[mesh.boundary_vertices])
     depth: Floats = rim.query(mesh.vertices)[0]
     area = np.bincount(mesh.component[mesh.faces[:, 0]], weights=mesh.rest_areas)

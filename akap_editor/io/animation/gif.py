@@ -15,9 +15,7 @@ from ...progress import announce, announced, part
 from ...words import tr
 from ..atomic import Write
 from ..images import Picture
-from .coverage import opaque_pixels
 from .frames import ENCODING, Box, PackedFrames, bounded_frames, bounding_box, frame_durations
-from .palette import ColorCounts, NearestColors, find_palette, packed_colors
 
 MAX_GIF_FPS = 50  # players show at most 50 frames per second of a GIF
 
@@ -52,6 +50,9 @@ def encode_gif(images: Iterable[Picture], fps: float, plays: int) -> bytes:
 
     fps: at most `MAX_GIF_FPS`; plays: how often it is shown, 0 for forever.
     """
+    from .coverage import opaque_pixels
+    from .palette import ColorCounts, NearestColors, find_palette, packed_colors
+
     counts, packed = ColorCounts(), PackedFrames()
     for image in images:
         colors = packed_colors(image, opaque_pixels(image))
