@@ -233,11 +233,11 @@ def test_translations_have_the_fields_of_their_texts(language):
             assert fields(text) == fields(originals[-1]), (message.id, text)
 
 
-@pytest.mark.parametrize("language", TRANSLATED)
+@pytest.mark.parametrize("language", ["ja", "zh"])
 def test_only_titles_of_menus_name_their_keys(language):
     """As in 表示(V), where the title itself has no letter."""
-    named = {m.context for m in translations.translation(language) if re.search(r"\([A-Z]\)", str(m.string))}
-    assert named <= {"menu"}
+    catalog = translations.translation(language)
+    assert {each.context for each in catalog if re.search(r"\([A-Z]\)$", str(each.string))} == {"menu"}
 
 
 @pytest.mark.parametrize("language", TRANSLATED)
