@@ -53,6 +53,16 @@ def test_named_files_exist(page, files):
     assert not unknown
 
 
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))  # absent from an sdist
+
+
+@pytest.mark.parametrize("page", [*PAGES, *WORKFLOWS], ids=lambda page: page.name)
+def test_named_targets_of_make_exist(page):
+    targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)
+    named = re.findall(r"(?:^|`|run: )make ([a-z]+)", page.read_text("utf-8"), re.MULTILINE)
+    assert set(named) <= set(targets)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_named_functions_and_classes_exist(page):
     """The last part of every name in backticks is a word of the code or of a script."""
