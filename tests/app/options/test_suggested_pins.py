@@ -5,7 +5,7 @@ from akap_editor.app.commands import registry as commands
 
 def test_the_pins_are_added_by_the_button_and_cancelled_by_the_other(ui):
     ui.menu("Edit", commands.SUGGEST_PINS.label)
-    count = len(ui.editor.tool.positions)
+    count = len(ui.editor.tool.ghosts)
     assert count > 1
     ui.do(lambda hand: hand.item_click("//Options/Cancel"))
     assert (ui.tool, ui.pins) == ("PinsIdle", ())
@@ -16,7 +16,7 @@ def test_the_pins_are_added_by_the_button_and_cancelled_by_the_other(ui):
 
 def test_enter_adds_them(ui):
     ui.menu("Edit", commands.SUGGEST_PINS.label)
-    count = len(ui.editor.tool.positions)
+    count = len(ui.editor.tool.ghosts)
     ui.key(commands.FINISH.chords[0])
     assert len(ui.pins) == count
 
@@ -24,5 +24,5 @@ def test_enter_adds_them(ui):
 def test_ghosts_are_seen(ui):
     plain = ui.screenshot()
     ui.menu("Edit", commands.SUGGEST_PINS.label)
-    x, y = map(round, ui.to_screen(ui.editor.tool.positions[0]))
+    x, y = map(round, ui.to_screen(ui.editor.tool.ghosts[0].position))
     assert (ui.screenshot()[y - 8 : y + 9, x - 8 : x + 9] != plain[y - 8 : y + 9, x - 8 : x + 9]).any()
