@@ -25,6 +25,7 @@ from akap_editor.editor.events import PinRequest
 from akap_editor.editor.tools.suggested_pins import suggest_pins
 from akap_editor.io.open_document import open_document
 from akap_editor.resources import resource
+from akap_editor.words import use_language
 from tests.support.layout_watch import watching
 from tests.support.window_driver import WindowDriver
 
@@ -224,12 +225,19 @@ def replaced_files(ui):
 
 @pytest.fixture(
     scope="module",
-    params=[(MIN_SIZE, 1.0), (MIN_SIZE, 1.5), ((1280, 800), 2.0)],
-    ids=["least", "least at 150 %", "200 %"],
+    params=[
+        *((MIN_SIZE, 1.0, language) for language in ("en", "de", "fr")),  # these two have the longest words
+        (MIN_SIZE, 1.5, "en"),
+        ((1280, 800), 2.0, "en"),
+    ],
+    ids=["least", "least, German", "least, French", "least at 150 %", "200 %"],
 )
 def module_window(request, new_window):
-    size, scale = request.param
-    return new_window(size=tuple(round(scale * side) for side in size), scale=scale)
+    size, scale, language = request.param
+    ui = new_window(size=tuple(round(scale * side) for side in size), scale=scale)
+    use_language(language)
+    yield ui
+    use_language("en")
 
 
 @pytest.mark.parametrize("name", STATES)

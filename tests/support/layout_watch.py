@@ -11,7 +11,7 @@ from imgui_bundle import ImVec2, imgui
 # Items of ImGui whose first argument is their label, with the place of the label in the item.
 _CENTERED = ("button", "small_button")
 _LEFT = ("selectable", "menu_item", "menu_item_simple", "begin_menu")
-_AFTER_SQUARE = ("checkbox", "radio_button")
+_AT_THE_END = ("checkbox", "radio_button", "input_int", "input_float")
 _TEXTS = ("text", "text_unformatted", "text_colored", "text_wrapped")
 _FIELDS = ("drag_float", "drag_int")
 _TOLERANCE = 1.0  # points
@@ -119,13 +119,15 @@ def _watched(watch: LayoutWatch, name: str, function: Callable[..., Any]) -> Cal
             text_format = next((arg for arg in args[2:] if isinstance(arg, str)), "")
             if text_format:
                 watch.note_narrow(text_format % number, high.x - low.x - 2 * padding.x)
+        elif name == "begin_combo":
+            watch.note_narrow(args[1], high.x - low.x - (high.y - low.y) - 2 * padding.x)
         elif text:
             top = (low.y + high.y - size.y) / 2
             left = low.x
             if name in _CENTERED:
                 left = max(low.x, (low.x + high.x - size.x) / 2)
                 watch.note_narrow(text, high.x - low.x - min(padding.x, 2) * 2)
-            elif name in _AFTER_SQUARE:
+            elif name in _AT_THE_END:
                 left = high.x - size.x
             watch.note(text, Box(left, top, left + size.x, top + size.y))
         return result
@@ -148,7 +150,7 @@ def watching() -> Iterator[LayoutWatch]:
             watch.note(text, Box(corner.x, corner.y, corner.x + size.x, corner.y + size.y), clip)
 
     with pytest.MonkeyPatch.context() as patch:
-        for name in (*_CENTERED, *_LEFT, *_AFTER_SQUARE, *_TEXTS, *_FIELDS):
+        for name in (*_CENTERED, *_LEFT, *_AT_THE_END, *_TEXTS, *_FIELDS, "begin_combo"):
             patch.setattr(imgui, name, _watched(watch, name, getattr(imgui, name)))
         patch.setattr(imgui.ImDrawList, "add_text", add_text)
         yield watch

@@ -87,7 +87,7 @@ def begin_well(name: str, height: float) -> None:
 
 def well_padding() -> float:
     """The room at the left and right of what is in a well, points."""
-    return 0.5 * float(imgui.get_font_size())
+    return float(round(0.5 * imgui.get_font_size()))  # whole, or else the first row is beside the others
 
 
 def draw_highlight(height: float) -> None:

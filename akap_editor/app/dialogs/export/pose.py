@@ -181,13 +181,10 @@ def _draw_framing(options: PoseExportOptions, document: Document, scale: float) 
     problem = _draw_picture_size(options, document, scale)
     widgets.label(tr("Crop"), LABEL_WIDTH * scale)
     imgui.set_next_item_width(widgets.FULL)
-    opened = imgui.begin_combo("##crop", tr(_CROPS[options.crop]))
+    names = list(_CROPS)
+    _, crop = widgets.combo("##crop", names.index(options.crop), [tr(label) for label in _CROPS.values()])
+    options.crop = names[crop]
     widgets.show_tooltip(tr(_ABOUT_CROPS))
-    if opened:
-        for name, label in _CROPS.items():
-            if imgui.selectable(tr(label), name == options.crop)[0]:
-                options.crop = name
-        imgui.end_combo()
     options.is_opaque, options.background = background_field(
         options.is_opaque, options.background, False, tr("Off: the background is transparent."), scale
     )

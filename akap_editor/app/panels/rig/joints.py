@@ -106,11 +106,11 @@ def _draw_buttons(state: AppState, selected: Joint | None) -> None:
     widgets.show_tooltip(tr("Removes the joints that are proposed and not accepted."))
     imgui.end_disabled()
     imgui.begin_disabled(selected is None)
-    if imgui.button(tr("Remove Joint"), half) and selected is not None:
+    if imgui.button(tr("Remove") + "###Remove Joint", half) and selected is not None:
         state.run_reporting_errors(lambda: gestures.remove_joints(editor, {selected.id}))
     imgui.end_disabled()
     imgui.same_line()
-    if imgui.button(tr("Propose Joints"), half):
+    if imgui.button(tr("Propose") + "###Propose Joints", half):
         widgets.run(state, PROPOSE_JOINTS)
     widgets.show_tooltip(tr("Replaces all joints by proposals, from how the layers overlap and their names."))
 

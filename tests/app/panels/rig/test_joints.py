@@ -44,7 +44,7 @@ def test_proposals_are_shown_accepted_and_cleared_in_one_step_each(rigged):
     assert all(joint.is_proposed for joint in joints(rigged))
     rigged.panel("###Clear Proposed")
     assert joints(rigged) == ()
-    rigged.panel("Propose Joints")
+    rigged.panel("###Propose Joints")
     assert len(joints(rigged)) == count
     assert labels(rigged) == ["Clear Proposed Joints", "Propose Joints"]
 
@@ -64,7 +64,7 @@ def test_kind_and_removal_of_the_selected_joint(rigged):
     choose("joint kind", "Weld")
     assert joints(rigged)[0].kind == "weld"
     assert not joints(rigged)[0].is_proposed
-    rigged.panel("Remove Joint")
+    rigged.panel("###Remove Joint")
     assert joint.id not in {each.id for each in joints(rigged)}
     assert labels(rigged) == ["Make Weld", "Remove Joint"]
 
