@@ -138,9 +138,10 @@ def frames_in(path: Path, count: int, size: tuple[int, int]) -> list[Picture]:
         command = f"-i {path} -f rawvideo -pix_fmt rgba -".split()
         data = subprocess.check_output(["ffmpeg", "-loglevel", "error", *decoder, *command])
         return list(np.frombuffer(data, np.uint8).reshape(-1, size[1], size[0], 4))
-    frames, ends = [], []
+    frames: list[Picture] = []
+    ends: list[float] = []
     with Image.open(path) as file:
-        for number in range(file.n_frames):
+        for number in range(getattr(file, "n_frames", 1)):
             file.seek(number)
             file.load()
             frames.append(np.array(file.convert("RGBA")))

@@ -5,12 +5,13 @@ from math import cos, pi, sin
 from typing import NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...deform.pose_interpolation import PoseInterpolation
 from ...geometry.area_bounds import bound_face_areas, worst_area_factor
 from ...geometry.mesh import TriMesh
 from ...geometry.operators import to_complex, to_points
-from ...geometry.validation import Complexes, Floats, Ints
+from ...geometry.validation import Complexes, Floats
 
 _T = TypeVar("_T", Floats, Complexes)
 _MAX_PAIRS = 64  # of poses, for which what was prepared is kept
@@ -89,7 +90,7 @@ class _Motion(NamedTuple):
     path: _Path
     logs: _Curve
     vertex_logs: _Curve
-    has_center: Ints
+    has_center: NDArray[np.bool_]
     totals: Complexes
     corrections: _Curve
     weights: tuple[Floats, Floats | None, Floats | None]
@@ -171,7 +172,7 @@ class PoseSpline(PoseInterpolation):
         at_end = np.where(has_center, slopes[1] * np.exp(path.vertex_rates) / totals, 1.0)
         way = path.b - path.a
         corrections = seconds * first.velocities - at_start * way, seconds * last.velocities - at_end * way
-        both = (
+        first_weights, last_weights = (
             None if each is None else self._stillness(path.distances + self._path(each).distances)
             for each in (before, after)
         )
@@ -182,7 +183,7 @@ class PoseSpline(PoseInterpolation):
             has_center,
             totals,
             _curve(0 * way, *corrections),
-            (self._stillness(path.distances), *both),
+            (self._stillness(path.distances), first_weights, last_weights),
         )
 
     def _slopes(self, left: Interval | None, right: Interval | None) -> _Slopes:

@@ -69,7 +69,8 @@ def _moving_picture(frames: PackedFrames) -> Image.Image:
             picture.paste(Image.fromarray(frames[number]))
             shown = number
 
-    picture.n_frames, picture.seek = len(frames), seek  # type: ignore[attr-defined, method-assign]
+    picture.n_frames = len(frames)  # type: ignore[attr-defined]
+    picture.seek = seek  # type: ignore[method-assign, assignment]
     return picture
 
 
