@@ -59,8 +59,9 @@ NO_JOINTS = MeshJoints(np.zeros((0, 2), dtype=np.int32), np.zeros((0, 2, 3)), np
 class JointRows:
     """The rows of joints of a mesh, and the energy Σ strength |W_a p − W_b p|².
 
-    corners, weights: (r, 6) vertices of both points, and their weights, negative for the second point;
-    strengths: (r,) λ²; is_strong: (r,) which rows close their gap, the others only resist.
+    places: (j, 2) of the joints in the rest pose. Each joint has four successive rows, its own and three on
+    the circle. corners, weights: (r, 6) vertices of both points, and their weights, negative for the second
+    point; strengths: (r,) λ²; is_strong: (r,) which rows close their gap, the others only resist.
     """
 
     def __init__(self, mesh: TriMesh, joints: MeshJoints) -> None:
@@ -83,6 +84,7 @@ class JointRows:
         self.weights: Floats = np.array(weights).reshape(-1, 6)
         self.strengths: Floats = np.array(strengths)
         self.is_strong = self.strengths == STRONG
+        self.places: Floats = places
         self._n = len(mesh.vertices)
 
     @property

@@ -12,6 +12,7 @@ from ...geometry.validation import Complexes, Floats, Indices, Ints
 from ..cholesky import SymmetricPattern
 from ..deformer import SAME_PLACE
 from ..fronts import SymbolicCholesky
+from .joint_frames import JointFrames
 from .pin_rotation import PinRotationConstraints
 from .preconditioned_cholesky import PreconditionedCholesky
 
@@ -84,6 +85,7 @@ class KillingSystem:
             entries, rows, columns = joints.entries()
             self._joint_entries, self._joint_slots = entries, self._slots(rows, columns)
             self._joint_gaps = np.zeros(len(joints.strengths), dtype=np.complex128)
+            self._joint_frames = JointFrames(mesh, joints)
         self._same_place = SAME_PLACE * mesh.length
         self._frames = _VertexFrames(mesh)
         self.set_pins(NO_POINTS)
@@ -154,6 +156,8 @@ class KillingSystem:
         if self.joints is not None:
             np.add.at(nonzeros, self._joint_slots, self._joint_entries)
         frames = self._frames(pose)
+        if self.joints is not None:
+            frames = self._joint_frames.blend(frames)
         if self._interior_system is not None and self._needs_interior:
             self._interior_system.prepare(nonzeros.take(self._inner_nonzeros), frames[self._interior])
         np.add.at(nonzeros, self._pin_slots, self._pin_entries)
