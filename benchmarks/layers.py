@@ -1,9 +1,12 @@
-"""Layers: CPU time of a step of the bundled puppet beside its flat picture, and opening of a large PSD file.
+"""Layers: CPU time of a step of a puppet beside its flat picture, and opening of a large PSD file.
 
-Run from the project's root: python benchmarks/layers.py [step | open]
-A step is timed as the median of a drag of the puppet's hand in CPU milliseconds of the thread, both drawings
-with as many vertices, the same pins and memory. The large file, 3000 x 3000 pixels with 25 layers, is opened
-in a process of its own, whose peak of memory counts.
+Run from the project's root: python benchmarks/layers.py [step | open] [--puppet FILE ...]
+A step is timed in CPU milliseconds while a pin is led around, both drawings with as many vertices, the same
+pins and memory: the median of the thread, and the mean of the process, in which another thread makes factors.
+The bundled puppet has pins at the places below; further puppets have one at the end of each limb of their
+flat picture. Then the time of adding the last pin, after which the chain between the pins is another one,
+and of the first step. The large file, 3000 x 3000 pixels with 25 layers, is opened in a process of its own,
+whose peak of memory counts.
 """
 
 import argparse
@@ -12,8 +15,10 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -25,46 +30,85 @@ from akap_editor.editor.document.rig.suggestion import suggest_joints
 from akap_editor.editor.session.edits import SetTargets
 from akap_editor.editor.session.pin_edits import add_pin
 from akap_editor.editor.session.session import Session
+from akap_editor.geometry.limbs import find_limbs
 from akap_editor.io.layers.open_layers import open_layers
 from akap_editor.layers.composite import composite
 from akap_editor.resources import bundled_puppets
 
-HELD, HAND = ((396.0, 880.0), (604.0, 880.0), (420.0, 160.0)), (846.0, 390.0)  # feet and head; a hand
-STEPS, RADIUS = 120, 60.0  # of the drag, a circle, in pixels
+Place = tuple[float, float]
+FEET, HEAD, HAND, OTHER_HAND = (
+    ((396.0, 880.0), (604.0, 880.0)),
+    (420.0, 160.0),
+    (846.0, 390.0),
+    (160.0, 766.0),
+)
+PINS: dict[str, tuple[Place, ...]] = {  # of the bundled puppet; the last one is dragged
+    "feet, head, hand": (*FEET, HEAD, HAND),
+    "hands and feet": (*FEET, OTHER_HAND, HAND),
+    "hand only": (HAND,),
+}
+STEPS, RADIUS = 120, 0.1  # of the drag, a circle, as a share of √area
 SIDE, LAYERS = 3000, 25
 
 
-def step_milliseconds(drawing: Drawing) -> float:
-    """Median CPU time of a step while the hand is led around."""
+class Drag(NamedTuple):
+    """CPU milliseconds of a drag: median step of the thread, mean step of the process; of the first ones."""
+
+    step: float
+    process_step: float
+    last_pin: float
+    first_step: float
+
+
+def measure_drag(drawing: Drawing, places: Sequence[Place]) -> Drag:
+    """Pin ``places`` of the drawing, and lead the last one around."""
     document = new_document(drawing)
     joints = tuple(replace(joint, is_proposed=False) for joint in suggest_joints(drawing))
     session = Session(document.with_state(replace(document.state, joints=joints)))
     session.begin("Drag Pins")
-    for place in HELD:
-        add_pin(session, place)
-    pin = add_pin(session, HAND)
-    assert pin is not None
-    times = []
-    for turn in np.linspace(0, 2 * np.pi, STEPS):
-        x, y = HAND[0] + RADIUS * (np.cos(turn) - 1), HAND[1] + RADIUS * np.sin(turn)
-        session.apply(SetTargets({pin: (float(x), float(y))}))
+    for place in places:
         start = time.thread_time()
+        pin = add_pin(session, place)
+        last_pin = time.thread_time() - start
+        assert pin is not None, f"no pin at {place}"
+    own, all_threads, radius = [], [], RADIUS * drawing.mesh.length
+    for turn in np.linspace(0, 2 * np.pi, STEPS):
+        x, y = places[-1][0] + radius * (np.cos(turn) - 1), places[-1][1] + radius * np.sin(turn)
+        session.apply(SetTargets({pin: (float(x), float(y))}))
+        start, start_of_all = time.thread_time(), time.process_time()
         session.step()
-        times.append(1000 * (time.thread_time() - start))
-    return float(np.median(times[10:]))
+        own.append(time.thread_time() - start)
+        all_threads.append(time.process_time() - start_of_all)
+    times = float(np.median(own[10:])), float(np.mean(all_threads[10:])), last_pin, own[1]
+    return Drag(*(1000 * seconds for seconds in times))
 
 
-def print_steps() -> None:
-    """Print the step of the puppet and of the flat picture."""
-    (path,) = bundled_puppets()
-    layered = open_layers(path)
-    flat = composite(layered)
-    for vertices in (2_000, 10_000):
-        puppet = make_drawing(layers=layered, vertices=vertices)
-        picture = make_drawing(flat, vertices=vertices)
-        layers, whole = step_milliseconds(puppet), step_milliseconds(picture)
-        ratio = layers / whole
-        print(f"{vertices:6} vertices: layers {layers:5.2f} ms, flat {whole:5.2f} ms, {ratio:.2f} times")
+def limb_ends(drawing: Drawing) -> tuple[Place, ...]:
+    """Places at the ends of the limbs of a flat drawing."""
+    places = drawing.mesh.vertices[find_limbs(drawing.mesh).tips].tolist()
+    return tuple((x, y) for x, y in places)
+
+
+def print_steps(puppets: list[str]) -> None:
+    """Print the steps of puppets and of their flat pictures."""
+    for path in [*bundled_puppets(), *puppets]:
+        layered = open_layers(path)
+        flat = composite(layered)
+        for vertices in (2_000, 10_000):
+            puppet = make_drawing(layers=layered, vertices=vertices)
+            picture = make_drawing(flat, vertices=vertices)
+            cases = PINS if path in bundled_puppets() else {"ends of limbs": limb_ends(picture)}
+            for name, places in cases.items():
+                measure_drag(puppet, places)  # loads what is compiled
+                a, b = measure_drag(puppet, places), measure_drag(picture, places)
+                print(
+                    f"{Path(path).stem:14} {vertices:6} vertices, {name:16}: layers {a.step:5.2f} ms, flat "
+                    f"{b.step:5.2f} ms, {a.step / b.step:.2f} times; of the process "
+                    f"{a.process_step:5.2f} and {b.process_step:5.2f}; "
+                    f"last pin {a.last_pin:5.1f} and {b.last_pin:4.1f}, "
+                    f"first step {a.first_step:4.1f} and {b.first_step:4.1f}",
+                    flush=True,
+                )
 
 
 def make_large_file(path: Path) -> None:
@@ -118,13 +162,14 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("part", nargs="?", choices=["step", "open"], help="by default both")
+    parser.add_argument("--puppet", action="append", default=[], help="a further drawing in layers")
     parser.add_argument("--child", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.child:
         print_child(arguments.child)
         return
     if arguments.part != "open":
-        print_steps()
+        print_steps(arguments.puppet)
     if arguments.part != "step":
         print_opening()
 
