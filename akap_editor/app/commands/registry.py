@@ -14,7 +14,7 @@ from ...editor.tools.base import IdleTool
 from ...editor.tools.suggested_pins import suggest_pins
 from ...resources import bundled_files, drawing_title
 from ...words import mark, mark_in, tr
-from .. import file_commands, files
+from .. import file_commands, files, widgets
 from ..app_state import AppState
 from ..dialogs.about import AboutDialog
 from ..dialogs.export.pose import ExportPoseDialog
@@ -397,4 +397,4 @@ def run_pressed(state: AppState) -> None:
         if not command.enabled(state):
             state.notice = tr(command.missing) or state.notice
         else:
-            state.run_reporting_errors(lambda command=command: command.run(state))  # type: ignore[misc]
+            widgets.run(state, command)

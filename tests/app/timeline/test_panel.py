@@ -7,6 +7,7 @@ import pytest
 from imgui_bundle import imgui
 from PIL import Image
 
+from akap_editor.app.commands.command import CTRL
 from akap_editor.app.dialogs.export.animation import AnimationExportOptions, export_animation
 from akap_editor.app.dialogs.take import TakeDialog
 from akap_editor.editor.session.replay import replay
@@ -51,6 +52,8 @@ def test_a_pin_dragged_at_an_earlier_moment_says_that_what_came_after_is_cut_off
     start = bent.to_screen(bent.pin_position(3))
     bent.drag(start, (start[0] + 30, start[1] + 40))
     assert bent.state.notice.startswith("Continued from an earlier moment")
+    bent.key(CTRL | imgui.Key.z)
+    assert not bent.state.notice, "it is undone"
 
 
 def test_a_drag_on_the_track_goes_back_and_forth(bent):
