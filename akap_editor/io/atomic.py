@@ -53,11 +53,11 @@ def read_file(path: str | Path, expected: str) -> bytes:
 
     Raises FileError if there is no such file, it cannot be read, or has over `MAX_FILE_BYTES`.
     """
-    try:
-        with open_file(path, expected) as file:
+    with open_file(path, expected) as file:
+        try:
             return file.read()
-    except (OSError, ValueError) as error:
-        raise FileError("open", as_path(path), os_error_reason(error)) from error
+        except OSError as error:
+            raise FileError("open", as_path(path), os_error_reason(error)) from error
 
 
 def open_file(path: str | Path, expected: str) -> BinaryIO:

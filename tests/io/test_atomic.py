@@ -210,7 +210,7 @@ def test_what_is_no_regular_file_is_refused(tmp_path):
 
 
 def test_missing_names_are_said(tmp_path):
-    with pytest.raises(InputError, match=r"^Couldn't open “.*none\.png”\. There is no such file\.$"):
+    with pytest.raises(InputError, match=r"^Couldn't open “[^“]*none\.png”\. There is no such file\.$"):
         read_file(tmp_path / "none.png", "a picture")
     with pytest.raises(InputError, match=r"^Couldn't save “.*”\. No such file or directory\.$"):
         write_atomic(tmp_path / "no folder" / "new.bin", b"")
@@ -233,5 +233,5 @@ def test_unreadable_and_oversized_files_are_refused(tmp_path, monkeypatch):
         raise PermissionError(errno.EACCES, "Permission denied")
 
     monkeypatch.setattr(Path, "open", deny)
-    with pytest.raises(InputError, match=r"^Couldn't open “.*large\.bin”\. Permission denied\.$"):
+    with pytest.raises(InputError, match=r"^Couldn't open “[^“]*large\.bin”\. Permission denied\.$"):
         read_file(path, "a picture")
