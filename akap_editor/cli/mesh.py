@@ -10,23 +10,28 @@ from typing import Any
 
 import click
 import numpy as np
+from numpy.typing import NDArray
 
 from ..display_text import display_text
-from ..editor.document.drawing import Meshing, apply_mask
+from ..editor.document.drawing import Meshing, apply_mask, make_drawing
 from ..errors import FileError, InputError, file_errors
+from ..geometry.mesh import TriMesh
 from ..geometry.validation import as_number
 from ..io.atomic import noted_reads
-from ..io.images import has_transparency, read_mask
-from ..io.layers.open_layers import LAYER_SUFFIXES
+from ..io.images import has_transparency, read_image, read_mask
+from ..io.layers.open_layers import LAYER_SUFFIXES, is_layered, left_out_notes, merging_notes, open_layers
 from ..io.mesh_files.obj_off import write_obj
-from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note, read_picture
+from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note
 from ..io.outputs import refuse_replacing, refuse_source
 from ..io.streams import named_path, written_path
+from ..layers.composite import composite
+from ..layers.layered_picture import LayeredPicture
+from ..layers.merging import movable_layers
 from ..meshing.faint import faint_share, fitting_threshold
 from ..meshing.mesher_process import MESHER_PROCESS
 from ..meshing.meshers import check_mesher
 from ..meshing.picture_mesh import mesh_picture
-from ..meshing.quality import mesh_quality
+from ..meshing.quality import mesh_quality, smallest_angles
 from ..meshing.triangulate import MAX_VERTICES, MIN_VERTICES
 from .options import (
     FILE,
@@ -60,7 +65,8 @@ class MeshRow:
     faint: share of the visible pixels that the threshold cuts off, which ``covered`` does not count;
     specks: number of islands that are too small and left out; speck_share: their share of the visible area;
     cut_out: whether the picture has transparency; seconds: from the file to the mesh; mesh: the written file;
-    notes: about layers that were merged, and what was left out.
+    notes: about what was left out; layers: of a picture in layers, the measures of each from back to front,
+    where ``covered`` counts nothing as faint. Its own measures are those of all layers together.
     """
 
     picture: str
@@ -79,6 +85,22 @@ class MeshRow:
     seconds: float
     mesh: str | None
     notes: tuple[str, ...] = ()
+    layers: tuple["LayerRow", ...] = ()
+
+
+@dataclass(frozen=True)
+class LayerRow:
+    """The mesh of one layer; name: with its groups, see `MeshQuality` for the measures."""
+
+    name: str
+    parts: int
+    holes: int
+    vertices: int
+    faces: int
+    low_angle: float
+    worst_angle: float
+    covered: float
+    outside: float
 
 
 @click.command(epilog="Example: akap-editor mesh drawings/*.png -o meshes --vertices 3000")
@@ -159,10 +181,17 @@ def measure(
         raise FileError("save", output, f"expected a name that ends in .obj, got {output.suffix or 'none'}")
     started = time.perf_counter()
     with noted_reads() as read:
-        image, notes = read_picture(picture)
+        layered = open_layers(picture) if is_layered(picture) else None
+        image = read_image(picture) if layered is None else None
         shown = read_mask(mask) if mask is not None else None
     if output is not None:
         refuse_source(output, read, overwrite)
+    if layered is not None and len(movable_layers(layered)) > 1:
+        return _measure_layers(picture, layered, shown, output, options, started)
+    notes = () if layered is None else tuple(merging_notes(layered))
+    if image is None:
+        assert layered is not None
+        image = composite(layered)
     with file_errors("mesh", picture):
         if shown is not None:
             image = apply_mask(image, shown)
@@ -186,6 +215,57 @@ def measure(
         notes=notes,
         faint=faint,
         **{**asdict(quality), "covered": quality.covered * (1 - faint)},
+    )
+
+
+def _measure_layers(
+    picture: Path,
+    layered: LayeredPicture,
+    shown: NDArray[np.uint8] | None,
+    output: Path | None,
+    options: MeshOptions,
+    started: float,
+) -> MeshRow:
+    """`measure` of a picture in layers, which are meshed as in the editor. Raises InputError."""
+    with file_errors("mesh", picture):
+        drawing = make_drawing(None, shown, layers=layered, **asdict(options))
+        seconds = time.perf_counter() - started
+        assert drawing.meshing is not None
+        mesh, level = drawing.mesh, drawing.meshing.threshold
+        if output is not None:
+            make_folder_of(output)
+            write_obj(output, mesh, drawing.size)
+        rows = []
+        for number, layer in enumerate(drawing.layers):
+            own, alpha = mesh.face_layers == number, np.pad(layer.artwork.picture[..., 3], 1)
+            used = np.flatnonzero(mesh.layers == number)
+            origin = np.subtract(layer.artwork.offset, 1)
+            part = TriMesh(mesh.vertices[used] - origin, mesh.faces[own] - used[0])
+            quality = mesh_quality(part, alpha, fitting_threshold(alpha, level))
+            rows.append((LayerRow("/".join(layer.path), **asdict(quality)), float(part.rest_areas.sum())))
+    areas = np.array([area for _, area in rows])
+    common = areas * [1 - row.outside for row, _ in rows]
+    angles = smallest_angles(mesh)
+    return MeshRow(
+        picture=str(named_path(picture)),
+        parts=sum(row.parts for row, _ in rows),
+        holes=sum(row.holes for row, _ in rows),
+        specks=0,
+        speck_share=0.0,
+        vertices=len(mesh.vertices),
+        faces=len(mesh.faces),
+        low_angle=float(np.percentile(angles, 1)),
+        worst_angle=float(angles.min()),
+        covered=float(
+            common.sum() / sum(each / row.covered for each, (row, _) in zip(common, rows, strict=True))
+        ),
+        faint=0.0,
+        outside=float(1 - common.sum() / areas.sum()),
+        cut_out=True,
+        seconds=round(seconds, 4),
+        mesh=None if output is None else str(output),
+        notes=tuple(left_out_notes(layered)),
+        layers=tuple(row for row, _ in rows),
     )
 
 
@@ -243,6 +323,12 @@ def _describe(row: MeshRow) -> str:
         f"  smallest angle  {row.worst_angle:.1f}°, 1st percentile {row.low_angle:.1f}°",
         f"  covered         {row.covered:.2%} of the visible area; {row.outside:.1%} of the mesh is outside",
         f"  time            {row.seconds:.3f} s",
+    ]
+    width = max((len(layer.name) for layer in row.layers), default=0)
+    lines += [
+        f"  {display_text(layer.name):<{width}}  {layer.vertices:>6} vertices, smallest angle "
+        f"{layer.worst_angle:4.1f}°, covered {layer.covered:7.2%}, {layer.outside:6.1%} outside"
+        for layer in row.layers
     ]
     lines += [f"  {note}" for note in row.notes]
     if row.faint >= MIN_REPORTED_SHARE:

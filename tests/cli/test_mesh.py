@@ -11,6 +11,7 @@ from akap_editor.io.images import write_png
 from akap_editor.io.mesh_files.mesh_drawing import read_mesh
 from akap_editor.meshing.meshers import MESHERS
 from tests.support.command_line import assert_one_line
+from tests.support.layered_files import ora_bytes
 from tests.support.meshers import needs_triangle
 
 
@@ -205,3 +206,28 @@ def test_the_mesher_is_chosen(run, picture):
     code, _, err = run("mesh", picture, "--mesher", "gmsh")
     assert code == 2
     assert "'gmsh' is not one of 'triangle', 'pythoncdt'" in err
+
+
+def test_a_picture_in_layers_is_measured_layer_by_layer(run, tmp_path, image):
+    disk = image.copy()
+    disk[:, 98:, 3] = 0
+    data = ora_bytes(
+        "<layer name='all' src='all.png'/><layer name='ring' src='ring.png'/>",
+        {"ring.png": disk, "all.png": image},
+        "w='130' h='90'",
+    )
+    (tmp_path / "puppet.ora").write_bytes(data)
+    code, out, err = run("mesh", tmp_path / "puppet.ora", "--json", "--vertices", 400, "-o", "puppet.obj")
+    (row,) = json.loads(out)
+    assert (code, err) == (0, "")
+    ring, both = row["layers"]
+    assert (ring["name"], ring["parts"], ring["holes"]) == ("ring", 1, 1)
+    assert (both["name"], both["parts"], both["holes"]) == ("all", 2, 1)
+    for key in ("vertices", "faces", "parts", "holes"):
+        assert row[key] == ring[key] + both[key]
+    assert row["worst_angle"] == min(ring["worst_angle"], both["worst_angle"])
+    assert min(ring["covered"], both["covered"]) <= row["covered"] <= 1
+    lines = (tmp_path / "puppet.obj").read_text("utf-8").splitlines()
+    assert sum(line.startswith("v ") for line in lines) == row["vertices"]
+    _, text, _ = run("mesh", tmp_path / "puppet.ora", "--vertices", 400)
+    assert [line.split()[0] for line in text.splitlines() if "vertices, smallest" in line] == ["ring", "all"]
