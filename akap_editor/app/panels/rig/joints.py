@@ -3,6 +3,7 @@
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ....deform.methods import get_method
 from ....editor import gestures
 from ....editor.document.rig.joint import KINDS, Joint
 from ....editor.document.rig.suggestion import suggest_joints
@@ -26,6 +27,8 @@ def draw(state: AppState, scale: float) -> None:
     """Draw the section. scale: points per design point."""
     assert state.document is not None
     joints = state.document.state.joints
+    if joints and not get_method(state.document.state.settings.method).deformer.takes_joints:
+        widgets.secondary_text(tr("With the current method, joints carry only layers without pins."))
     parts.begin_list("##joints", _ROWS)
     if not joints:
         widgets.secondary_text(tr("None. With the joint tool, click where two layers overlap."))

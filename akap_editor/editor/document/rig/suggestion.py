@@ -73,6 +73,21 @@ CLOTHES_WORDS = frozenset(
         "backpack",
     ]
 )
+SIDE_WORDS = frozenset(
+    [
+        "left",
+        "right",
+        "l",
+        "r",
+        "near",
+        "far",
+        "front",
+        "fore",
+        "back",
+        "hind",
+        "rear",
+    ]
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +129,11 @@ def _words(layer: DrawingLayer) -> set[str]:
     return set(layer.name.lower().replace("_", " ").replace("-", " ").split())
 
 
+def _are_siblings(words: set[str], others: set[str]) -> bool:
+    """Whether two names are those of limbs of one kind on different sides: a left leg and a right leg."""
+    return bool(words & others & LIMB_WORDS) and words & SIDE_WORDS != others & SIDE_WORDS
+
+
 def _tree(drawing: Drawing, raster: _Covers, numbers: list[int]) -> list[tuple[int, int]]:
     """Limbs with the layers that they hang on."""
     from scipy.ndimage import binary_dilation
@@ -148,6 +168,8 @@ def _tree(drawing: Drawing, raster: _Covers, numbers: list[int]) -> list[tuple[i
         if words[limb] & FACE_WORDS or words[carrier] & FACE_WORDS:
             fits = words[limb] & FACE_WORDS and words[carrier] & HEAD_WORDS
             affinity *= 4.0 if fits else 0.25
+        if _are_siblings(words[limb], words[carrier]):
+            affinity *= 0.1
         if words[carrier] & CLOTHES_WORDS:  # limbs come out of clothes, but hang on what wears them
             affinity *= 0.1
         larger = 1.5 if area[carrier] > area[limb] else 1.0

@@ -3,12 +3,16 @@
 from imgui_bundle import imgui  # isort: skip
 import pytest
 
+from akap_editor.app import widgets
 from akap_editor.app.canvas.rig_markers import are_shown
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.rig.suggestion import suggest_joints
+from akap_editor.editor.document.settings import Settings
 from akap_editor.editor.session.edits import SetJoints
 from tests.support.puppets import ARM, BODY, SKULL, puppet
+
+WITHOUT_JOINTS = "With the current method, joints carry only layers without pins."
 
 
 @pytest.fixture
@@ -47,6 +51,16 @@ def test_proposals_are_shown_accepted_and_cleared_in_one_step_each(rigged):
     rigged.panel("###Propose Joints")
     assert len(joints(rigged)) == count
     assert labels(rigged) == ["Clear Proposed Joints", "Propose Joints"]
+
+
+def test_a_method_without_joints_says_so(rigged, monkeypatch):
+    said, draw = set(), widgets.secondary_text
+    monkeypatch.setattr(widgets, "secondary_text", lambda text: (said.add(text), draw(text)))
+    rigged.settle()
+    assert WITHOUT_JOINTS not in said
+    rigged.state.change_settings(Settings("arap", ()))
+    rigged.settle()
+    assert WITHOUT_JOINTS in said
 
 
 def test_kind_and_removal_of_the_selected_joint(rigged):
