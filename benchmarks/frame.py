@@ -14,10 +14,12 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import argparse
+import ctypes
 import resource as system
 import subprocess
 import sys
 import time
+from typing import Any
 
 # imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
 import imgui_bundle  # noqa: F401  # isort: skip
@@ -83,8 +85,11 @@ def instrument(timer: FunctionTimer, window: Window) -> list[float]:
     timer.wrap(Session, "step_is_ready", "wait")
     timer.wrap(Renderer, "show", "upload")
     timer.wrap(Renderer, "draw", "draw")
-    # without a screen no frame is ever finished, and its commands stay in memory
-    glfw.swap_buffers = lambda _: window.ctx.finish()  # type: ignore[assignment]
+    # Without a screen no frame is ever finished, and its commands stay in memory. As in `glfw.swap_buffers`,
+    # other threads run meanwhile.
+    address: Any = glfw.get_proc_address("glFinish")
+    finish = ctypes.CFUNCTYPE(None)(address)
+    glfw.swap_buffers = lambda _: finish()  # type: ignore[assignment]
     timer.wrap(glfw, "swap_buffers", "draw")
     timer.wrap(Window, "_draw", "interface")
     steps: list[float] = []

@@ -95,7 +95,7 @@ class Window:
         if self.state.preferences.get("maximized", False):
             glfw.maximize_window(self.handle)
         self.ctx = moderngl.create_context(require=330)
-        self._scene = Scene(self.ctx)
+        self._scene = Scene(self.ctx, glfw.get_proc_address)
         self.state.offscreen_renderer = OffscreenRenderer(self.ctx)
         self.state.thumbnails = Thumbnails(self.ctx)
         self._canvas = Canvas()

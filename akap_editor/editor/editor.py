@@ -28,7 +28,8 @@ from .tools.stiffness_brush import BrushIdle
 from .tools.zoom import ZoomIdle
 
 PICK_RADIUS = 12.0  # points of the screen around a pin's center
-FRAME_BUDGET = 0.02  # seconds that a frame waits for steps
+FRAME_BUDGET = 0.02  # seconds in which a frame starts steps
+STEP_WAIT = 0.04  # seconds that a frame waits for a step if the last one did not take longer
 WHEEL_STEP = 60.0  # points of the design that a notch of the wheel pans by
 HELD_KEYS = ("space", "zoom", "alt", "shift", "h")  # keys that have a meaning while they are held
 
@@ -294,18 +295,22 @@ class Editor:
     def advance(self, budget: float = FRAME_BUDGET) -> bool:
         """Step the pose towards the pins' targets for about ``budget`` seconds; return whether it moved.
 
-        A step that takes longer stays pending, and a later call takes it over. On a SolverError the gesture
-        is cancelled, which restores the pose from before it, and the error is raised.
+        A step that takes longer stays pending, and a later call takes it over; but if steps take hardly
+        longer, the call waits, because a frame without a new pose would only delay the next one. On a
+        SolverError the gesture is cancelled, which restores the pose from before it, and the error is raised.
         """
         session = self.session
         if session is None or not session.is_moving:
             return False
-        deadline, moved, done = time.perf_counter() + budget, False, False
+        started, moved, done = time.perf_counter(), False, False
+        deadline = started + budget
+        is_worth_waiting = session.last_step is not None and session.last_step.report.seconds < STEP_WAIT
+        patience = max(budget, STEP_WAIT) if budget and is_worth_waiting else budget
         self.trails.follow(session)
         try:
             while session.is_moving and not done:
                 session.start_step(self.worker)
-                if not session.step_is_ready(deadline - time.perf_counter()):
+                if not session.step_is_ready(started + patience - time.perf_counter()):
                     break
                 seconds = session.step().report.seconds
                 moved = True

@@ -7,6 +7,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
+from .draw_calls import DrawTriangles, draw_triangles
 from .shaders import load_program
 
 
@@ -28,16 +29,26 @@ def has_same_content(first: object, second: object) -> bool:
     return bool(first == second)
 
 
-class FrameCache:
-    """Shows a picture that takes long to draw. `release` must be called in the end."""
+MIN_CHANGES = 4  # in a row, after which pictures are expected to change again
 
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
+
+class FrameCache:
+    """Shows a picture that takes long to draw. `release` must be called in the end.
+
+    While the content changes in each call, pictures are drawn without the cache, because a copy takes time.
+
+    draw_triangles: copies it, see `draw_calls`.
+    """
+
+    def __init__(self, ctx: moderngl.Context, draw_triangles: DrawTriangles = draw_triangles) -> None:
+        self._ctx, self._draw_triangles = ctx, draw_triangles
         self._copy_program = load_program(ctx, "fullscreen.vert", "copy.frag")
         self._copy_pass = ctx.vertex_array(self._copy_program, [])
         self._texture: moderngl.Texture | None = None
         self._framebuffer: moderngl.Framebuffer | None = None
-        self._content: Any = None
+        self._content: Any = None  # of the picture in the cache
+        self._last_content: Any = None  # of the picture shown last
+        self._changes = 0  # in a row
 
     def show(
         self,
@@ -57,15 +68,23 @@ class FrameCache:
             self._release_picture()
             texture = self._texture = self._ctx.texture(size, 4)
             framebuffer = self._framebuffer = self._ctx.framebuffer([texture])
+        is_changed = self._last_content is None or not has_same_content(content, self._last_content)
+        self._changes = self._changes + 1 if is_changed else 0
+        if self._changes > MIN_CHANGES:
+            self._content = self._last_content = None
+            draw(target)
+            self._last_content = content
+            return
         if self._content is None or not has_same_content(content, self._content):
-            self._content = None  # in case drawing fails
+            self._content = self._last_content = None  # in case drawing fails
             draw(framebuffer)
             self._content = content
+        self._last_content = content
         target.use()
         self._ctx.viewport, self._ctx.scissor = (0, 0, *size), None
         self._ctx.enable_only(moderngl.NOTHING)
         texture.use(0)
-        self._copy_pass.render(moderngl.TRIANGLES, vertices=3)
+        self._draw_triangles(self._copy_pass, 0, 3)
 
     def release(self) -> None:
         """Free every OpenGL object."""
@@ -77,4 +96,4 @@ class FrameCache:
         for item in (self._framebuffer, self._texture):
             if item is not None:
                 item.release()
-        self._framebuffer = self._texture = self._content = None
+        self._framebuffer = self._texture = self._content = self._last_content = None

@@ -13,6 +13,7 @@ from ..errors import InputError
 from ..geometry.validation import Floats, Ints
 from ..layers.drawing_layer import shown_layers
 from ..overlap.seams import CutMesh
+from .draw_calls import DrawTriangles, draw_triangles
 from .layer_runs import BLEND_PASSES, OVER, LayerRun, layer_runs
 from .overlays import NO_OVERLAYS, FaceColorPainter, LinePainter, Overlays, Reference, Rgba
 from .refined_cut import RefinedCut, refined_cut
@@ -47,11 +48,19 @@ class Renderer:
     The context must be current in all calls, and `release` must be called in the end. precise: use a texture
     of 16-bit floats instead of 8 bits, so that colors stay exact when an export divides them by a low alpha.
     sharp: enlarge the picture by Catmull-Rom splines and reduce it by means over pixels, instead of linear
-    interpolation; by default where a graphics card computes, not the processor.
+    interpolation; by default where a graphics card computes, not the processor. draw_triangles: draws the
+    meshes of the drawing, see `draw_calls`.
     """
 
-    def __init__(self, ctx: moderngl.Context, *, precise: bool = False, sharp: bool | None = None) -> None:
-        self._ctx = ctx
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        *,
+        precise: bool = False,
+        sharp: bool | None = None,
+        draw_triangles: DrawTriangles = draw_triangles,
+    ) -> None:
+        self._ctx, self._draw_triangles = ctx, draw_triangles
         is_software = _is_software(ctx)
         sharp = not is_software if sharp is None else sharp
         self._most_parts = SOFTWARE_PARTS if is_software and not precise else MAX_PARTS
@@ -275,7 +284,7 @@ class Renderer:
             for blending in BLEND_PASSES[run.blend]:
                 self._ctx.blend_func = blending.func
                 self._mesh_program["inverted"] = blending.inverted
-                mesh.render(vertices=3 * run.count, first=3 * run.first)
+                self._draw_triangles(mesh, 3 * run.first, 3 * run.count)
         self._mesh_program["inverted"] = False
         self._ctx.blend_func = OVER
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from akap_editor.render.frame_cache import FrameCache, has_same_content
+from akap_editor.render.frame_cache import MIN_CHANGES, FrameCache, has_same_content
 from akap_editor.render.overlays import NO_OVERLAYS, FaceColors, LineSegments, Overlays
 
 SIZE = (40, 30)
@@ -39,6 +39,7 @@ def show(ctx, cache):
 
         def draw(framebuffer):
             calls.append(color)
+            show.is_direct = framebuffer is target
             framebuffer.use()
             ctx.viewport = (0, 0, *size)
             ctx.scissor = None
@@ -81,6 +82,18 @@ def test_another_content_or_size_is_drawn(show, change):
     assert tuple(changed[0, 0]) == (255, 0, 0)
     assert tuple(show((0.0, 0.0, 1.0), **change)[0, 0]) == (255, 0, 0)
     assert len(show.calls) == 2
+
+
+def test_while_the_content_changes_in_each_call_nothing_is_copied(show):
+    for number in range(2 * MIN_CHANGES):
+        shown = show((0.0, number / 255, 1.0), replace(CONTENT, number=number))
+        assert tuple(shown[0, 0]) == (0, number, 255)
+        assert show.is_direct == (number >= MIN_CHANGES)
+    for _ in range(2):  # the first one fills the cache
+        shown = show((1.0, 0.0, 0.0), replace(CONTENT, number=number))
+        assert tuple(shown[0, 0]) == (255, 0, 0)
+        assert not show.is_direct
+    assert len(show.calls) == 2 * MIN_CHANGES + 1
 
 
 def test_after_a_failure_no_old_picture_is_shown(ctx, cache, show):

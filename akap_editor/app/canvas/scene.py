@@ -9,6 +9,7 @@ from ...editor.document.document import Document
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
 from ...overlap.seams import CutMesh
+from ...render.draw_calls import AddressOf, unlocked_draw_triangles
 from ...render.frame_cache import FrameCache
 from ...render.overlays import NO_OVERLAYS, Overlays
 from ...render.renderer import CANVAS, Background, Renderer
@@ -57,13 +58,15 @@ class SceneContent:
 class Scene:
     """Draws the scene in each frame; `release` must be called in the end.
 
-    Of a large mesh it shows the last picture again, unless the content has changed.
+    Of a large mesh it shows the last picture again, unless the content has changed. address_of: see
+    `unlocked_draw_triangles`.
     """
 
-    def __init__(self, ctx: moderngl.Context) -> None:
+    def __init__(self, ctx: moderngl.Context, address_of: AddressOf) -> None:
         self._ctx = ctx
-        self._renderer = Renderer(ctx)
-        self._cache = FrameCache(ctx)
+        draw_triangles = unlocked_draw_triangles(address_of)
+        self._renderer = Renderer(ctx, draw_triangles=draw_triangles)
+        self._cache = FrameCache(ctx, draw_triangles)
 
     def draw(self, state: AppState, size: tuple[int, int], window: tuple[int, int], scale: float) -> None:
         """Fill the screen. size, window: of it, in framebuffer pixels and in points; scale: points per design

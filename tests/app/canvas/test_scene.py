@@ -145,7 +145,8 @@ def test_a_new_overlay_is_seen_on_a_large_mesh(large, monkeypatch):
 
 
 def test_a_large_mesh_at_rest_is_drawn_once(large, draws):
-    large.screenshot()
+    for _ in range(2):  # the first one ends a series of changes
+        large.screenshot()
     count = len(draws)
     large.editor.pointer = large.to_screen((100.0, 80.0))
     large.screenshot()

@@ -2,12 +2,14 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
+from akap_editor.editor.editor import FRAME_BUDGET, STEP_WAIT
 from akap_editor.editor.session.edits import EDITS
 from akap_editor.editor.session.pin_edits import add_pin, hold_angles, remove_pins, set_depths
 from akap_editor.editor.session.stepper import INLINE, SETTLED_MOTION
@@ -59,6 +61,24 @@ def test_while_a_step_is_pending_the_pose_stays_and_the_pin_can_be_dragged(drive
         driver.advance()
         driver.editor.worker.work()
     np.testing.assert_allclose(driver.where(3), FARTHER, atol=0.25)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "patience"), [(0.001, STEP_WAIT), (0.9 * STEP_WAIT, STEP_WAIT), (STEP_WAIT, FRAME_BUDGET)]
+)
+def test_a_frame_waits_for_steps_that_take_hardly_longer(driver, monkeypatch, seconds, patience):
+    """Without it, every second frame would show an old pose."""
+    driver.editor.worker.work()
+    driver.editor.advance(0.0)
+    last, limits = driver.session.last_step, []
+    report = replace(last.report, seconds=seconds)
+    monkeypatch.setattr(type(driver.session), "last_step", replace(last, report=report))
+    monkeypatch.setattr(
+        type(driver.session), "step_is_ready", lambda _, limit=0.0: bool(limits.append(limit))
+    )
+    monkeypatch.setattr("akap_editor.editor.editor.time.perf_counter", lambda: 0.0)
+    assert not driver.editor.advance()
+    assert limits == [patience]
 
 
 def test_a_step_is_recorded_when_it_starts_and_edits_follow_it(driver):
