@@ -3,8 +3,10 @@
 import numpy as np
 
 from ..geometry.mesh import TriMesh
+from ..geometry.operators import to_complex
 from .akap.deformer import AkapDeformer
 from .akap.preconditioned_cholesky import MIN_HALF_VERTICES
+from .akap.rest_energy import SymmetricDirichlet
 
 _SIDE = int(np.sqrt(MIN_HALF_VERTICES)) + 3  # of a square whose interior, too, has factors in half precision
 _SMALL_SIDE = 3  # of a square with factors in double precision; vertices on a side
@@ -28,6 +30,10 @@ def precompile_new_mesh() -> None:
 def precompile_steps() -> None:
     """Compile what steps need if factors have half precision."""
     _step_square(_SIDE)
+    mesh = _square(_SMALL_SIDE)
+    n, m = len(mesh.vertices), len(mesh.faces)
+    energy, change = SymmetricDirichlet(mesh), np.ones((m, 2), dtype=np.complex128)
+    energy.relax(to_complex(mesh.vertices).copy(), change, 1.0, np.zeros(n, dtype=bool))
 
 
 def precompile_steps_of_small_meshes() -> None:

@@ -8,6 +8,7 @@ Eigensystems for Isotropic Distortion Energies", section 4.
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...geometry.jit import compiled
 from ...geometry.killing_matrix import Slots, Triangles, VertexBlocks, add_face
@@ -18,6 +19,10 @@ from ...geometry.validation import Complexes, Floats, Indices
 _SUFFICIENT_DECREASE = 1e-4  # share of the decrease that the slope predicts (Armijo's condition)
 _MAX_TRIES = 12  # of a line search
 _MIN_STRETCH = 0.03  # lower bound of singular values in Hessians, which otherwise cannot be factorized
+MAX_LOCAL_CHANGE = 0.03  # of a face's Jacobian in one step; beyond that, its corners are relaxed
+_MAX_RELAXED = 100  # vertices; where more faces change that much, they do so together
+_SWEEPS, _LOCAL_TRIES = 6, 8  # over the relaxed vertices; step lengths tried for each of them
+_MIN_CONVEXITY = 1e-6  # of the Hessian of a vertex: its determinant as a share of the diagonal's
 _CLOSE_TO_MINIMUM = 0.8  # a step that is at least this share of the parabola's minimum is not refined
 
 
@@ -61,6 +66,32 @@ class SymmetricDirichlet:
     def value(self, columns: Complexes, change: Complexes, step_length: float) -> float:
         """The energy of the pose with the columns J + t D: ``columns`` J and ``change`` D are (m, 2)."""
         return _value(columns, change, step_length, self._weights)
+
+    def relax(
+        self, positions: Complexes, change: Complexes, step_length: float, is_held: NDArray[np.bool_]
+    ) -> None:
+        """Move the corners of faces that a step has changed much towards the least energy around them.
+
+        A step along a direction for the whole mesh is too long where a few faces are compressed, hence stiff.
+        Without this, they would leap from one side of their minimum to the other in each step.
+
+        positions: the pose (n,) after the step, modified in place; change, step_length: as in `value`;
+        is_held: (n,) vertices that do not move.
+        """
+        shares = _relaxed_shares(len(positions), change, step_length, self._faces)
+        shares[is_held] = 0.0
+        corners = np.flatnonzero(shares)
+        if 0 < len(corners) <= _MAX_RELAXED:
+            around = np.flatnonzero((shares[self._faces] > 0).any(axis=1))
+            relaxed = positions.copy()
+            _relax(
+                relaxed,
+                corners.astype(np.uint32),
+                self._faces[around],
+                self._hats[around],
+                self._weights[around],
+            )
+            positions += shares * (relaxed - positions)
 
     def half_hessian(
         self,
@@ -120,6 +151,80 @@ def _evaluate(
         gradient[j] += of_q
         gradient[k] -= of_p + of_q
     return total, gradient, columns
+
+
+@compiled
+def _relaxed_shares(n: int, change: Complexes, step_length: float, faces: Indices) -> Floats:
+    """The share of its relaxation that each vertex takes, (n,): it grows from 0 to 1 with the change of its
+    faces, so that the pose depends on the step continuously.
+    """
+    shares = np.zeros(n)
+    for f in range(len(faces)):
+        square = step_length * step_length * (_square(change[f, 0]) + _square(change[f, 1]))
+        if square > MAX_LOCAL_CHANGE * MAX_LOCAL_CHANGE:
+            share = min(np.sqrt(square) / MAX_LOCAL_CHANGE - 1, 1.0)
+            for corner in range(3):
+                v = faces[f, corner]
+                shares[v] = max(shares[v], share)
+    return shares
+
+
+@compiled
+def _relax(positions: Complexes, corners: Indices, faces: Indices, hats: Complexes, weights: Floats) -> None:
+    """Move vertices to the least energy, by Newton's method for one after the other.
+
+    corners: (c,) the vertices; faces, hats, weights: of all faces around them.
+    """
+    for _ in range(_SWEEPS):
+        for v in corners:
+            before, slope, xx, xy, yy = _expand(v, positions, faces, hats, weights, True)
+            discriminant = xx * yy - xy * xy
+            if not (xx > 0 and discriminant > _MIN_CONVEXITY * xx * yy):
+                before, slope, xx, xy, yy = _expand(v, positions, faces, hats, weights, False)
+                discriminant = xx * yy - xy * xy
+            x, y = slope.real, slope.imag
+            step, start = complex(xy * y - yy * x, xy * x - xx * y) / discriminant, positions[v]
+            for _ in range(_LOCAL_TRIES):
+                positions[v] = start + step
+                if _expand(v, positions, faces, hats, weights, False)[0] < before:
+                    break
+                positions[v] = start
+                step *= 0.5
+
+
+@compiled
+def _expand(
+    v: int, positions: Complexes, faces: Indices, hats: Complexes, weights: Floats, is_whole: bool
+) -> tuple[float, complex, float, float, float]:
+    """The energy of the faces around a vertex, its gradient and the entries xx, xy, yy of its Hessian.
+
+    is_whole: otherwise without the part of the Hessian that may have negative eigenvalues.
+    """
+    energy, slope, xx, xy, yy = 0.0, 0j, 0.0, 0.0, 0.0
+    for f in range(len(faces)):
+        for corner in range(3):
+            if faces[f, corner] != v:
+                continue
+            last, hat, weight = positions[faces[f, 2]], hats[f, corner], weights[f]
+            p, q = positions[faces[f, 0]] - last, positions[faces[f, 1]] - last
+            a, b = hats[f, 0], hats[f, 1]
+            jx, jy = a.real * p + b.real * q, a.imag * p + b.imag * q
+            determinant, square = _cross(jx, jy), _square(jx) + _square(jy)
+            if not determinant > 0:
+                return np.inf, slope, xx, xy, yy
+            inverse = 1 / determinant
+            along, across = 1 + inverse * inverse, 2 * inverse * inverse * inverse
+            energy += weight * square * along
+            # derivatives of the square and of the determinant, which is linear in the vertex
+            s = 2 * (hat.real * jx + hat.imag * jy)
+            d = complex(hat.real * jy.imag - hat.imag * jx.imag, hat.imag * jx.real - hat.real * jy.real)
+            slope += weight * (along * s - across * square * d)
+            straight, bent = 2 * along * _square(hat), 3 * across * square * inverse
+            mixed = across if is_whole else 0.0
+            xx += weight * (straight + bent * d.real * d.real - 2 * mixed * s.real * d.real)
+            yy += weight * (straight + bent * d.imag * d.imag - 2 * mixed * s.imag * d.imag)
+            xy += weight * (bent * d.real * d.imag - mixed * (s.real * d.imag + s.imag * d.real))
+    return energy, slope, xx, xy, yy
 
 
 @compiled

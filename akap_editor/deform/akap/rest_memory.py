@@ -16,6 +16,7 @@ from .rest_energy import SymmetricDirichlet, line_search
 
 _TOLERANCE = 3e-6  # of a descent direction at every vertex, as a share of √area
 _FLIP_MARGIN = 0.9  # share of the step to the first flip that the line search may take
+_MIN_RELAXED_VERTICES = 2500  # of a mesh whose faces are relaxed; coarser ones hardly take longer without
 _MIN_SHARE = 0.05  # if the line search accepts less than this share, retry with Newton's direction
 
 
@@ -50,6 +51,12 @@ class RestMemory:
         self._is_unpinned = ~np.isin(groups, pinned)
         self._has_unpinned = bool(self._is_unpinned.any())
         self._rotation = rotation
+        self._is_held = np.zeros(len(self._mesh.vertices), dtype=bool)
+        self._is_held[self._mesh.faces[points.faces]] = True
+        if rotation is not None:
+            self._is_held[self._mesh.faces[rotation.faces]] = True
+        if self._system.joints is not None:
+            self._is_held[self._system.joints.corners] = True
 
     def descend(self, pose: Complexes, goals: PinGoals, max_step: float, is_moving: bool) -> Complexes:
         """One descent step from the pose (n,); returns the new pose (n,). Raises SolverError.
@@ -77,8 +84,10 @@ class RestMemory:
         if self._has_unpinned:
             gradient[self._is_unpinned] = 0.0
 
-        def search(direction: Complexes) -> tuple[Complexes, float]:
-            """The pose (n,) after a line search along a direction (n,), and the step length."""
+        def search(direction: Complexes) -> tuple[Complexes, float, Complexes]:
+            """The pose (n,) after a line search along a direction (n,), the step length, and the columns of
+            the whole direction.
+            """
             change, first_flip = energy.direction(columns, direction)
             pin_change = self._system.at_pins(direction)
             gap_change = joints.gaps(direction) if joints is not None else 0.0
@@ -95,12 +104,15 @@ class RestMemory:
 
             slope = dot(gradient, direction)
             step_length = line_search(value, start, slope, min(max_step, _FLIP_MARGIN * first_flip))
-            return pose + step_length * direction, step_length
+            return pose + step_length * direction, step_length, change
 
         if is_moving:
             tolerance = _TOLERANCE * self._mesh.length
-            moved, step_length = search(-0.5 * self._system.solve(gradient, tolerance, "memory"))
+            direction = -0.5 * self._system.solve(gradient, tolerance, "memory")
+            moved, step_length, change = search(direction)
             if step_length >= _MIN_SHARE * max_step:
+                if len(pose) >= _MIN_RELAXED_VERTICES:
+                    energy.relax(moved, change, step_length, self._is_held)
                 return moved
         return search(self._newton_direction(pose, columns, gradient))[0]
 

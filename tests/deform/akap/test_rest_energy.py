@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from scipy.sparse import coo_array
 
-from akap_editor.deform.akap.rest_energy import SymmetricDirichlet, line_search
+from akap_editor.deform.akap.rest_energy import MAX_LOCAL_CHANGE, SymmetricDirichlet, line_search
 from akap_editor.geometry.killing_matrix import KillingMatrix, VertexBlocks
 from akap_editor.geometry.mesh import signed_areas
 from akap_editor.geometry.operators import to_complex, to_points
+from tests.support.shapes import SHAPES
 
 
 class Energy:
@@ -192,3 +193,72 @@ def test_ascent_direction_gives_no_step():
 
 def test_result_has_one_point_for_each_vertex(mesh):
     assert to_points(Energy(mesh).gradient(to_complex(mesh.vertices))).shape == mesh.vertices.shape
+
+
+# -- relaxation of single faces ------------------------------------------------------------------------------
+
+
+SQUARE = SHAPES["square"]
+
+
+@pytest.fixture
+def leap():
+    """A step in which one inner vertex of a square moves so far that faces beside it nearly collapse.
+
+    Returns the energy, the pose after the step, the columns of the step, and the vertex.
+    """
+    n = len(SQUARE.vertices)
+    vertex = int(np.setdiff1d(np.arange(n), SQUARE.boundary_vertices)[0])
+    rest, direction = to_complex(SQUARE.vertices), np.zeros(n, dtype=np.complex128)
+    neighbors = SQUARE.edges[(SQUARE.edges == vertex).any(axis=1)].ravel()
+    away = rest[neighbors] - rest[vertex]
+    direction[vertex] = 0.6 * away[np.argmax(away.real)]
+    energy = SymmetricDirichlet(SQUARE)
+    columns = energy.evaluate(rest)[2]
+    change, first_flip = energy.direction(columns, direction)
+    assert first_flip > 1
+    return energy, rest + direction, change, vertex
+
+
+def test_a_vertex_that_has_leapt_comes_to_the_least_energy_around_it(leap):
+    energy, pose, change, vertex = leap
+    relaxed, nothing = pose.copy(), np.zeros(len(pose), dtype=bool)
+    energy.relax(relaxed, change, 1.0, nothing)
+    before, after = energy.evaluate(pose), energy.evaluate(relaxed)
+    assert after[0] < before[0]
+    assert abs(after[1][vertex]) < 0.01 * abs(before[1][vertex])
+
+
+def test_relaxation_spares_held_vertices_and_small_changes(leap):
+    energy, pose, change, vertex = leap
+    relaxed, nothing = pose.copy(), np.zeros(len(pose), dtype=bool)
+    is_held = nothing.copy()
+    is_held[vertex] = True
+    energy.relax(relaxed, change, 1.0, is_held)
+    assert relaxed[vertex] == pose[vertex]
+    relaxed = pose.copy()
+    energy.relax(relaxed, change, 1e-3, nothing)
+    np.testing.assert_array_equal(relaxed, pose)
+
+
+def test_relaxation_sets_in_gradually(leap):
+    """Two steps that differ little lead to poses that differ little."""
+    energy, pose, change, _ = leap
+    limit = MAX_LOCAL_CHANGE / np.sqrt((np.abs(change) ** 2).sum(axis=1)).max()
+    moves = []
+    for factor in (0.99, 1.01, 1.5, 3.0):
+        relaxed = pose.copy()
+        energy.relax(relaxed, change, factor * limit, np.zeros(len(pose), dtype=bool))
+        moves.append(np.abs(relaxed - pose).max())
+    assert moves[0] == 0
+    assert 0 < moves[1] < 0.02 * moves[3]
+    assert moves[1] < moves[2] < moves[3]
+
+
+def test_relaxation_turns_with_the_pose(leap):
+    energy, pose, change, _ = leap
+    motion, nothing = np.exp(0.7j), np.zeros(len(pose), dtype=bool)
+    relaxed, turned = pose.copy(), motion * pose + (3 - 40j)
+    energy.relax(relaxed, change, 1.0, nothing)
+    energy.relax(turned, motion * change, 1.0, nothing)
+    np.testing.assert_allclose(turned, motion * relaxed + (3 - 40j), atol=1e-9 * np.abs(pose).max())
