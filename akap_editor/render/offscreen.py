@@ -121,7 +121,7 @@ class OffscreenRenderer:
             self._context = standalone_context()
         with self._current():
             renderer = self._prepared_renderer(self._context)
-            renderer.show(drawing, pose, order, self.is_smooth)
+            renderer.show(drawing, pose, order, self.is_smooth, scale)
             side = min(TILE_SIZE, renderer.max_texture_size)
             picture = np.empty((height, width, 4), dtype=np.uint8)
             for top in range(0, height, side):

@@ -20,6 +20,7 @@ from ..geometry.validation import Floats, Ints
 
 MAX_PARTS = 4  # of an edge
 MAX_FACES = 160_000  # of a refined mesh
+TOLERANCE = 0.1  # pixels between a curve and the lines that are drawn for it
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,13 +28,25 @@ class Refinement:
     """How the points of a refined mesh follow from those of the mesh, (n, 2).
 
     parts: of each edge, k; smooth: (p, n) makes its places in a pose; linear: (p, n) interpolates what is
-    linear on faces, for example texture coordinates; faces: (m, k², 3) indices of its points, by face.
+    linear on faces, for example texture coordinates; faces: (m, k², 3) indices of its points, by face;
+    curvature: (2 e, n) makes the second derivatives of the curves of the edges at both ends, by their
+    parameter from 0 to 1; coarser: refinements with fewer parts of the same points, coarsest first.
     """
 
     parts: int
     smooth: sparse.csr_matrix
     linear: sparse.csr_matrix
     faces: Ints
+    curvature: sparse.csr_matrix
+    coarser: tuple["Refinement", ...] = ()
+
+    def bend(self, positions: Floats) -> float:
+        """The distance between the curves of the edges and straight lines in a pose (n, 2), at most."""
+        return float(np.linalg.norm(self.curvature @ positions, axis=1).max(initial=0.0)) / 8
+
+    def fitting(self, bend: float) -> "Refinement":
+        """The coarsest one that shows the curves within `TOLERANCE`. bend: in pixels, of the pose."""
+        return next((each for each in self.coarser if bend <= TOLERANCE * each.parts**2), self)
 
 
 def suitable_parts(mesh: TriMesh, most: int = MAX_PARTS) -> int:
@@ -53,7 +66,13 @@ def refinement(mesh: TriMesh, parts: int) -> Refinement:
     identity = sparse.identity(n, format="csr")
     smooth = sparse.vstack([identity, edge_smooth, inner_smooth], format="csr")
     linear = sparse.vstack([identity, edge_linear, inner_linear], format="csr")
-    return Refinement(parts, smooth, linear, _faces(mesh, keys, parts))
+    curvature, numbers = _edge_curvature(mesh, derivatives), _point_numbers(mesh, keys, parts)
+    coarser = tuple(
+        Refinement(fewer, smooth, linear, _faces(numbers, fewer), curvature)
+        for fewer in range(1, parts)
+        if parts % fewer == 0
+    )
+    return Refinement(parts, smooth, linear, _faces(numbers, parts), curvature, coarser)
 
 
 def _derivatives(mesh: TriMesh) -> tuple[sparse.csr_matrix, sparse.csr_matrix]:
@@ -97,6 +116,22 @@ def _edge_points(
     return smooth.tocsr(), selected(s, t)
 
 
+def _edge_curvature(
+    mesh: TriMesh, derivatives: tuple[sparse.csr_matrix, sparse.csr_matrix]
+) -> sparse.csr_matrix:
+    """Second derivatives at the starts of the edges, then at their ends; see `Refinement`."""
+    start, end = mesh.edges.T
+    along = mesh.vertices[end] - mesh.vertices[start]
+    identity = sparse.identity(len(mesh.vertices), format="csr")
+    chords = 6.0 * (identity[end] - identity[start])
+    at_start, at_end = chords, -chords
+    for axis, derivative in enumerate(derivatives):
+        tangents = [sparse.diags(along[:, axis]) @ derivative[vertices] for vertices in (start, end)]
+        at_start = at_start - 4.0 * tangents[0] - 2.0 * tangents[1]
+        at_end = at_end + 2.0 * tangents[0] + 4.0 * tangents[1]
+    return sparse.vstack([at_start, at_end], format="csr")
+
+
 def _inner_points(
     mesh: TriMesh, derivatives: tuple[sparse.csr_matrix, sparse.csr_matrix], parts: int
 ) -> tuple[sparse.csr_matrix, sparse.csr_matrix]:
@@ -131,18 +166,16 @@ def _inner_weights(parts: int) -> Floats:
     return np.array(found, dtype=np.float64).reshape(-1, 3) / parts
 
 
-def _faces(mesh: TriMesh, keys: Ints, parts: int) -> Ints:
-    """(m, parts², 3) the points of the small faces of each face."""
+def _point_numbers(mesh: TriMesh, keys: Ints, parts: int) -> Ints:
+    """(m, parts + 1, parts + 1) the points of each face by their weights of corner 1 and of corner 2."""
     n, m = len(mesh.vertices), len(mesh.faces)
-    numbers = np.empty((m, parts + 1, parts + 1), dtype=np.int64)  # by the weights of corner 1 and corner 2
+    numbers = np.empty((m, parts + 1, parts + 1), dtype=np.int64)
     numbers[:, 0, 0], numbers[:, parts, 0], numbers[:, 0, parts] = mesh.faces.T
     steps = np.arange(1, parts)
     for first, second in combinations(range(3), 2):
         a, b = mesh.faces[:, first].astype(np.int64), mesh.faces[:, second].astype(np.int64)
         edge = np.searchsorted(keys, np.minimum(a, b) * n + np.maximum(a, b))
-        at = np.where(
-            (a < b)[:, None], steps, parts - steps
-        )  # of the point at each step from first to second
+        at = np.where((a < b)[:, None], steps, parts - steps)  # of each point from first to second
         points = n + edge[:, None] * (parts - 1) + at - 1
         weights = np.zeros((parts - 1, 3), dtype=int)
         weights[:, first], weights[:, second] = parts - steps, steps
@@ -150,7 +183,12 @@ def _faces(mesh: TriMesh, keys: Ints, parts: int) -> Ints:
     inner = np.rint(_inner_weights(parts) * parts).astype(int)
     base = n + len(keys) * (parts - 1) + np.arange(m)[:, None] * len(inner)
     numbers[:, inner[:, 1], inner[:, 2]] = base + np.arange(len(inner))
-    corners = _small_faces(parts)
+    return numbers
+
+
+def _faces(numbers: Ints, parts: int) -> Ints:
+    """(m, parts², 3) the points of the small faces of each face. numbers: see `_point_numbers`."""
+    corners = _small_faces(parts) * ((numbers.shape[1] - 1) // parts)
     return numbers[:, corners[..., 0], corners[..., 1]].astype(np.int32)
 
 

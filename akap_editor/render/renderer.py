@@ -1,6 +1,7 @@
 """Draws a posed drawing and its overlays with OpenGL; the window and the exporter share it."""
 
 from dataclasses import dataclass
+from math import inf
 
 import moderngl
 import numpy as np
@@ -17,7 +18,7 @@ from .draw_calls import DrawTriangles, draw_triangles
 from .layer_runs import BLEND_PASSES, OVER, LayerRun, layer_runs
 from .overlays import NO_OVERLAYS, FaceColorPainter, LinePainter, Overlays, Reference, Rgba
 from .refined_cut import RefinedCut, refined_cut
-from .refinement import MAX_PARTS, refinement, suitable_parts
+from .refinement import MAX_PARTS, Refinement, suitable_parts
 from .shaders import View, load_program
 from .smooth_mesh import SmoothMesh
 
@@ -82,7 +83,7 @@ class Renderer:
         self._cut: CutMesh | None = None
         self._cut_positions: Floats | None = None
         self._refined_cut: RefinedCut | None = None
-        self._is_cut_smooth = False
+        self._cut_refinement: Refinement | None = None
         self._smooth: SmoothMesh | None = None
         self._shows_smooth = False
         self._cut_objects: list[moderngl.Buffer | moderngl.VertexArray] = []
@@ -96,13 +97,15 @@ class Renderer:
         positions: Floats,
         order: Ints | CutMesh | None = None,
         smooth: bool = False,
+        scale: float = inf,
     ) -> None:
         """Upload the drawing in the pose ``positions``, (n, 2) float64 in drawing units.
 
         order: (m,) the faces in drawing order, the last one in front, or the mesh cut along seams; by default
-        the order of the mesh; smooth: draw curved faces, see `refinement`, unless the pose is that of rest.
-        Arguments are compared by identity with those of the last call, and only what changed
-        is uploaded. Raises InputError if the shape of ``positions`` does not fit the drawing.
+        the order of the mesh; smooth: draw curved faces, see `refinement`, unless the pose is that of rest;
+        scale: pixels per drawing unit, so that faces whose curves nobody sees are drawn flat. Arguments are
+        compared by identity with those of the last call, and only what changed is uploaded. Raises InputError
+        if the shape of ``positions`` does not fit the drawing.
         """
         expected = drawing.mesh.vertices.shape
         if positions.shape != expected:
@@ -114,12 +117,10 @@ class Renderer:
             self._position_buffer.write(np.ascontiguousarray(positions, dtype=np.float32))
             self._positions = positions
         cut = order if isinstance(order, CutMesh) else None
-        smooth = smooth and self._parts > 1
-        if smooth and self._smooth is None:
-            self._smooth = SmoothMesh(self._ctx, self._mesh_program, drawing, self._parts)
+        refined = self._refinement_of(drawing, positions, scale) if smooth and self._parts > 1 else None
         is_cut_changed = cut is not self._cut or positions is not self._cut_positions
-        if cut is not None and (is_cut_changed or smooth != self._is_cut_smooth):
-            self._upload_cut(drawing, positions, cut, smooth)
+        if cut is not None and (is_cut_changed or refined is not self._cut_refinement):
+            self._upload_cut(drawing, positions, cut, refined)
         self._cut, self._cut_positions = cut, positions if cut is not None else None
         order = order.order if isinstance(order, CutMesh) else order
         if order is not self._order:
@@ -129,10 +130,18 @@ class Renderer:
         if order is not self._order or drawing is not self._drawing or cut is not None:
             self._arrange_layers(drawing, order, cut)
         self._order, self._drawing = order, drawing
-        is_curved = smooth and cut is None and not np.array_equal(positions, drawing.mesh.vertices)
-        self._shows_smooth = is_curved
-        if is_curved and self._smooth is not None:
+        self._shows_smooth = refined is not None and cut is None
+        if self._shows_smooth and self._smooth is not None:
             self._smooth.show(positions, order)
+
+    def _refinement_of(self, drawing: Drawing, positions: Floats, scale: float) -> Refinement | None:
+        """The refinement that shows all curves of a pose; None if flat faces do."""
+        if np.array_equal(positions, drawing.mesh.vertices):
+            return None
+        if self._smooth is None:
+            self._smooth = SmoothMesh(self._ctx, self._mesh_program, drawing, self._parts)
+        self._smooth.fit(positions, scale)
+        return self._smooth.refinement if self._smooth.refinement.parts > 1 else None
 
     def _has_uploaded(self, drawing: Drawing) -> bool:
         """Whether mesh and texture are those of a drawing; its layer list may differ."""
@@ -155,14 +164,15 @@ class Renderer:
             self._edge_buffer.write(edges.astype(np.uint32))
         self._edge_count = len(edges)
 
-    def _upload_cut(self, drawing: Drawing, positions: Floats, cut: CutMesh, smooth: bool) -> None:
+    def _upload_cut(
+        self, drawing: Drawing, positions: Floats, cut: CutMesh, refined: Refinement | None
+    ) -> None:
         """Upload a mesh cut along seams; it differs in every pose, so nothing of it is kept."""
         self._release_cut()
-        ctx, self._is_cut_smooth = self._ctx, smooth
+        ctx, self._cut_refinement = self._ctx, refined
         shown: CutMesh | RefinedCut = cut
         corners = drawing.uv.astype(np.float64)
-        if smooth and self._smooth is not None:
-            refined = refinement(drawing.mesh, self._parts)
+        if refined is not None and self._smooth is not None:
             shown = self._refined_cut = refined_cut(drawing.mesh, refined, cut)
             positions, corners = refined.smooth @ positions, self._smooth.uv
         places = ctx.buffer(np.ascontiguousarray(shown.values(positions), dtype=np.float32))

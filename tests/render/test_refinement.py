@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from akap_editor.geometry.mesh import TriMesh, signed_areas
-from akap_editor.render.refinement import MAX_FACES, MAX_PARTS, refinement, suitable_parts
+from akap_editor.render.refinement import MAX_FACES, MAX_PARTS, TOLERANCE, refinement, suitable_parts
 from tests.support.shapes import SHAPES
 
 
@@ -80,3 +80,42 @@ def test_a_fine_mesh_is_divided_less(count, expected):
         faces = range(count)
 
     assert suitable_parts(Mesh()) == expected
+
+
+@pytest.mark.parametrize("scale", [0.1, 1.0, 4.0, 16.0, 40.0])
+def test_the_coarsest_refinement_is_taken_whose_lines_are_near_the_curves(scale):
+    mesh = grid_mesh(3)
+    fine, pose = refinement(mesh, 16), bend(mesh.vertices)
+    fitting = fine.fitting(scale * fine.bend(pose))
+    start, end = (pose[each][:, None] for each in mesh.edges.T)
+    inner = (fine.smooth @ pose)[len(pose) : len(pose) + 15 * len(mesh.edges)].reshape(-1, 15, 2)
+    curves = scale * np.concatenate([start, inner, end], axis=1)  # in pixels
+
+    def distance(parts: int) -> float:
+        knots = curves[:, :: 16 // parts]
+        t = np.arange(17) * parts / 16
+        left = np.minimum(t.astype(int), parts - 1)
+        lines = knots[:, left] + (t - left)[:, None] * (knots[:, left + 1] - knots[:, left])
+        return float(np.linalg.norm(lines - curves, axis=2).max())
+
+    assert distance(fitting.parts) <= TOLERANCE
+    if fitting.parts > 1:
+        assert distance(fitting.parts // 2) > 0.3 * TOLERANCE, "it is hardly finer than needed"
+
+
+def test_coarser_refinements_have_the_same_points():
+    mesh = grid_mesh(2)
+    fine = refinement(mesh, MAX_PARTS)
+    assert [each.parts for each in fine.coarser] == [1, 2]
+    assert fine.coarser[0].faces.reshape(-1, 3).tolist() == mesh.faces.tolist()
+    for each in fine.coarser:
+        own = refinement(mesh, each.parts)
+        rest, expected = fine.linear @ mesh.vertices, own.linear @ mesh.vertices
+        np.testing.assert_allclose(rest[each.faces], expected[own.faces], atol=1e-12)
+
+
+def test_a_linear_map_needs_flat_faces_only():
+    mesh = grid_mesh(2)
+    fine = refinement(mesh, MAX_PARTS)
+    pose = mesh.vertices @ np.array([[1.2, 0.3], [-0.4, 0.9]])
+    assert fine.fitting(1000 * fine.bend(pose)).parts == 1

@@ -94,12 +94,12 @@ class Scene:
             renderer.hide()
             renderer.draw(target, content.size, (1.0, 1.0, 0.0, 0.0), background=content.background)
             return
-        renderer.show(main.drawing, main.positions, main.order, main.is_smooth)
+        self._show(main, content.size)
         renderer.draw(
             target, content.size, main.view, background=content.background, overlays=content.overlays
         )
         if comparison is not None:
-            renderer.show(comparison.drawing, comparison.positions, comparison.order, comparison.is_smooth)
+            self._show(comparison, content.size)
             renderer.draw(
                 target,
                 content.size,
@@ -107,6 +107,10 @@ class Scene:
                 background=content.background,
                 region=comparison.region,
             )
+
+    def _show(self, posed: PosedDrawing, size: tuple[int, int]) -> None:
+        scale = posed.view[0] * size[0] / 2
+        self._renderer.show(posed.drawing, posed.positions, posed.order, posed.is_smooth, scale)
 
 
 def scene_content(
