@@ -3,7 +3,7 @@
 import struct
 import warnings
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -216,37 +216,42 @@ def encode_png(image: Picture, is_repetitive: bool = False) -> bytes:
     shape or dtype.
     """
     image = as_picture(image, "image")
-    chunks = [
-        png_header(image),
-        png_chunk(b"IDAT", png_pixels(image, is_repetitive)),
-        png_chunk(b"IEND", b""),
-    ]
-    return b"".join(chunks)
+    return encode_png_bands(image.shape[1::-1], [image], is_repetitive)
 
 
-def png_header(image: Picture) -> bytes:
-    """The signature of PNG files, and the chunk that says the size of a picture (h, w, 4) uint8."""
-    height, width = image.shape[:2]
-    header = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)  # 8 bit, RGBA, not interlaced
+def encode_png_bands(size: tuple[int, ...], bands: Iterable[Picture], is_repetitive: bool = False) -> bytes:
+    """As `encode_png`, of a picture that comes in bands (h, w, 4) uint8 from top to bottom.
+
+    size: width and height of the whole.
+    """
+    pixels = png_chunk(b"IDAT", png_pixels(bands, is_repetitive))
+    return b"".join([png_header(size), pixels, png_chunk(b"IEND", b"")])
+
+
+def png_header(size: tuple[int, ...]) -> bytes:
+    """The signature of PNG files, and the chunk that says the width and height of a picture."""
+    header = struct.pack(">IIBBBBB", *size, 8, 6, 0, 0, 0)  # 8 bit, RGBA, not interlaced
     return b"\x89PNG\r\n\x1a\n" + png_chunk(b"IHDR", header)
 
 
-def png_pixels(image: Picture, is_repetitive: bool = False) -> bytes:
-    """The compressed pixels of a picture (h, w, 4) uint8, for a PNG file.
+def png_pixels(bands: Iterable[Picture], is_repetitive: bool = False) -> bytes:
+    """The compressed pixels of bands (h, w, 4) uint8 of a picture, from top to bottom, for a PNG file.
 
     One filter (each row minus the one above) and zlib's run-length strategy: for cartoons as small as the
     usual search through filters but for 4 %, in a fifth of the time. is_repetitive: see `encode_png`.
     """
     packer = zlib.compressobj(6) if is_repetitive else zlib.compressobj(1, strategy=zlib.Z_RLE)
-    packed, above = [], np.zeros(4 * image.shape[1], dtype=np.uint8)
-    for start in range(0, len(image), _PNG_ROWS):
-        flat = image[start : start + _PNG_ROWS].reshape(-1, 4 * image.shape[1])
-        rows = np.empty((len(flat), 1 + flat.shape[1]), dtype=np.uint8)
-        rows[:, 0] = 2  # filter type "up"
-        np.subtract(flat[0], above, out=rows[0, 1:])
-        np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
-        packed.append(packer.compress(rows.data))
-        above = flat[-1]
+    packed: list[bytes] = []
+    above: Picture | int = 0
+    for band in bands:
+        for start in range(0, len(band), _PNG_ROWS):
+            flat = band[start : start + _PNG_ROWS].reshape(-1, 4 * band.shape[1])
+            rows = np.empty((len(flat), 1 + flat.shape[1]), dtype=np.uint8)
+            rows[:, 0] = 2  # filter type "up"
+            np.subtract(flat[0], above, out=rows[0, 1:])
+            np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
+            packed.append(packer.compress(rows.data))
+            above = flat[-1]
     return b"".join([*packed, packer.flush()])
 
 

@@ -95,10 +95,10 @@ def encode_apng(images: Iterable[Picture], fps: float, plays: int) -> bytes:
         time = (count / Fraction(fps).limit_denominator(1001)).limit_denominator(_MOST_TICKS)
         fields = right - left, bottom - top, left, top
         control = pack(">5I2H2B", numbers, *fields, time.numerator, time.denominator, 0, 0)
-        pixels = png_pixels(image[top:bottom, left:right])
+        pixels = png_pixels([image[top:bottom, left:right]])
         chunks.append(png_chunk(b"fcTL", control))
         if before is None:
-            header = png_header(image)
+            header = png_header(image.shape[1::-1])
             chunks.append(png_chunk(b"IDAT", pixels))
             numbers += 1
         else:

@@ -3,7 +3,7 @@
 import json
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +12,8 @@ from ...display_text import display_name, display_text
 from ...errors import FileError, InputError
 from ...words import tr
 from ..atomic import Write, os_error_reason, write_atomic
-from ..images import Picture, encode_png, write_png
-from .frames import PackedFrames, bounding_box, checked_frames
+from ..images import Picture, encode_png_bands, write_png
+from .frames import Box, PackedFrames, bounding_box, checked_frames
 
 MAX_SHEET_SIDE = 16384
 GUTTER = 2  # empty pixels between frames, so that a game that scales them mixes no neighbors
@@ -87,13 +87,11 @@ def write_sheet(
                 count=len(images),
             )
         )
-    sheet = np.zeros((sheet_height, sheet_width, 4), dtype=np.uint8)
     index = []
-    for number, image in enumerate(images):
+    for number in range(len(images)):
         y, x = (
             GUTTER + at * (side + GUTTER) for at, side in zip(divmod(number, columns), (h, w), strict=True)
         )
-        sheet[y : y + h, x : x + w] = image[top:bottom, left:right]
         index.append(
             {
                 "filename": f"{display_text(path.stem)}-{number:04d}",
@@ -109,10 +107,28 @@ def write_sheet(
         "app": "akap-editor",
         "image": display_name(path),
         "format": "RGBA8888",
-        "size": {"w": sheet.shape[1], "h": sheet.shape[0]},
+        "size": {"w": sheet_width, "h": sheet_height},
         "scale": "1",
         "fps": fps,
     }
-    write(path, encode_png(sheet, is_repetitive=True))
+    bands = _bands(images, columns, (left, top, right, bottom))
+    write(path, encode_png_bands((sheet_width, sheet_height), bands, is_repetitive=True))
     write(index_path(path), json.dumps({"frames": index, "meta": meta}, indent=1).encode())
     return columns, rows
+
+
+def _bands(images: PackedFrames, columns: int, box: Box) -> Iterator[Picture]:
+    """The sheet (h, w, 4) from top to bottom: a band for each row of sprites, with the gutter above it.
+
+    box: the part of the frames that is shown.
+    """
+    left, top, right, bottom = box
+    width, height = right - left, bottom - top
+    sheet_width = columns * (width + GUTTER) + GUTTER
+    for first in range(0, len(images), columns):
+        band = np.zeros((GUTTER + height, sheet_width, 4), dtype=np.uint8)
+        for number in range(first, min(first + columns, len(images))):
+            x = GUTTER + (number - first) * (width + GUTTER)
+            band[GUTTER:, x : x + width] = images[number][top:bottom, left:right]
+        yield band
+    yield np.zeros((GUTTER, sheet_width, 4), dtype=np.uint8)
