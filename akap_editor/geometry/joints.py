@@ -69,14 +69,20 @@ class JointRows:
         components = joints.components(mesh)
         if (components[:, 0] == components[:, 1]).any():
             raise InputError("joints: expected points of two components each")
-        areas = np.bincount(mesh.component[mesh.faces[:, 0]], mesh.rest_areas)
+        face_components = mesh.component[mesh.faces[:, 0]]
+        areas = np.bincount(face_components, mesh.rest_areas)
         radii = np.minimum(_RADIUS * mesh.length, _RADIUS_OF_SMALL * np.sqrt(areas[components].min(axis=1)))
+        boxes = {
+            number: _Boxes(mesh, np.flatnonzero(face_components == number))
+            for number in np.unique(components).tolist()
+        }
         corners, weights, strengths = [], [], []
         for j, (faces, place, radius) in enumerate(zip(joints.faces, places, radii, strict=True)):
             side = STRONG if joints.is_weld[j] else WEAK
             around = [(place + radius * np.array([z.real, z.imag]), side) for z in _CIRCLE]
+            near = [boxes[number].near(place, radius) for number in components[j].tolist()]
             for point, strength in [(place, STRONG), *around]:
-                ends = [_row_end(mesh, int(face), point) for face in faces]
+                ends = [_row_end(mesh, int(face), own, point) for face, own in zip(faces, near, strict=True)]
                 corners.append(np.concatenate([ends[0][0], ends[1][0]]))
                 weights.append(np.concatenate([ends[0][1], -ends[1][1]]))
                 strengths.append(strength)
@@ -118,16 +124,30 @@ class JointRows:
         return np.tile(values, 2), np.concatenate([row, row + 1]), np.concatenate([column, column + 1])
 
 
-def _row_end(mesh: TriMesh, face: int, point: Floats) -> tuple[Ints, Floats]:
-    """Corners (3,) of the face at a point (2,) of the rest pose, on the component of ``face``, and weights.
+class _Boxes:
+    """The bounding boxes of the faces of one component of a mesh at rest."""
 
-    Outside the component, the face ``face`` is extended, so that the row is 0 at rest in any case.
+    def __init__(self, mesh: TriMesh, faces: Ints) -> None:
+        corners = mesh.vertices[mesh.faces[faces]]
+        self._faces, self._low, self._high = faces, corners.min(axis=1), corners.max(axis=1)
+
+    def near(self, place: Floats, radius: float) -> Ints:
+        """The faces whose boxes reach into the square around a circle, ascending."""
+        reach = 1.01 * radius  # rounding included
+        is_near = (self._low <= place + reach) & (self._high >= place - reach)
+        return self._faces[is_near[:, 0] & is_near[:, 1]]
+
+
+def _row_end(mesh: TriMesh, face: int, near: Ints, point: Floats) -> tuple[Ints, Floats]:
+    """Corners (3,) of the face at a point (2,) of the rest pose, one of those ``near``, and weights.
+
+    Outside all of them, the face ``face`` is extended, so that the row is 0 at rest in any case.
     """
-    own = np.flatnonzero(mesh.component[mesh.faces[:, 0]] == mesh.component[mesh.faces[face, 0]])
-    weights = barycentric(mesh.vertices[mesh.faces[own]], point)
-    best = int(weights.min(axis=1).argmax())
-    if weights[best].min() >= -1e-12:
-        return mesh.faces[own[best]], weights[best]
+    if len(near):
+        weights = barycentric(mesh.vertices[mesh.faces[near]], point)
+        best = int(weights.min(axis=1).argmax())
+        if weights[best].min() >= -1e-12:
+            return mesh.faces[near[best]], weights[best]
     return mesh.faces[face], barycentric(mesh.vertices[mesh.faces[[face]]], point)[0]
 
 
