@@ -255,6 +255,7 @@ class Window:
         self._frames_due = max(self._frames_due - 1, 0)
         framebuffer = glfw.get_framebuffer_size(self.handle)
         if 0 in framebuffer or glfw.get_window_attrib(self.handle, glfw.ICONIFIED):
+            self._has_focus = False  # so that a window that comes back looks for changed artwork
             return False
         self._is_drawing = True
         try:

@@ -2,8 +2,9 @@
 
 import os
 
+from imgui_bundle import imgui  # isort: skip
+import glfw
 import pytest
-from imgui_bundle import imgui
 
 from akap_editor.app import files
 from akap_editor.app.commands.command import CTRL
@@ -67,6 +68,19 @@ def test_a_button_offers_what_was_changed_while_the_drawing_was_open_or_closed(s
     assert is_gray(ui)
     notice_changed_artwork(ui.state)
     assert ui.state.notice == "Reloaded figure.png"
+
+
+def test_a_change_is_offered_when_a_minimized_window_comes_back(saved):
+    ui, path = saved
+    paint(path)
+    os.utime(path, (2000, 2000))
+    handle = ui.window.handle
+    glfw.iconify_window(handle)
+    ui.window.frame()
+    glfw.restore_window(handle)
+    glfw.focus_window(handle)
+    ui.window.frame()
+    assert ui.state.notice == "figure.png has changed on disk"
 
 
 def test_a_picture_that_is_gone_is_asked_for(saved, tmp_path):
