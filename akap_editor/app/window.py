@@ -94,7 +94,8 @@ class Window:
             glfw.set_window_pos(self.handle, *position)
         if self.state.preferences.get("maximized", False):
             glfw.maximize_window(self.handle)
-        self.ctx = moderngl.create_context(require=330)
+        moderngl.init_context()  # `create_context` asks GLX, if there is another context already
+        self.ctx = moderngl.get_context()
         self._scene = Scene(self.ctx, glfw.get_proc_address)
         self.state.offscreen_renderer = OffscreenRenderer(self.ctx)
         self.state.thumbnails = Thumbnails(self.ctx)
