@@ -4,18 +4,17 @@ import json
 import sys
 import time
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
-from ..deform.methods import make_deformer, parse_method
-from ..editor.document.drawing import Drawing, make_drawing
 from ..errors import InputError
-from ..geometry.distortion import distortion
 from ..geometry.validation import Floats
-from ..io.images import read_image
 from .options import bundled, parse_numbers
+
+if TYPE_CHECKING:
+    from ..editor.document.drawing import Drawing
 
 DRAWING = "elephant"
 FIXED_PINS = [(135.0, 800.0), (285.0, 795.0), (445.0, 795.0), (625.0, 800.0), (260.0, 420.0)]  # pixels
@@ -69,6 +68,10 @@ def bench(sizes: str, methods: tuple[str, ...], frames: int, as_json: bool) -> N
 
     E_area and E_angle are the distortion of areas and angles in the end; 2 is none.
     """
+    from ..deform.methods import parse_method
+    from ..editor.document.drawing import make_drawing
+    from ..io.images import read_image
+
     if not 1 <= frames <= 10_000:
         raise InputError(f"--frames: expected a number from 1 to 10000, got {frames}")
     counts = parse_numbers("--sizes", sizes, 100, 100_000)
@@ -84,8 +87,11 @@ def bench(sizes: str, methods: tuple[str, ...], frames: int, as_json: bool) -> N
     click.echo(json.dumps([asdict(row) for row in rows], indent=2) if as_json else _table(rows))
 
 
-def measure(drawing: Drawing, name: str, method: str, settings: dict[str, Any], frames: int) -> BenchRow:
+def measure(drawing: "Drawing", name: str, method: str, settings: dict[str, Any], frames: int) -> BenchRow:
     """Measure one drag of ``frames`` steps. name: the method as it was typed; settings: its parameters."""
+    from ..deform.methods import make_deformer
+    from ..geometry.distortion import distortion
+
     mesh = drawing.mesh
     points = mesh.locate([*FIXED_PINS, DRAGGED_PIN])
     started = time.perf_counter()

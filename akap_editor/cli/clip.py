@@ -7,21 +7,17 @@ from typing import TYPE_CHECKING
 import click
 
 from ..display_text import display_text
-from ..editor.animation.clips.clip import Clip, clip_from_keyframes, named_pins, pins_with_names
-from ..editor.animation.clips.retargeting import apply_clip
-from ..editor.animation.keyframing.group_edits import insert_edits
-from ..editor.document.document import Document
-from ..editor.document.keyframes import Keyframe
 from ..errors import InputError
 from ..geometry.validation import as_number
-from ..io.akap.clip import CLIP_SUFFIX, bundled_clips, bundled_pins, load_clip, save_clip
-from ..io.akap.project import PROJECT_SUFFIX, save
-from ..io.open_document import open_document
 from ..io.streams import STREAM, written_path
 from .options import FILE, INPUT, check_suffix, make_folder_of, progress_bar, say
 
 if TYPE_CHECKING:
     from click._termui_impl import ProgressBar
+
+    from ..editor.animation.clips.clip import Clip
+    from ..editor.document.document import Document
+    from ..editor.document.keyframes import Keyframe
 
 
 @click.group("clip", epilog="Example: akap-editor clip apply Wave posed.akap -o waving.akap")
@@ -43,6 +39,9 @@ def apply_command(
     clip: str, file: Path, output: Path, at: float, speed: float, repeat: int, mirror: bool
 ) -> None:
     """Make keyframes of CLIP, the name of a bundled clip or a .clip.json file, for the drawing FILE."""
+    from ..io.akap.project import PROJECT_SUFFIX, save
+    from ..io.open_document import open_document
+
     if output != STREAM:
         check_suffix(output, PROJECT_SUFFIX)
     as_number(speed, "--speed", 0.01, 100)
@@ -59,11 +58,18 @@ def apply_command(
     say(f"{display_text(output)}: {count} keyframes, {document.state.animation.duration:.2f} s", output)
 
 
-def with_clip(document: Document, clip: Clip, start: float, speed: float = 1.0, repeats: int = 1) -> Document:
+def with_clip(
+    document: "Document", clip: "Clip", start: float, speed: float = 1.0, repeats: int = 1
+) -> "Document":
     """The document with the keyframes of a clip, and the pins that a bundled drawing lacks for it.
 
     Raises InputError, SolverError.
     """
+    from ..editor.animation.clips.clip import named_pins, pins_with_names
+    from ..editor.animation.clips.retargeting import apply_clip
+    from ..editor.animation.keyframing.group_edits import insert_edits
+    from ..io.akap.clip import bundled_pins
+
     pins = document.state.pins
     if not named_pins(pins).keys() & set(clip.names):
         pins = pins_with_names(document.drawing, document.state, bundled_pins(document.drawing))
@@ -84,8 +90,10 @@ def with_clip(document: Document, clip: Clip, start: float, speed: float = 1.0, 
     return document.with_state(state)
 
 
-def _find_clip(name: str) -> Clip:
+def _find_clip(name: str) -> "Clip":
     """A bundled clip by its name, or the one in a file. Raises InputError."""
+    from ..io.akap.clip import CLIP_SUFFIX, bundled_clips, load_clip
+
     bundled = {clip.name.lower(): clip for clip in bundled_clips()}
     if name.lower() in bundled:
         return bundled[name.lower()]
@@ -105,6 +113,10 @@ def _find_clip(name: str) -> Clip:
 @click.option("--to", "end", type=float, metavar="SECONDS", help="Leave out later keyframes.")
 def save_command(file: Path, output: Path, name: str | None, start: float | None, end: float | None) -> None:
     """Save the motion of the named pins of FILE through its keyframes as a clip."""
+    from ..editor.animation.clips.clip import clip_from_keyframes
+    from ..io.akap.clip import CLIP_SUFFIX, save_clip
+    from ..io.open_document import open_document
+
     if output != STREAM:
         check_suffix(output, CLIP_SUFFIX)
     document = open_document(file)
@@ -123,6 +135,8 @@ def save_command(file: Path, output: Path, name: str | None, start: float | None
 @clip_group.command("list")
 def list_command() -> None:
     """List the bundled clips with their pins."""
+    from ..io.akap.clip import bundled_clips
+
     clips = bundled_clips()
     width = max(len(clip.name) for clip in clips)
     for clip in clips:

@@ -3,22 +3,21 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
-from ..deform.methods import compared_methods, parse_method
 from ..display_text import display_text
-from ..editor.document.drawing import Drawing, Meshing, make_drawing, remesh_layered_drawing
-from ..editor.session.recording import Recording
 from ..errors import InputError, file_errors
-from ..geometry.distortion import distortion
-from ..io.akap.recording import read_recording, recorded_drawing
 from ..io.atomic import write_atomic
 from ..io.outputs import refuse_replacing
 from ..meshing.meshers import nearest_mesher
-from .options import FILE, make_folder_of, overwrite_option, parse_numbers, progress_bar
+from .options import COMPARED_METHODS, FILE, make_folder_of, overwrite_option, parse_numbers, progress_bar
+
+if TYPE_CHECKING:
+    from ..editor.document.drawing import Drawing
+    from ..editor.session.recording import Recording
 
 
 @click.command(
@@ -32,7 +31,7 @@ from .options import FILE, make_folder_of, overwrite_option, parse_numbers, prog
     multiple=True,
     metavar="METHOD",
     help="Methods, separated by spaces, with parameters after a colon: arap:converge. Can be repeated. "
-    f"By default {' '.join(compared_methods())}.",
+    f"By default {' '.join(COMPARED_METHODS)}.",
 )
 @click.option(
     "--vertices",
@@ -45,6 +44,9 @@ def compare_command(
     recordings: tuple[Path, ...], output: Path, methods: tuple[str, ...], vertices: str, overwrite: bool
 ) -> None:
     """Replay recordings with several methods and write a report: index.html and comparison.json."""
+    from ..deform.methods import compared_methods, parse_method
+    from ..io.akap.recording import read_recording, recorded_drawing
+
     specs = list(dict.fromkeys(" ".join(methods).split())) or compared_methods()
     for spec in specs:
         parse_method(spec)
@@ -84,8 +86,8 @@ def _import_report() -> Any:
 
 def _run_methods(
     path: Path,
-    recording: Recording,
-    drawing: Drawing,
+    recording: "Recording",
+    drawing: "Drawing",
     specs: Sequence[str],
     sizes: Sequence[int],
     count_runs: Callable[[int], None],
@@ -96,6 +98,8 @@ def _run_methods(
     """
     from ..compare.report import Model
     from ..compare.run import replay_method, run
+    from ..editor.document.drawing import Meshing, make_drawing, remesh_layered_drawing
+    from ..geometry.distortion import distortion
 
     runs, finer = [], []
     mesher = None if drawing.meshing is None else nearest_mesher(drawing.meshing.mesher)

@@ -9,8 +9,6 @@ import click
 
 from ..desktop.integration import data_folder, integrate, program_command, remove_integration
 from ..errors import FileError, InputError
-from ..io.file_thumbnail import make_thumbnail
-from ..io.images import write_png
 from ..io.outputs import same_file
 from ..io.streams import written_path
 from .options import FILE, INPUT
@@ -39,6 +37,9 @@ def integrate_command(remove: bool) -> None:
 @click.option("--size", default=256, show_default=True, help="Longest side in pixels, at most.")
 def thumbnail(file: Path, output: Path, size: int) -> None:
     """Write a thumbnail of FILE, a drawing or recording, as the PNG file OUTPUT."""
+    from ..io.file_thumbnail import make_thumbnail
+    from ..io.images import write_png
+
     if not 1 <= size <= MAX_SIDE:
         raise InputError(f"--size: expected a number from 1 to {MAX_SIDE}, got {size}")
     picture = make_thumbnail(file, size)

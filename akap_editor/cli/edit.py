@@ -7,11 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..editor.document.document import Document
 from ..errors import DisplayError, InputError
-from ..io.akap.autosave import Autosave
-from ..io.akap.recording import RECORDING_SUFFIX
-from ..io.open_document import open_document
 from ..io.outputs import unused_path
 from ..resources import bundled_files, resource
 from ..words import use_language
@@ -20,6 +16,7 @@ from .options import FILE, bundled, check_threshold, merge_layers_option, mesher
 
 if TYPE_CHECKING:
     from ..app.preferences import Preferences
+    from ..editor.document.document import Document
 
 FIRST_DRAWING = "elephant"
 OUTPUT_FOLDER = Path("out")
@@ -61,6 +58,9 @@ def edit(
 
     Without a display and without FILE, a bundled recording is replayed offscreen instead.
     """
+    from ..io.akap.recording import RECORDING_SUFFIX
+    from ..io.open_document import open_document
+
     _check_arguments(file, mask, name)
     preferences = _stored_preferences()
     use_language(preferences.language)  # that of errors, which the window shows
@@ -111,12 +111,14 @@ def _check_arguments(file: Path | None, mask: Path | None, name: str | None) -> 
         raise InputError(f"--mask: expected a FILE that is to be cut out, got only the mask {mask}")
 
 
-def open_window(document: Document | None, problem: str, recording: Path | None, file: Path | None) -> None:
+def open_window(document: "Document | None", problem: str, recording: Path | None, file: Path | None) -> None:
     """Open the window and stay until it is closed. Raises DisplayError if that is not possible.
 
     problem: shown as an error, e.g. that a file could not be opened; recording: replayed in the window, which
     shows the progress; file: of the document, if it has one.
     """
+    from ..io.akap.autosave import Autosave
+
     needs_display = sys.platform.startswith("linux")
     if needs_display and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise DisplayError("there is no display")

@@ -4,18 +4,18 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from ..display_text import display_name, display_text
 from ..editor.framing import crop_box, output_size
 from ..errors import InputError
-from ..io.animation.formats import ANIMATION_SUFFIXES
-from ..io.export import EXPORT_FORMATS, ExportFormat, ExportOptions, export, format_of
-from ..io.open_document import open_document, opening_notes
 from ..io.outputs import refuse_source
 from ..io.streams import STREAM, written_path
 from .options import (
+    ANIMATION_ENDINGS,
+    EXPORT_LABELS,
     FILE,
     INPUT,
     append_formats,
@@ -32,6 +32,9 @@ from .options import (
     say,
     threshold_option,
 )
+
+if TYPE_CHECKING:
+    from ..io.export import ExportFormat, ExportOptions
 
 
 @dataclass(frozen=True)
@@ -62,13 +65,15 @@ class ExportResult:
 def export_file(
     file: Path,
     output: Path,
-    options: ExportOptions,
+    options: "ExportOptions",
     threshold: float | None = None,
     overwrite: bool = False,
     mesher: str | None = None,
     merge_layers: bool = False,
 ) -> ExportResult:
     """Export a drawing or picture. Raises InputError."""
+    from ..io.export import export, format_of
+    from ..io.open_document import open_document, opening_notes
     from ..render.offscreen import OffscreenRenderer
 
     chosen = format_of(output)
@@ -120,7 +125,7 @@ def print_results(results: list[ExportResult], as_json: bool, output: Path) -> N
 @click.option(
     "--format",
     "suffix",
-    type=click.Choice([*(each.suffix for each in EXPORT_FORMATS), *ANIMATION_SUFFIXES]),
+    type=click.Choice([*EXPORT_LABELS, *ANIMATION_ENDINGS]),
     help="Ending of the files in the folder, or format on stdout.",
 )
 @framing_options
@@ -153,11 +158,13 @@ def export_command(
     as_json: bool,
 ) -> None:
     """Export FILE, a saved drawing or a picture, for other programs."""
+    from ..io.export import format_of
+
     if suffix is None and (len(files) > 1 or output.is_dir() or output == STREAM):
         raise InputError("--format: expected the ending of the files in the folder, or on stdout, got none")
     refuse_stream_of_several(files, output)
     given = {"--scale": scale, "--crop": crop, "--rest": rest or None, "--textured": textured or None}
-    if (suffix or output.suffix.lower()) in ANIMATION_SUFFIXES:
+    if (suffix or output.suffix.lower()) in ANIMATION_ENDINGS:
         _refuse_options({**given, "--z-order": z_order, "--threshold": threshold, "--mesher": mesher})
         _export_animations(files, output, suffix, background, overwrite, as_json)
         return
@@ -176,7 +183,7 @@ def export_command(
     print_results(results, as_json, output)
 
 
-def _check_options(chosen: ExportFormat, given: Mapping[str, object], z_order: bool | None) -> None:
+def _check_options(chosen: "ExportFormat", given: Mapping[str, object], z_order: bool | None) -> None:
     """Raise InputError if an option is given that the format does not have."""
     for name in ("--scale", "--background", "--crop"):
         if given[name] is not None and not chosen.uses_framing:
@@ -217,7 +224,7 @@ def _export_animations(
 append_formats(
     export_command,
     [
-        *((each.suffix, each.label) for each in EXPORT_FORMATS),
-        (", ".join(ANIMATION_SUFFIXES), "the keyframes as an animation, see `replay`"),
+        *EXPORT_LABELS.items(),
+        (", ".join(ANIMATION_ENDINGS), "the keyframes as an animation, see `replay`"),
     ],
 )

@@ -7,7 +7,6 @@ from typing import Any
 import click
 
 from ..display_text import display_text
-from ..io.inspection import inspect
 from ..io.streams import named_path
 from .options import INPUT
 
@@ -21,6 +20,8 @@ def info(file: Path, as_json: bool) -> None:
 
     The exit code is 1 if it is not sound.
     """
+    from ..io.inspection import inspect
+
     inspection = inspect(file)
     if as_json:
         record = {

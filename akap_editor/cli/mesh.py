@@ -6,36 +6,24 @@ import time
 from collections import Counter
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 from numpy.typing import NDArray
 
 from ..display_text import display_text
-from ..editor.document.drawing import Meshing, apply_mask, make_drawing
 from ..errors import FileError, InputError, file_errors
-from ..geometry.mesh import TriMesh
 from ..geometry.validation import as_number
 from ..io.atomic import noted_reads
-from ..io.images import has_transparency, read_image, read_mask
-from ..io.layers.open_layers import LAYER_SUFFIXES, is_layered, left_out_notes, merging_notes, open_layers
-from ..io.mesh_files.obj_off import write_obj
-from ..io.open_document import MIN_REPORTED_SHARE, PICTURE_SUFFIXES, faint_note
 from ..io.outputs import refuse_replacing, refuse_source
 from ..io.streams import named_path, written_path
-from ..layers.composite import composite
-from ..layers.layered_picture import LayeredPicture
-from ..layers.merging import movable_layers
-from ..meshing.faint import faint_share, fitting_threshold
-from ..meshing.mesher_process import MESHER_PROCESS
 from ..meshing.meshers import check_mesher
-from ..meshing.picture_mesh import mesh_picture
-from ..meshing.quality import mesh_quality, smallest_angles
-from ..meshing.triangulate import MAX_VERTICES, MIN_VERTICES
 from .options import (
     FILE,
     INPUT,
+    MESH_MARGIN,
+    MESH_VERTICES,
     check_threshold,
     make_folder_of,
     mesher_option,
@@ -44,6 +32,9 @@ from .options import (
     say,
     threshold_option,
 )
+
+if TYPE_CHECKING:
+    from ..layers.layered_picture import LayeredPicture
 
 MAX_EXPANSION = 1000.0  # pixels
 
@@ -111,10 +102,10 @@ class LayerRow:
     type=FILE,
     help="OBJ file to write, or to replace; for several pictures, a folder; - for stdout.",
 )
-@click.option("--vertices", default=Meshing.vertices, show_default=True, help="Number of vertices.")
+@click.option("--vertices", default=MESH_VERTICES, show_default=True, help="Number of vertices.")
 @click.option(
     "--expand",
-    default=Meshing.expand,
+    default=MESH_MARGIN,
     show_default=True,
     metavar="PX",
     help="Margin in pixels by which the outline moves outwards.",
@@ -141,6 +132,9 @@ def mesh(
 
     Of several pictures, those that fail are reported and skipped; the exit code is then 1.
     """
+    from ..meshing.mesher_process import MESHER_PROCESS
+    from ..meshing.triangulate import MAX_VERTICES, MIN_VERTICES
+
     as_number(vertices, "--vertices", MIN_VERTICES, MAX_VERTICES)
     as_number(expand, "--expand", 0, MAX_EXPANSION)
     options = MeshOptions(vertices, expand, check_threshold(threshold), check_mesher(mesher))
@@ -177,6 +171,16 @@ def measure(
     overwrite: bool = False,
 ) -> MeshRow:
     """Make and measure the mesh of one picture; write it if ``output`` is given. Raises InputError."""
+    from ..editor.document.drawing import apply_mask
+    from ..io.images import has_transparency, read_image, read_mask
+    from ..io.layers.open_layers import is_layered, merging_notes, open_layers
+    from ..io.mesh_files.obj_off import write_obj
+    from ..layers.composite import composite
+    from ..layers.merging import movable_layers
+    from ..meshing.faint import faint_share, fitting_threshold
+    from ..meshing.picture_mesh import mesh_picture
+    from ..meshing.quality import mesh_quality
+
     if output is not None and output.suffix.lower() != ".obj":
         raise FileError("save", output, f"expected a name that ends in .obj, got {output.suffix or 'none'}")
     started = time.perf_counter()
@@ -220,13 +224,20 @@ def measure(
 
 def _measure_layers(
     picture: Path,
-    layered: LayeredPicture,
+    layered: "LayeredPicture",
     shown: NDArray[np.uint8] | None,
     output: Path | None,
     options: MeshOptions,
     started: float,
 ) -> MeshRow:
     """`measure` of a picture in layers, which are meshed as in the editor. Raises InputError."""
+    from ..editor.document.drawing import make_drawing
+    from ..geometry.mesh import TriMesh
+    from ..io.layers.open_layers import left_out_notes
+    from ..io.mesh_files.obj_off import write_obj
+    from ..meshing.faint import fitting_threshold
+    from ..meshing.quality import mesh_quality, smallest_angles
+
     with file_errors("mesh", picture):
         drawing = make_drawing(None, shown, layers=layered, **asdict(options))
         seconds = time.perf_counter() - started
@@ -271,6 +282,9 @@ def _measure_layers(
 
 def _expand_folders(pictures: tuple[Path, ...]) -> list[Path]:
     """The pictures, with folders replaced by their pictures in alphabetical order. Raises InputError."""
+    from ..io.layers.open_layers import LAYER_SUFFIXES
+    from ..io.open_document import PICTURE_SUFFIXES
+
     paths: list[Path] = []
     for path in pictures:
         if path.is_dir():
@@ -305,6 +319,8 @@ def _outputs(paths: list[Path], folder: Path | None) -> list[Path | None]:
 def _measure_all(
     paths: list[Path], outputs: list[Path | None], options: MeshOptions
 ) -> tuple[list[MeshRow], list[dict[str, Any]]]:
+    from ..meshing.mesher_process import MESHER_PROCESS
+
     MESHER_PROCESS.start()
     rows, errors = [], []
     with click.progressbar(zip(paths, outputs, strict=True), len(paths), "Meshing", file=sys.stderr) as bar:
@@ -317,6 +333,8 @@ def _measure_all(
 
 
 def _describe(row: MeshRow) -> str:
+    from ..io.open_document import MIN_REPORTED_SHARE, faint_note
+
     lines = [
         f"{display_text(row.picture)}: {_count_noun(row.parts, 'part')}, {_count_noun(row.holes, 'hole')}, "
         f"{row.vertices} vertices, {row.faces} faces",

@@ -14,8 +14,6 @@ from ..display_text import display_text
 from ..editor.framing import CROPS, Color
 from ..errors import FileError, InputError
 from ..io.atomic import os_error_reason
-from ..io.export import ExportOptions
-from ..io.images import write_png
 from ..io.outputs import refuse_replacing, refuse_source
 from ..io.streams import STREAM, read_stream, stream_folder
 from ..meshing.meshers import MESHERS
@@ -23,6 +21,8 @@ from ..resources import bundled_files
 
 if TYPE_CHECKING:
     from click._termui_impl import ProgressBar
+
+    from ..io.export import ExportOptions
 
 FILE = click.Path(path_type=Path)
 
@@ -44,6 +44,40 @@ class InputFile(click.Path):
 
 INPUT = InputFile()
 T = TypeVar("T")
+
+# Values that help shows, equal to those of the tables and classes that they name, which take half a second to
+# load. A test compares them.
+EXPORT_LABELS = {  # of `EXPORT_FORMATS`
+    ".png": "PNG picture",
+    ".svg": "SVG",
+    ".glb": "glTF binary",
+    ".obj": "Wavefront OBJ",
+    ".spine.json": "Spine skeleton",
+    ".json": "Mesh and pins",
+}
+ANIMATION_DESCRIPTIONS = {  # of `ANIMATION_FORMATS`
+    ".webp": "An animation for the web: all colors, soft edges, small.",
+    ".gif": "An animation that plays everywhere: 255 colors, hard edges.",
+    ".apng": "An animation: all colors, soft edges, large.",
+    ".mp4": "A video (H.264) without transparency.",
+    ".webm": "A video (VP9) with transparency.",
+    ".html": "A page that plays in browsers, sharp at any size.",
+    "folder/": "A folder with one PNG per frame.",
+    ".png --sheet": "One PNG with all frames, and a JSON index, for games.",
+    ".png": "The last frame as a PNG.",
+}
+ANIMATION_ENDINGS = (".webp", ".gif", ".apng", ".mp4", ".webm", ".html")  # `ANIMATION_SUFFIXES`
+COMPARED_METHODS = (  # of `compared_methods`
+    "akap",
+    "akap:memory=1",
+    "akap:no-dirichlet",
+    "akap:trajectory=linear",
+    "arap",
+    "igarashi",
+    "cauchy-green",
+    "mls",
+)
+MESH_VERTICES, MESH_MARGIN = 2000, 2.0  # of `Meshing`
 
 _FRAMING = (
     click.option(
@@ -111,11 +145,13 @@ def framing_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def export_options(
     scale: float | None, background: str | None, crop: str | None, rest: bool = False
-) -> ExportOptions:
+) -> "ExportOptions":
     """The options of `framing_options`, of which None is the default, as `export` takes them.
 
     Raises InputError.
     """
+    from ..io.export import ExportOptions
+
     defaults = ExportOptions()
     scale = defaults.scale if scale is None else scale
     return ExportOptions(scale, parse_color(background), crop or defaults.crop, rest)
@@ -225,5 +261,7 @@ def refuse_unnamed(outputs: Sequence[Path], output: Path, sources: Sequence[Path
 
 def write_picture(path: Path, picture: Any) -> None:
     """Write a picture (h, w, 4) as PNG; make its folder if necessary. Raises FileError."""
+    from ..io.images import write_png
+
     make_folder_of(path)
     write_png(path, picture)

@@ -4,36 +4,20 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from ..display_text import display_text
-from ..editor.animation.frames import Frame, frame_times, loops_seamlessly, playing_order
-from ..editor.animation.loose_motion import AnimationFrames
-from ..editor.animation.motion import Motion, shorten_pauses
 from ..editor.document.easing import EASINGS
-from ..editor.document.settings import Settings
-from ..editor.session.replay import replay
 from ..errors import FileError, InputError, file_errors
-from ..io.akap.project import PROJECT_SUFFIX
-from ..io.akap.recording import read_recording, recorded_drawing
-from ..io.animation.formats import (
-    ANIMATION_FORMATS,
-    ANIMATION_SUFFIXES,
-    MAX_PLAYS,
-    Shot,
-    animation_format,
-    animation_shots,
-    replaced_files,
-    write_animation,
-)
 from ..io.atomic import noted_reads
-from ..io.open_document import open_document
 from ..io.outputs import refuse_replacing, refuse_source, same_file
 from ..io.streams import STREAM, written_path
 from ..progress import listening
 from .options import (
+    ANIMATION_DESCRIPTIONS,
+    ANIMATION_ENDINGS,
     FILE,
     INPUT,
     append_formats,
@@ -47,6 +31,11 @@ from .options import (
     write_picture,
 )
 
+if TYPE_CHECKING:
+    from ..editor.animation.frames import Frame
+    from ..editor.document.settings import Settings
+    from ..io.animation.formats import Shot
+
 # The parameter that each word of --variant sets.
 VARIANT_WORDS: dict[str, tuple[str, object]] = {
     "dirichlet": ("dirichlet", True),
@@ -58,9 +47,6 @@ VARIANT_WORDS: dict[str, tuple[str, object]] = {
     "memory": ("memory", 1.0),
     "no-memory": ("memory", 0.0),
 }
-_FORMATS = [
-    (f"{each.suffix or 'folder/'}{' --sheet' * each.is_sheet}", each.about) for each in ANIMATION_FORMATS
-]
 
 
 @click.command(
@@ -76,9 +62,7 @@ _FORMATS = [
     required=True,
     help="File to write, or to replace, or folder/ for the frames; its ending sets the format. - for stdout.",
 )
-@click.option(
-    "--format", "suffix", type=click.Choice([*ANIMATION_SUFFIXES, ".png"]), help="Format on stdout."
-)
+@click.option("--format", "suffix", type=click.Choice([*ANIMATION_ENDINGS, ".png"]), help="Format on stdout.")
 @click.option("--drawing", type=INPUT, help="Replay on this drawing instead of the recorded one.")
 @click.option(
     "--method", metavar="METHOD", help="Replay with another method: akap, arap, mls, ..., arap:converge, ..."
@@ -142,7 +126,7 @@ def replay_command(
     print_replays([result], as_json, output)
 
 
-append_formats(replay_command, _FORMATS)
+append_formats(replay_command, list(ANIMATION_DESCRIPTIONS.items()))
 
 
 class ReplayResult(NamedTuple):
@@ -207,6 +191,14 @@ def replay_recording(
     overwrite: bool = False,
 ) -> ReplayResult:
     """Write what the command writes. Raises InputError before anything is written."""
+    from ..editor.animation.frames import frame_times, loops_seamlessly, playing_order
+    from ..io.animation.formats import (
+        MAX_PLAYS,
+        animation_format,
+        animation_shots,
+        replaced_files,
+        write_animation,
+    )
     from ..render.offscreen import OffscreenRenderer
 
     _check_number("--fps", fps, 1, 120)
@@ -255,7 +247,7 @@ def replay_recording(
 
 
 @contextmanager
-def _writing_bar(shots: Iterable[Shot], count: int, encoding_share: float) -> Iterator[Iterator[Shot]]:
+def _writing_bar(shots: "Iterable[Shot]", count: int, encoding_share: float) -> "Iterator[Iterator[Shot]]":
     """A progress bar over drawing and encoding; gives the shots, which it counts.
 
     encoding_share: of the time, after the last shot is drawn.
@@ -267,7 +259,7 @@ def _writing_bar(shots: Iterable[Shot], count: int, encoding_share: float) -> It
         def show(share: float, _: str = "") -> None:
             bar.update(max(0, round(most * share) - bar.pos))
 
-        def counted() -> Iterator[Shot]:
+        def counted() -> "Iterator[Shot]":
             for number, shot in enumerate(shots, start=1):
                 yield shot
                 show(drawing_share * number / count)
@@ -304,13 +296,15 @@ class _Source(NamedTuple):
 
     duration: float
     plays: int
-    play: Callable[[Sequence[float]], Iterator[Frame]]
+    play: "Callable[[Sequence[float]], Iterator[Frame]]"
 
 
 def _open_source(
     path: Path, drawing_path: Path | None, method: str | None, variant: str, pause: float | None
 ) -> _Source:
     """Open a recording, or a drawing with keyframes. Raises InputError."""
+    from ..io.akap.project import PROJECT_SUFFIX
+
     if path.suffix.lower() == PROJECT_SUFFIX:
         _refuse({"--drawing": drawing_path, "--method": method, "--variant": variant, "--pause": pause})
         return _open_keyframes(path)
@@ -320,9 +314,14 @@ def _open_source(
 def _open_recording(
     path: Path,
     drawing_path: Path | None,
-    change: Callable[[Settings], Settings] | None,
+    change: "Callable[[Settings], Settings] | None",
     pause: float | None,
 ) -> _Source:
+    from ..editor.animation.motion import Motion, shorten_pauses
+    from ..editor.session.replay import replay
+    from ..io.akap.recording import read_recording, recorded_drawing
+    from ..io.open_document import open_document
+
     recording = read_recording(path)
     if pause is not None:
         _check_number("--pause", pause, 0, 1e9)
@@ -336,6 +335,9 @@ def _open_recording(
 
 
 def _open_keyframes(path: Path) -> _Source:
+    from ..editor.animation.loose_motion import AnimationFrames
+    from ..io.open_document import open_document
+
     document = open_document(path)
     animation = document.state.animation
     if not animation.keyframes:
@@ -354,11 +356,13 @@ def _refuse(options: dict[str, object]) -> None:
             raise InputError(f"{name}: expected a recording, got keyframes, which no method computes")
 
 
-def settings_change(method: str | None, variant: str) -> Callable[[Settings], Settings] | None:
+def settings_change(method: str | None, variant: str) -> "Callable[[Settings], Settings] | None":
     """The change of recorded settings that --method and --variant ask for; None for no change.
 
     Raises InputError on unknown words.
     """
+    from ..editor.document.settings import Settings
+
     words = [word.strip() for word in variant.split(",") if word.strip()]
     for word in words:
         if word not in VARIANT_WORDS:
@@ -367,7 +371,7 @@ def settings_change(method: str | None, variant: str) -> Callable[[Settings], Se
         return None
     chosen = None if method is None else Settings.parse(method)
 
-    def change(settings: Settings) -> Settings:
+    def change(settings: "Settings") -> "Settings":
         settings = chosen or settings
         for word in words:
             settings = settings.with_parameter(*VARIANT_WORDS[word])

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from math import ceil, floor, isfinite
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,7 +10,9 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 from ..geometry.validation import Floats, as_points
 from ..words import tr
-from .document.drawing import Drawing
+
+if TYPE_CHECKING:
+    from .document.drawing import Drawing
 
 Box = tuple[int, int, int, int]  # x0, y0, x1, y1 in whole drawing units
 Color = tuple[float, float, float]  # red, green, blue from 0 to 1
@@ -19,7 +22,7 @@ CROPS = ("none", "frame", "pose")
 _ROUNDING = 1e-6  # pixels: rounding noise must not add a row
 
 
-def frame_box(drawing: Drawing, poses: Sequence[ArrayLike]) -> Box:
+def frame_box(drawing: "Drawing", poses: Sequence[ArrayLike]) -> Box:
     """The smallest box around the picture's rectangle and all ``poses``, (n, 2) each.
 
     Raises InputError on a bad pose.
@@ -36,7 +39,7 @@ def union_of_boxes(boxes: Sequence[Box]) -> Box:
     return x0, y0, x1, y1
 
 
-def crop_box(drawing: Drawing, pose: ArrayLike, crop: str) -> Box:
+def crop_box(drawing: "Drawing", pose: ArrayLike, crop: str) -> Box:
     """The box that an export of ``pose`` (n, 2) shows.
 
     crop: "none" for the picture's rectangle and the whole pose, "frame" for the picture's rectangle alone,

@@ -8,11 +8,6 @@ from tempfile import TemporaryDirectory
 
 from ..errors import InputError
 from ..words import tr
-from .akap.clip import CLIP_FORMAT, CLIP_SUFFIX
-from .akap.pose import POSE_FORMAT, POSE_SUFFIX
-from .akap.project import PROJECT_SUFFIX
-from .akap.recording import RECORDING_SUFFIX
-from .layers.open_layers import PSD_MAGIC, has_layers
 
 STREAM = Path("-")  # stands for standard input or output
 _FOLDER_START = "akap-stream-"  # of the names of folders that exist while a command runs
@@ -28,25 +23,30 @@ _SUFFIXES = (  # by the first bytes
     (b"MM\0*", ".tif"),
     (b"glTF", ".glb"),
     (b"OFF", ".off"),
-    (b"PK", PROJECT_SUFFIX),
-)
-_FORMATS = (  # by the word in a JSON file
-    (b'"akap-recording"', RECORDING_SUFFIX),
-    (f'"{POSE_FORMAT}"'.encode(), POSE_SUFFIX),
-    (f'"{CLIP_FORMAT}"'.encode(), CLIP_SUFFIX),
-    (b'"akap-mesh"', ".json"),
 )
 
 
 def suffix_of(data: bytes) -> str:
     """The ending of file names for data, by their first bytes; that of OBJ files if they do not tell."""
+    from .akap.clip import CLIP_FORMAT, CLIP_SUFFIX
+    from .akap.pose import POSE_FORMAT, POSE_SUFFIX
+    from .akap.project import PROJECT_SUFFIX
+    from .akap.recording import RECORDING_SUFFIX
+    from .layers.open_layers import PSD_MAGIC, has_layers
+
     if has_layers(data):
         return ".psd" if data.startswith(PSD_MAGIC) else ".ora"
-    for start, suffix in _SUFFIXES:
+    for start, suffix in (*_SUFFIXES, (b"PK", PROJECT_SUFFIX)):
         if data.startswith(start):
             return suffix
+    formats = (  # by the word in a JSON file
+        (b'"akap-recording"', RECORDING_SUFFIX),
+        (f'"{POSE_FORMAT}"'.encode(), POSE_SUFFIX),
+        (f'"{CLIP_FORMAT}"'.encode(), CLIP_SUFFIX),
+        (b'"akap-mesh"', ".json"),
+    )
     head = data[:_HEAD]
-    return next((suffix for word, suffix in _FORMATS if word in head), ".obj")
+    return next((suffix for word, suffix in formats if word in head), ".obj")
 
 
 def read_stream(folder: Path) -> Path:

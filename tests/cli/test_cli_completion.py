@@ -7,7 +7,11 @@ import click
 import pytest
 from click.shell_completion import BashComplete, FishComplete, ZshComplete
 
-from akap_editor.cli import ABOUT, cli
+from akap_editor.cli import ABOUT, cli, options
+from akap_editor.deform.methods import compared_methods
+from akap_editor.editor.document.drawing import Meshing
+from akap_editor.io.animation.formats import ANIMATION_FORMATS, ANIMATION_SUFFIXES
+from akap_editor.io.export import EXPORT_FORMATS
 
 COMMANDS = {name: cli.get_command(click.Context(cli), name) for name in ABOUT}
 VISIBLE = [name for name, command in COMMANDS.items() if not command.hidden]
@@ -93,3 +97,29 @@ print(sorted({"numpy", "scipy", "shapely", "numba", "PIL", "moderngl", "imgui_bu
     assert said.splitlines()[-1] == "[]"
     for name in VISIBLE:
         assert f"\n  {name} " in said
+
+
+def test_help_loads_nothing_that_the_commands_need():
+    code = """
+import sys
+from akap_editor.cli import ABOUT, cli
+for name in ABOUT:
+    cli([name, "--help"], standalone_mode=False)
+print(sorted({"scipy", "shapely", "numba", "PIL", "moderngl", "psd_tools"} & sys.modules.keys()))
+"""
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert said.splitlines()[-1] == "[]"
+    for name in ABOUT:
+        assert f" {name} [OPTIONS]" in said
+
+
+def test_help_shows_the_values_of_the_tables():
+    def ending(each):
+        return f"{each.suffix or 'folder/'}{' --sheet' * each.is_sheet}"
+
+    assert list(options.EXPORT_LABELS.items()) == [(each.suffix, each.label) for each in EXPORT_FORMATS]
+    descriptions = [(ending(each), each.about) for each in ANIMATION_FORMATS]
+    assert list(options.ANIMATION_DESCRIPTIONS.items()) == descriptions
+    assert options.ANIMATION_ENDINGS == ANIMATION_SUFFIXES
+    assert list(options.COMPARED_METHODS) == compared_methods()
+    assert (Meshing.vertices, Meshing.expand) == (options.MESH_VERTICES, options.MESH_MARGIN)

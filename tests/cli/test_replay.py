@@ -255,7 +255,7 @@ def test_methods_and_variants(replay_bar, session, tmp_path, monkeypatch, option
             used.append(moment.state.settings)
             yield moment
 
-    monkeypatch.setattr("akap_editor.cli.replay.replay", watched)
+    monkeypatch.setattr("akap_editor.editor.session.replay.replay", watched)
     assert replay_bar("-o", "last.png", *options)[0] == 0
     assert {(settings.method, settings.parameters) for settings in used} == {
         (method, tuple(sorted(parameters.items())))
