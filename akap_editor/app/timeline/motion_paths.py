@@ -79,6 +79,7 @@ def grab_keyframe(state: AppState, position: Point) -> None:
     """If a key of a path is at a position of the screen, let the press that follows drag its pin.
 
     The playhead goes to the keyframe, which brings the pin to the position; the drag updates the keyframe.
+    Of several keys there, the one at the playhead is taken, or else the nearest one.
     """
     editor, playback = state.editor, state.timeline.keyframe_playback
     if not _are_shown(state) or editor.is_busy or not editor.selection:
@@ -90,11 +91,11 @@ def grab_keyframe(state: AppState, position: Point) -> None:
     near = []
     for time, points in zip(paths.times, paths.points, strict=False):
         if time in playback.animation.times:
-            reach = [distance(position, editor.camera.to_screen((x, y))) for x, y in points.tolist()]
-            near.append((min(reach), time))
-    nearest, time = min(near, default=(np.inf, 0.0))
-    if nearest <= _REACH * editor.ui_scale:
-        playback.scrub(time)
+            reach = min(distance(position, editor.camera.to_screen((x, y))) for x, y in points.tolist())
+            if reach <= _REACH * editor.ui_scale:
+                near.append((time != playback.time, reach, abs(time - playback.time), time))
+    if near:
+        playback.scrub(min(near)[-1])
         playback.auto_key.is_armed = True
 
 

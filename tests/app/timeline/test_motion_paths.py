@@ -96,3 +96,16 @@ def test_a_click_on_a_key_goes_there_and_edits_nothing(keyed):
     assert playback.time == 0.0
     assert keyed.session.present.animation is before.animation
     assert not playback.auto_key.is_armed
+
+
+def test_of_keys_at_one_place_the_one_at_the_playhead_is_taken(keyed):
+    """Otherwise a click on a pin that stays where it was moved the playhead back."""
+    state, playback = keyed.state, keyed.state.timeline.keyframe_playback
+    playback.set_keyframe(0.8)
+    state.view.show_motion_paths = True
+    for time, expected in [(0.8, 0.8), (0.5, 0.5), (0.7, 0.8)]:
+        playback.scrub(time)
+        keyed.settle()
+        keyed.click(state.editor.camera.to_screen(state.part(MotionPaths).points[-1][0].tolist()))
+        keyed.settle()
+        assert playback.time == expected
