@@ -19,7 +19,7 @@ _TAB_LABELS: dict[layout.Tab, str] = {
     "Animate": mark("Animate"),
     "Mesh": mark("Mesh"),
 }
-_TAB_HEIGHT, _BORDER = 36, 5  # design points
+_TAB_HEIGHT, _BORDER, _MARGIN = 36, 5, 14  # design points; the margins are beside the content
 _FLAGS = (
     imgui.WindowFlags_.no_title_bar
     | imgui.WindowFlags_.no_resize
@@ -76,7 +76,10 @@ def draw(state: AppState, scale: float) -> None:
     left, top = _BORDER * scale, _TAB_HEIGHT * scale
     imgui.set_next_window_pos(ImVec2(corner.x + left, corner.y + top))
     imgui.set_next_window_size(ImVec2(size.x - left, max(size.y - top, 1.0)))
-    imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(14 * scale, 2 * scale))
+    # One width with and without a scroll bar, which fits beside it: heights depend on it, so that otherwise
+    # the bar comes and goes where it changes whether it is needed.
+    imgui.set_next_window_content_size(ImVec2(size.x - left - 2 * _MARGIN * scale, 0))
+    imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(_MARGIN * scale, 2 * scale))
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
     is_drawn = imgui.begin("Panel", None, _FLAGS)[0]
