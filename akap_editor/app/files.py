@@ -46,7 +46,7 @@ def show_document(state: AppState, document: Document) -> None:
             state.editor.open(document)
     except InputError:  # preferences that were written by hand, or by another version
         state.editor.open(document)
-    state.view.selected_layer = state.view.selected_joint = None
+    state.view.selected_layer = state.editor.joint_tool.selected = None
     if document.state.animation.keyframes:
         state.timeline.mode, state.timeline.is_shown = "keyframes", True
     opaque = document.path is None and not has_transparency(document.drawing.image)

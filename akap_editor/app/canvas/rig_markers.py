@@ -43,7 +43,7 @@ def draw_joints(state: AppState, scale: float) -> None:
         center = centers[joint.id]
         if is_hovered and markers.new_joint is not None:
             center = markers.new_joint
-        is_selected = state.view.selected_joint == joint.id
+        is_selected = editor.joint_tool.selected == joint.id
         _draw_joint(draw, joint, center, scale, is_hovered, is_selected)
     draw.pop_clip_rect()
 

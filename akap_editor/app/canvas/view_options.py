@@ -54,8 +54,7 @@ class ViewOptions:
     `render.refinement`; is_split: whether a second method is compared; show_vector_fields:
     while a pin is dragged; distortion_measure: of the distortion map, None if it is off; distortion_range:
     index in `DISTORTION_RANGES`; reference_path: the file of the reference picture, None if it has none;
-    selected_layer: the number of the layer that is selected in the list and outlined, None for none;
-    selected_joint: the id of the joint that is selected in the list.
+    selected_layer: the number of the layer that is selected in the list and outlined, None for none.
     """
 
     smooth_bends: bool = True
@@ -75,7 +74,6 @@ class ViewOptions:
     reference: Reference | None = None
     reference_path: Path | None = None
     selected_layer: int | None = None
-    selected_joint: int | None = None
     _arrows: VectorFieldArrows = field(default_factory=VectorFieldArrows)
     _distortion_map: tuple[Distortion, Measure, int, FaceColors] | None = None
     _painted_map: tuple[Floats | LooseParts, FaceColors] | None = None

@@ -46,7 +46,13 @@ def layers_at(session: Session, place: Point) -> tuple[int, int] | None:
 
 
 class JointsIdle(IdleTool):
-    """The joint tool waits for a press."""
+    """The joint tool waits for a press.
+
+    selected: id of the joint that was chosen last in the list, or added, pressed or moved on the canvas; None
+    or the id of a removed joint if none is selected.
+    """
+
+    selected: int | None = None
 
     @property
     def press_hint(self) -> str:
@@ -74,7 +80,7 @@ class JointsIdle(IdleTool):
 
     def press(self, event: PointerEvent) -> None:
         if self.context.session is not None and event.button == "left":
-            self.context.set_tool(PointingJoint(self.context, event))
+            self.context.set_tool(PointingJoint(self, event))
 
 
 class PointingJoint(Pointing):
@@ -83,14 +89,16 @@ class PointingJoint(Pointing):
     hint = mark("Release to add or remove a joint, or drag one")
     cursor = "cross"
 
-    def __init__(self, context: ToolContext, event: PointerEvent) -> None:
-        super().__init__(context, event)
-        self._joint = joint_at(context, event.position)
+    def __init__(self, idle: JointsIdle, event: PointerEvent) -> None:
+        super().__init__(idle.context, event)
+        self._idle = idle
+        self._joint = joint_at(idle.context, event.position)
 
     def drag(self, event: PointerEvent) -> None:
         if self._joint is None:
             self.context.return_to_idle()
             return
+        self._idle.selected = self._joint
         dragging = DraggingJoint(self.context, self._joint)
         self.context.set_tool(dragging)
         dragging.move(event)
@@ -100,13 +108,14 @@ class PointingJoint(Pointing):
         context.return_to_idle()
         removes = event.alt or "alt" in context.held
         if self._joint is not None:
+            self._idle.selected = None if removes else self._joint
             if removes:
                 gestures.remove_joints(context, {self._joint})
             return
         place = context.camera.to_drawing(self.start)
         layers = None if removes else layers_at(session, place)
         if layers is not None:
-            gestures.add_joint(context, *layers, place)
+            self._idle.selected = gestures.add_joint(context, *layers, place)
 
 
 class DraggingJoint(Tool):

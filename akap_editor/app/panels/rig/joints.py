@@ -35,7 +35,7 @@ def draw(state: AppState, scale: float) -> None:
     for index, joint in enumerate(joints):
         _draw_row(state, joint, index)
     parts.end_list()
-    selected = next((joint for joint in joints if joint.id == state.view.selected_joint), None)
+    selected = next((joint for joint in joints if joint.id == state.editor.joint_tool.selected), None)
     imgui.begin_disabled(selected is None)
     _draw_values(state, selected)
     imgui.end_disabled()
@@ -51,13 +51,13 @@ def _names(state: AppState, joint: Joint) -> tuple[str, str]:
 
 def _draw_row(state: AppState, joint: Joint, index: int) -> None:
     limb, carrier = _names(state, joint)
-    is_selected = joint.id == state.view.selected_joint
+    is_selected = joint.id == state.editor.joint_tool.selected
     text = f"{limb}  {icons.ICON_FA_ARROW_RIGHT}  {carrier}"
     label = widgets.shortened(widgets.as_label(text), imgui.get_content_region_avail().x)
     if joint.is_proposed:
         imgui.push_style_color(imgui.Col_.text, ImVec4(*SECONDARY))
     if imgui.selectable(f"{label}###joint {joint.id}", is_selected)[0]:
-        state.view.selected_joint = joint.id
+        state.editor.joint_tool.selected = joint.id
     if joint.is_proposed:
         imgui.pop_style_color()
     is_weld = joint.kind == "weld"

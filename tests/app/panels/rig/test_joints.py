@@ -66,7 +66,7 @@ def test_a_method_without_joints_says_so(rigged, monkeypatch):
 def test_kind_and_removal_of_the_selected_joint(rigged):
     joint = joints(rigged)[0]
     rigged.do(lambda hand: hand.item_click(f"//Panel/**/###joint {joint.id}"))
-    assert rigged.state.view.selected_joint == joint.id
+    assert rigged.editor.joint_tool.selected == joint.id
 
     def choose(combo, index):
         def run(hand):
@@ -90,13 +90,18 @@ def test_the_joint_tool_adds_moves_and_removes_joints(rigged):
     rigged.click(rigged.to_screen((92.0, 118.0)))
     (joint,) = joints(rigged)
     assert joint.layers(rigged.session.drawing.mesh) == (ARM, BODY)
+    assert editor.joint_tool.selected == joint.id
+    for press in (rigged.click, lambda start: rigged.drag(start, (start[0] - 6, start[1]))):
+        editor.joint_tool.selected = None
+        press(place(rigged, joint))
+        assert editor.joint_tool.selected == joint.id
     start = place(rigged, joint)
     rigged.drag(start, (start[0] - 6, start[1]), rigged.to_screen((88.0, 119.0)))
     moved = place(rigged, joints(rigged)[0])
     assert moved == pytest.approx(rigged.to_screen((88.0, 119.0)), abs=1.5)
     rigged.drag(place(rigged, joints(rigged)[0]), held=imgui.Key.mod_alt)
     assert joints(rigged) == ()
-    assert labels(rigged)[-3:] == ["Add Joint", "Move Joint", "Remove Joint"]
+    assert labels(rigged)[-3:] == ["Move Joint", "Move Joint", "Remove Joint"]
     rigged.click(rigged.to_screen((66.0, 165.0)))  # one layer only
     assert joints(rigged) == ()
 
