@@ -75,12 +75,10 @@ class Editor:
 
     def take_over(self, session: Session) -> None:
         """Continue a session in place of the open one."""
-        self.cancel()
-        self.return_to_idle()
+        self.close()
         self.session = session
         self.trails.clear()
         self.brush_tool.last_end = None
-        self.select(())
         self.fit()
 
     def close(self) -> None:
@@ -303,7 +301,6 @@ class Editor:
         if session is None or not session.is_moving:
             return False
         started, moved, done = time.perf_counter(), False, False
-        deadline = started + budget
         is_worth_waiting = session.last_step is not None and session.last_step.report.seconds < STEP_WAIT
         patience = max(budget, STEP_WAIT) if budget and is_worth_waiting else budget
         self.trails.follow(session)
@@ -312,9 +309,9 @@ class Editor:
                 session.start_step(self.worker)
                 if not session.step_is_ready(started + patience - time.perf_counter()):
                     break
-                seconds = session.step().report.seconds
-                moved = True
-                done = session.has_visually_arrived or seconds > budget or time.perf_counter() > deadline
+                moved, seconds = True, session.step().report.seconds
+                is_late = max(seconds, time.perf_counter() - started) > budget
+                done = session.has_visually_arrived or is_late
                 self.trails.follow(session)
         except SolverError:
             self.cancel()
@@ -324,9 +321,8 @@ class Editor:
     def start_next_step(self) -> None:
         """Start the next step while a frame is drawn, if steps take longer than a frame waits for them."""
         session = self.session
-        if session is None or session.last_step is None or not session.is_moving:
-            return
-        if session.last_step.report.seconds > FRAME_BUDGET:
+        last_step = session.last_step if session is not None and session.is_moving else None
+        if session is not None and last_step is not None and last_step.report.seconds > FRAME_BUDGET:
             session.start_step(self.worker)
 
     # -- view ----------------------------------------------------------------------------------------------
