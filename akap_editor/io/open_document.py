@@ -98,11 +98,11 @@ def _open_layered(
         layered = open_layers(path)
     shown = read_mask(mask) if mask is not None else None
     notes = left_out_notes(layered)
-    movable = movable_layers(layered)
+    count = len(movable_layers(layered))  # the layers themselves would keep their pictures in memory
     with file_errors("open", path):
         with part(0.4, 1.0):
             options: dict[str, Any] = {"threshold": threshold, "name": path.stem, "mesher": mesher}
-            if len(movable) > 1:
+            if count > 1:
                 drawing = make_drawing(None, shown, layers=layered, **options)
             else:
                 drawing = make_drawing(composite(layered), shown, **options)

@@ -72,6 +72,10 @@ class Layer:
         as_switch(self.visible, "visible")
         as_switch(self.clipping, "clipping")
 
+    def share(self, picture: NDArray[np.uint8]) -> None:
+        """Refer to an equal picture (h, w, 4) uint8, read-only, so that its pixels are in memory once."""
+        object.__setattr__(self, "picture", picture)
+
     @property
     def path(self) -> tuple[str, ...]:
         """The names of its groups, the outermost first, and its own name."""

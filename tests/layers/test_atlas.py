@@ -17,12 +17,16 @@ SETS = {
 @pytest.mark.parametrize("sizes", SETS.values(), ids=SETS)
 def test_pictures_come_back_with_transparent_pixels_around_them(sizes):
     pictures = [RNG.integers(1, 255, (h, w, 4), dtype=np.uint8) for w, h in sizes]
-    texture, corners = pack(pictures, margin=2.5)
+    views = {}
+    texture, corners = pack(pictures, 2.5, views.__setitem__)
     border = 3 + MIP_MARGIN
     taken = np.zeros(texture.shape[:2], int)
-    for picture, (x, y) in zip(pictures, corners, strict=True):
+    for number, (picture, (x, y)) in enumerate(zip(pictures, corners, strict=True)):
         h, w = picture.shape[:2]
         assert (texture[y : y + h, x : x + w] == picture).all()
+        assert (views[number] == picture).all()
+        assert np.shares_memory(views[number], texture)
+        assert not views[number].flags.writeable
         assert min(x, y) >= border
         taken[y - border : y + h + border, x - border : x + w + border] += 1
     assert taken.max() == 1

@@ -11,7 +11,7 @@ from ...display_text import display_text
 from ...errors import InputError
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.validation import Floats, Ints, as_channel, as_instance, as_picture, as_points, freeze
-from ...layers.atlas import pack
+from ...layers.atlas import pack, pack_shared
 from ...layers.drawing_layer import Artwork, DrawingLayer
 from ...layers.layer_view import LayerView, group_slots
 from ...layers.layered_picture import Layer, LayeredPicture
@@ -246,11 +246,10 @@ def mesh_layered_drawing(layered: LayeredPicture, meshing: Meshing, name: str) -
     movable = movable_layers(layered)
     if not movable:
         raise InputError(tr("the layers are fully transparent: expected a drawing"))
-    pictures, offsets = [layer.picture for layer in movable], [layer.offset for layer in movable]
-    texture, corners = pack(pictures, meshing.expand)
+    texture, corners = pack_shared(layered, movable, meshing.expand)
     artworks = [
-        artwork_in(texture, picture.shape[:2], offset, corner)
-        for picture, offset, corner in zip(pictures, offsets, corners, strict=True)
+        artwork_in(texture, layer.picture.shape[:2], layer.offset, corner)
+        for layer, corner in zip(movable, corners, strict=True)
     ]
     layers = tuple(
         DrawingLayer(

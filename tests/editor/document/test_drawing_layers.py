@@ -182,6 +182,16 @@ def test_drawings_are_made_of_a_picture_or_of_layers(arguments, message):
         make_drawing(layers=nothing)
 
 
+def test_the_layers_a_drawing_was_made_of_share_the_pixels_of_its_texture():
+    layers, originals = puppet_layers(), puppet_layers()
+    drawing = make_drawing(layers=layers, vertices=600)
+    for layer, original in zip(layers.layers, originals.layers, strict=True):
+        assert np.shares_memory(layer.picture, drawing.image)
+        np.testing.assert_array_equal(layer.picture, original.picture)
+    again = make_drawing(layers=layers, vertices=600)
+    np.testing.assert_array_equal(again.image, drawing.image)
+
+
 def test_a_new_layer_list_shares_mesh_and_texture():
     drawing = with_layer(ARM, visible=False)
     assert isinstance(drawing, Drawing)
