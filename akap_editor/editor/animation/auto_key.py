@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from ...geometry.validation import Floats, Ints
 from ...layers.layer_view import LayerView
 from ...words import mark
@@ -15,9 +17,10 @@ from ..session.session import Session
 
 
 class KeyedValues(NamedTuple):
-    """What a keyframe holds: a pose (n, 2), the layers that are shown, and the depths of the pins."""
+    """What a keyframe holds: a pose (n, 2), its crossings (s, 2), the layers shown, and the pins' depths."""
 
     positions: Floats
+    crossings: Ints
     layers: LayerView | None
     depths: PinDepths
 
@@ -25,13 +28,15 @@ class KeyedValues(NamedTuple):
         """Whether anything has changed since ``before``; pins that are new or gone do not count."""
         depths = dict(before.depths)
         is_shifted = any(depths.get(pin, depth) != depth for pin, depth in self.depths)
-        return self.positions is not before.positions or self.layers != before.layers or is_shifted
+        is_moved = self.positions is not before.positions
+        is_reordered = not np.array_equal(self.crossings, before.crossings)
+        return is_moved or is_reordered or is_shifted or self.layers != before.layers
 
 
 def keyed_values(session: Session) -> KeyedValues:
     """What a keyframe of the present pose would hold."""
     present, drawing = session.present, session.present_document.drawing
-    return KeyedValues(present.positions, drawing.layer_view, pin_depths(present.pins))
+    return KeyedValues(present.positions, present.crossings, drawing.layer_view, pin_depths(present.pins))
 
 
 class AutoKey:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from akap_editor.editor import gestures
 from akap_editor.editor.animation.keyframe_playback import KeyframePlayback
 from tests.support.editor_driver import replayed_state
 
@@ -87,3 +88,15 @@ def test_a_recording_with_automatic_keyframes_replays(playback, pinned):
     drag(pinned, playback, (90.0, 60.0))
     replayed = replayed_state(pinned.session.recording, pinned.session.drawing)
     assert replayed.animation.times == (0.5,)
+
+
+def test_another_order_of_limbs_becomes_a_keyframe(playback, pinned):
+    drag(pinned, playback, (22.0, 46.0))
+    playback.scrub(1.5)
+    pinned.editor.select({3})
+    gestures.order_limb(pinned.editor, False)
+    for _ in range(2):
+        playback.update()
+    assert times(pinned) == (0.5, 1.5)
+    first, last = pinned.session.present.animation.keyframes
+    assert not np.array_equal(first.crossings, last.crossings)

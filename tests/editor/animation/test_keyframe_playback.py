@@ -355,6 +355,24 @@ def test_depths_of_pins_are_keyed_and_change_at_keyframes(playback, deep):
     assert depths(session.state)[2] == 3, "of the present pose"
 
 
+def test_the_order_of_limbs_is_changed_at_a_keyframe_of_the_present_pose(playback, pinned):
+    session = pinned.session
+    pinned.drag(pinned.where(3), (22.0, 46.0), steps=8)
+    pinned.settle()
+    playback.update()
+    for time in (1.0, 2.0):
+        playback.set_keyframe(time)
+    playback.scrub(2.0)
+    pinned.editor.select({3})
+    gestures.order_limb(pinned.editor, False)
+    playback.update()
+    changed = session.state.crossings
+    playback.set_keyframe(2.0)
+    for time, is_changed in ((1.0, False), (2.0, True)):
+        playback.scrub(time)
+        assert np.array_equal(session.state.crossings, changed) == is_changed
+
+
 def test_a_gesture_goes_on_with_the_depths_at_the_playhead(playback, deep, drawing):
     session = deep.session
     playback.scrub(0.5)
