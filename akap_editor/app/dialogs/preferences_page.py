@@ -44,6 +44,8 @@ class PreferencesPage:
         self._draw_language(state)
         imgui.set_next_item_width(size.x)
         imgui.begin_disabled(was_awaiting)
+        if imgui.is_window_appearing():
+            imgui.set_keyboard_focus_here()
         _, self._query = imgui.input_text_with_hint("##query", tr(_HINT), self._query)
         imgui.end_disabled()
         imgui.begin_child("##keys", size, widgets.NAV_FLATTENED)

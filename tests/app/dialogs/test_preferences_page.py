@@ -59,6 +59,22 @@ def test_a_new_key_runs_the_command_and_the_old_one_does_not(page):
     assert ("F9", "Stiffness Brush") in shown["Tools"]
 
 
+def test_typed_letters_find_a_command_at_once(page):
+    listed = []
+
+    def act(hand):
+        hand.key_chars("stiffness br")
+        hand.yield_(2)
+        for command in (registry.BRUSH_TOOL, registry.PIN_TOOL):
+            item = f"//Preferences###dialog Preferences/**/###key 0 of {command.label}"
+            listed.append(hand.item_exists(item))
+
+    page.do(act)
+    assert listed == [True, False]
+    page.key(Key.escape)
+    assert not page.state.part(PreferencesPage).is_open
+
+
 def test_a_key_of_another_command_is_taken_from_it(page):
     change(page, "Stiffness Brush", "key 1 of", Key.p)
     assert registry.PIN_TOOL.active_chords == ()
