@@ -71,8 +71,9 @@ class _OraReader:
                     mimetype=mimetype,
                 )
             )
+        content = self._archive.read("stack.xml", MAX_STACK_BYTES)
         with error_context("stack.xml"):
-            root = _parse_xml(self._archive.read("stack.xml", MAX_STACK_BYTES))
+            root = _parse_xml(content)
             stack = root.find("stack")
             if root.tag != "image" or stack is None:
                 raise InputError(tr("expected an image with a stack of layers"))

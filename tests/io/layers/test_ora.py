@@ -113,6 +113,14 @@ def test_damage_gives_one_sentence(kind):
     assert "\n" not in str(caught.value)
 
 
+def test_a_damaged_list_of_layers_is_named_once():
+    data = bytearray(ora_bytes(LAYER, {"data/a.png": RED}))
+    start = data.index(b"stack.xml")
+    data[start + 20] ^= 255
+    with pytest.raises(InputError, match=r"^stack\.xml: the entry is damaged$"):
+        decode_ora(BytesIO(data))
+
+
 def test_a_damaged_picture_names_its_layer():
     data = ora_bytes(LAYER, {"data/a.png": RED}).replace(b"IHDR", b"IHDX")
     with pytest.raises(InputError, match=r"^layer “a”: "):
