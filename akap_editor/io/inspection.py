@@ -145,7 +145,7 @@ def _inspect_drawing(data: bytes) -> tuple[Facts, list[str]]:
         "vertices": len(drawing.mesh.vertices),
         "faces": len(drawing.mesh.faces),
         "parts": int(drawing.mesh.component.max()) + 1,
-        **_drawing_layer_facts(drawing),
+        **_drawing_layer_facts(drawing, len(state.joints)),
         **({"artwork": document.artwork.path.as_posix()} if document.artwork is not None else {}),
         "pins": len(state.pins),
         "poses": len(state.poses),
@@ -158,11 +158,11 @@ def _inspect_drawing(data: bytes) -> tuple[Facts, list[str]]:
     return facts, []
 
 
-def _drawing_layer_facts(drawing: Drawing) -> Facts:
+def _drawing_layer_facts(drawing: Drawing, joints: int) -> Facts:
     if not drawing.layers:
         return {}
     hidden = int((~shown_layers(drawing.layers)).sum())
-    return {"layers": len(drawing.layers), "hidden layers": hidden}
+    return {"layers": len(drawing.layers), "hidden layers": hidden, "joints": joints}
 
 
 def _inspect_pose(data: bytes) -> tuple[Facts, list[str]]:

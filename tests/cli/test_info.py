@@ -2,19 +2,23 @@
 
 import json
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from akap_editor.editor.document.document import new_document
+from akap_editor.editor.document.rig.suggestion import suggest_joints
 from akap_editor.io.akap.pose import save_pose
-from akap_editor.io.akap.project import load
+from akap_editor.io.akap.project import load, save
 from akap_editor.io.export import EXPORT_FORMATS
 from akap_editor.io.images import write_png
 from akap_editor.resources import bundled_drawings, resource
 from tests.support.command_line import assert_one_line
 from tests.support.layered_files import add_layer, filled, ora_bytes, psd_bytes
 from tests.support.names import assert_readable
+from tests.support.puppets import puppet
 
 RECORDING = resource("assets", "recordings", "elephant.akaprec")
 MESHES = [each.suffix for each in EXPORT_FORMATS if not each.uses_framing]
@@ -58,6 +62,15 @@ def test_a_drawing(facts, posed):
     assert (record["kind"], record["sound"]) == ("drawing", True)
     assert (record["facts"]["width"], record["facts"]["height"]) == (90, 60)
     assert record["facts"]["angle distortion"] > 2.1
+
+
+def test_a_drawing_in_layers(facts, tmp_path):
+    document = new_document(puppet())
+    joints = suggest_joints(document.drawing)
+    save(replace(document, state=replace(document.state, joints=joints)), tmp_path / "puppet.akap")
+    values = facts(tmp_path / "puppet.akap")["facts"]
+    assert (values["layers"], values["joints"]) == (len(document.drawing.layers), len(joints))
+    assert len(joints) > 0
 
 
 def test_a_recording(facts):
