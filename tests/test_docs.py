@@ -1,6 +1,8 @@
 """The pages: links and names of files and commands are valid, and scripts make the screenshots."""
 
 import ast
+import doctest
+import importlib
 import importlib.util
 import re
 from functools import cache
@@ -24,6 +26,14 @@ def tool(name):
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.mark.parametrize("module", ["editor.document.drawing", "io.layers.open_layers"])
+def test_examples_in_docstrings_give_what_they_say(module, monkeypatch):
+    monkeypatch.chdir(ROOT / "assets" / "drawings")
+    failed, attempted = doctest.testmod(importlib.import_module(f"akap_editor.{module}"))
+    assert failed == 0
+    assert attempted >= 3
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -47,11 +47,12 @@ def open_layers(path: str | Path) -> LayeredPicture:
     Of a folder they are its PNG pictures, which must have one size; the first one by name is at the bottom,
     and numbers in names count as numbers. Each layer is cut to its visible pixels. Raises FileError.
 
-    >>> puppet = open_layers("puppet.psd")                                              # doctest: +SKIP
-    >>> for layer in puppet.layers:                                                     # doctest: +SKIP
+    >>> from akap_editor import open_layers
+    >>> puppet = open_layers("robot.ora")
+    >>> for layer in puppet.layers[:2]:
     ...     print("/".join(layer.path), layer.offset, layer.picture.shape)
-    body (310, 420) (512, 380, 4)
-    head/eye left (321, 264) (60, 58, 4)
+    arm left/arm upper left (604, 452) (184, 226, 4)
+    arm left/arm lower left (738, 264) (368, 202, 4)
     """
     path = as_path(path)
     if path.is_dir():
