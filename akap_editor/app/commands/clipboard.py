@@ -75,6 +75,8 @@ def _make(picture: NDArray[np.uint8]) -> Document:
 
 def _show(state: AppState, document: Document) -> None:
     files.show_document(state, document)
+    assert state.editor.session is not None
+    state.editor.session.mark_unsaved()  # no file holds the picture
     state.notice = state.notice or tr("Opened the picture in the clipboard")
 
 

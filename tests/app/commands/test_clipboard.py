@@ -5,6 +5,7 @@ import pytest
 
 from akap_editor.app.commands import clipboard
 from akap_editor.app.commands.clipboard import COPY_PICTURE, COPY_POSE, PASTE
+from akap_editor.app.commands.command import CTRL, Key
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.document.drawing import make_drawing
 from akap_editor.io.images import read_image
@@ -32,6 +33,9 @@ def test_a_picture_in_the_clipboard_is_opened(ui, system):
     np.testing.assert_array_equal(drawing.image, image)
     assert ui.state.notice == "Opened the picture in the clipboard"
     assert ui.document.path is None
+    ui.key(CTRL | Key.w)
+    ui.dialog("Unsaved changes", "Cancel")
+    assert ui.document is not None, "no file holds it, so it is not closed unasked"
 
 
 def test_unsaved_changes_are_asked_about_first(pinned, system):
