@@ -14,13 +14,15 @@ from ..document.named_poses import NamedPose
 from ..document.pin import Pin
 
 _SAMPLES = 12  # poses among which the one is found that overlaps least
+_STILL = 1e-6  # share by which areas differ if nothing moves, at most
 _MAX_CACHED = 64  # pairs of poses whose time of change is kept
 
 
 class CrossingBlend:
     """Crossings between two poses: both decide, and what they disagree on changes at one moment.
 
-    That is the moment where the areas they disagree on are smallest, so that the change is seen least.
+    That is the moment where the areas they disagree on are smallest, so that the change is seen least; if the
+    drawing holds still, it is the end.
     """
 
     def __init__(self) -> None:
@@ -68,13 +70,16 @@ class CrossingBlend:
         things = mesh, start.positions, start.crossings, end.positions, end.crossings
         key = tuple(map(id, things))
         if key not in self._changes:
-            least, change = np.inf, 0.0
+            least, most, change = np.inf, 0.0, 0.0
             for share in ((np.arange(_SAMPLES) + 0.5) / _SAMPLES).tolist():
                 area = _disputed_area(mesh, pose_at(share), first, second)
                 if area < least:
                     least, change = area, share
+                most = max(most, area)
                 if area == 0:  # less is not possible
                     break
+            if least > (1 - _STILL) * most:
+                change = 1.0
             while len(self._changes) >= _MAX_CACHED:
                 del self._changes[next(iter(self._changes))]
             self._changes[key] = things, change
