@@ -53,6 +53,7 @@ class LayerList:
         self._more: set[int] = set()  # layers that are selected beside the one
         self._folded: set[tuple[str, ...]] = set()  # groups whose layers are not listed
         self._pin: int | None = None  # the one that chose the layer
+        self._scroll_target: int | None = None  # the layer that the list is to be scrolled to
 
     def draw(self, state: AppState, scale: float) -> None:
         """Draw one frame. scale: points per design point."""
@@ -89,7 +90,8 @@ class LayerList:
             self._pin = pin
             faces = {each.id: each.face for each in state.document.state.pins} if state.document else {}
             if pin in faces and state.document is not None:
-                state.view.selected_layer = int(state.document.drawing.face_layers[faces[pin]])
+                number = int(state.document.drawing.face_layers[faces[pin]])
+                state.view.selected_layer = self._scroll_target = number
 
     def _draw_group(self, state: AppState, index: int, path: tuple[str, ...], scale: float) -> None:
         """Draw the row of a group: its eye, and its name, a click on which folds it."""
@@ -185,6 +187,10 @@ class LayerList:
             self._select(state, number)
             if imgui.is_mouse_double_clicked(0):
                 self._name_field.begin(number)
+        if number == self._scroll_target:
+            self._scroll_target = None
+            if not imgui.is_item_visible():
+                imgui.set_scroll_here_y()
         is_at = imgui.is_item_hovered() or imgui.is_item_focused()
         if is_at and imgui.is_key_pressed(imgui.Key.f2, False):
             self._name_field.begin(number)

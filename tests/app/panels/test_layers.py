@@ -3,6 +3,7 @@
 from imgui_bundle import imgui  # isort: skip
 import pytest
 
+from akap_editor.app.panels import layers
 from akap_editor.editor.document.document import new_document
 from tests.support.puppets import ARM, BODY, HAT, SKULL, puppet
 
@@ -159,6 +160,20 @@ def test_a_pin_selects_its_layer_which_is_outlined(layered):
     layered.editor.select(())
     layered.settle()
     assert (layered.screenshot() != plain).any()
+
+
+def test_the_list_scrolls_to_the_layer_of_a_pin(layered, monkeypatch):
+    scrolls, draw = [], layers.draw_thumbnail
+    monkeypatch.setattr(layers, "_ROWS", 2)
+    monkeypatch.setattr(
+        layers, "draw_thumbnail", lambda *args: (scrolls.append(imgui.get_scroll_y()), draw(*args))
+    )
+    layered.settle()
+    assert scrolls[-1] == 0
+    layered.click(layered.to_screen((80, 150)))
+    assert layered.state.view.selected_layer == BODY
+    layered.settle()
+    assert scrolls[-1] > 0
 
 
 def test_a_flat_drawing_has_no_such_section(pinned):
