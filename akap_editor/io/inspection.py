@@ -69,13 +69,16 @@ def inspect(path: str | Path) -> Inspection:
     if Path(path).is_dir():
         return Inspection("layers", *_layer_facts("folder", open_layers(path)))
     data = read_file(path, mark("a file"))
-    kind = _kind_by_content(data) or _KIND_OF_SUFFIX.get(Path(path).suffix.lower(), "unknown")
+    suffix = Path(path).suffix.lower()
+    kind = _kind_by_content(data) or _KIND_OF_SUFFIX.get(suffix, "unknown")
     if kind == "unknown":
         came = (
             f"expected a picture, a drawing, a recording or a mesh, got something that begins {data[:12]!r}"
         )
         return Inspection(kind, {}, [came])
     try:
+        if kind == "layers" and not has_layers(data):
+            decode_layers(data, suffix)  # names the format that was expected
         facts, problems = _INSPECTORS[kind](data)
     except InputError as error:
         return Inspection(kind, {}, [str(error)])

@@ -236,3 +236,6 @@ def test_pictures_in_layers(facts, tmp_path):
     assert facts("a.ora")["facts"]["not drawn"] == "“Hi”, which is no picture but of the kind “text”"
     (tmp_path / "a.psd").write_bytes(b"8BPS and nothing else")
     assert not facts("a.psd")["sound"]
+    for name, kind in (("a.psd", "a Photoshop"), ("a.PSB", "a Photoshop"), ("a.ora", "an OpenRaster")):
+        (tmp_path / name).write_bytes(b"nothing")
+        assert facts(name)["problems"] == [f"the file is damaged or not {kind} file"]

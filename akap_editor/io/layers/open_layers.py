@@ -67,9 +67,15 @@ def open_layers(path: str | Path) -> LayeredPicture:
         return decode(file)
 
 
-def decode_layers(data: bytes) -> LayeredPicture:
-    """The layers in the bytes of a Photoshop or OpenRaster file. Raises InputError."""
-    return (_decode_psd if data.startswith(PSD_MAGIC) else decode_ora)(BytesIO(data))
+def decode_layers(data: bytes, suffix: str = ".ora") -> LayeredPicture:
+    """The layers in the bytes of a Photoshop or OpenRaster file. Raises InputError.
+
+    suffix: of the file's name, one of `LAYER_SUFFIXES`; it decides if the first bytes do not tell.
+    """
+    decode = (
+        _decode_psd if data.startswith(PSD_MAGIC) else decode_ora if has_layers(data) else _DECODERS[suffix]
+    )
+    return decode(BytesIO(data))
 
 
 def has_layers(data: bytes) -> bool:
