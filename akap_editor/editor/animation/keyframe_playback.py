@@ -1,6 +1,6 @@
 """Playback and editing of the keyframes: scrub, play, select, drag, ease; and the onion skin."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from time import monotonic
 
@@ -20,8 +20,9 @@ from .auto_key import AutoKey, KeyedValues, key_edits, keyed_values
 from .crossing_blend import CrossingBlend
 from .frames import Frame
 from .keyframe_poses import KeyframePoses, animation_crossings, period_of
-from .keyframe_times import EasingDrag, TimesDrag, mirror_times, within_limits
+from .keyframe_times import EasingDrag, TimesDrag, counted, mirror_times, within_limits
 from .keyframing.group_edits import insert_edits, reverse_edits
+from .keyframing.key_moves import KeyMoves
 from .keyframing.keyframe_clipboard import KeyframeClipboard
 from .keyframing.onion_skin import OnionSkin
 from .loose_motion import Crossed, Instant
@@ -48,7 +49,7 @@ class KeyframePlayback(Playback):
         self._poses = KeyframePoses()
         self._crossings = CrossingBlend()
         self._session: Session | None = None
-        self._clipboard = KeyframeClipboard()
+        self._clipboard, self._moves = KeyframeClipboard(), KeyMoves()
         self._reset()
 
     def _reset(self) -> None:
@@ -168,6 +169,7 @@ class KeyframePlayback(Playback):
             return
         if self.auto_key.update(self._editor, self.time) and self.is_previewing:
             self._show()
+        self.time, self.selected = self._moves.view(self.stored_animation, (self.time, self.selected))
         self.selected &= set(self.stored_animation.times)
         if not self.is_dragging:
             self.visible_range.fit(max(_MIN_TOTAL_SECONDS, 1.2 * self.duration, self.time))
@@ -272,7 +274,7 @@ class KeyframePlayback(Playback):
         """Delete the selected keyframes, or the one at the playhead."""
         times = self._affected_times()
         if times:
-            self._edit(_counted("Delete", times), DeleteKeyframes(times))
+            self._edit(counted("Delete", times), DeleteKeyframes(times))
             self.selected = frozenset()
 
     def duplicate_keyframes(self) -> None:
@@ -290,9 +292,7 @@ class KeyframePlayback(Playback):
             return
         start = self.duration + _DUPLICATE_GAP if copy else times[0]
         moves = {old: within_limits(new) for old, new in mirror_times(times, start).items()}
-        self._edit(
-            _counted("Duplicate" if copy else "Reverse", times), *reverse_edits(animation, moves, copy)
-        )
+        self._edit(counted("Duplicate" if copy else "Reverse", times), *reverse_edits(animation, moves, copy))
         self.selected = frozenset(moves.values())
         self._refresh()
 
@@ -323,7 +323,7 @@ class KeyframePlayback(Playback):
         """Add the copied keyframes at the playhead, instead of those in their time; reverse: backwards."""
         if self.can_paste():
             keyframes = self._clipboard.pasted(as_keyframe_time(self.time), reverse)
-            self.insert_keyframes(_counted("Paste", [each.time for each in keyframes]), keyframes)
+            self.insert_keyframes(counted("Paste", [each.time for each in keyframes]), keyframes)
 
     def shift_keyframes(self, by: float) -> None:
         """Move the selected keyframes, or the one at the playhead, by seconds; the first not before 0."""
@@ -379,13 +379,15 @@ class KeyframePlayback(Playback):
 
     def _move(self, moves: Mapping[float, float], copy: bool = False) -> None:
         """Move or copy keyframes; selection and playhead move along."""
-        self._edit(_counted("Duplicate" if copy else "Move", moves), MoveKeyframes(dict(moves), copy))
+        before, view = self.stored_animation, (self.time, self.selected)
+        self._edit(counted("Duplicate" if copy else "Move", moves), MoveKeyframes(dict(moves), copy))
         if self.selected or copy:
             self.selected = frozenset(moves.get(time, time) for time in self.selected or moves)
         playhead = as_keyframe_time(self.time)
         if not copy and playhead in moves:
             self.time = moves[playhead]
             self._refresh()
+        self._moves.add(before, view, self.stored_animation, (self.time, self.selected))
 
     def _edit(self, label: str, *edits: Edit) -> None:
         session = self._editor.session
@@ -394,7 +396,3 @@ class KeyframePlayback(Playback):
         session.end_preview()
         self._editor.apply(label, *edits)
         self._refresh()
-
-
-def _counted(verb: str, times: Collection[float]) -> str:
-    return f"{verb} Keyframe" if len(times) == 1 else f"{verb} {len(times)} Keyframes"

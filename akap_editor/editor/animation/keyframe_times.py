@@ -1,6 +1,6 @@
 """New times of keyframes that are dragged, stretched or reversed, and the easings that go with them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 from ..document.easing import mirrored_easing
@@ -65,3 +65,8 @@ def mirror_easings(easings: Sequence[str]) -> list[str]:
     easings: those after them now; that after the last one leads on from the group, and does so afterwards.
     """
     return [easings[-1], *map(mirrored_easing, easings[:-1])]
+
+
+def counted(verb: str, times: Collection[float]) -> str:
+    """The name of an edit of keyframes in the history, for example "Move 3 Keyframes"."""
+    return f"{verb} Keyframe" if len(times) == 1 else f"{verb} {len(times)} Keyframes"

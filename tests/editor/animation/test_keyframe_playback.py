@@ -130,6 +130,28 @@ def test_undo_of_a_pose_shows_the_present(playback, pinned):
     assert not pinned.session.is_previewing
 
 
+def test_undo_of_a_move_brings_playhead_and_selection_back(playback, pinned):
+    playback.time, playback.selected = 1.0, frozenset({0.0, 1.0})
+    playback.update()
+    playback.drag_keyframes({0.0: 0.2, 1.0: 0.6})
+    playback.drop_keyframes()
+    playback.update()
+    moved = 0.6, frozenset({0.2, 0.6})
+    assert (playback.time, playback.selected) == moved
+    for _ in range(2):
+        pinned.undo()
+        playback.update()
+        assert (playback.time, playback.selected) == (1.0, frozenset({0.0, 1.0}))
+        assert not playback.shows_unkeyed_pose
+        pinned.editor.redo()
+        playback.update()
+        assert (playback.time, playback.selected) == moved
+    playback.scrub(0.4)
+    pinned.undo()
+    playback.update()
+    assert playback.time == 0.4, "it has been moved since"
+
+
 def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(playback, pinned):
     playback.set_keyframe(0.5)
     playback.selected = frozenset({1.0})
