@@ -50,9 +50,14 @@ def display():
 
 @pytest.fixture
 def tmp_path():
-    """A folder with a short path: the program draws two frames for each letter typed into its dialog."""
-    with tempfile.TemporaryDirectory(prefix="") as folder:
-        yield Path(folder)
+    """A folder with a short path: the program draws two frames for each letter typed into its dialog.
+
+    It stays if a failure has left a screenshot there.
+    """
+    folder = Path(tempfile.mkdtemp(prefix=""))
+    yield folder
+    if not any(folder.glob("screen-*.png")):
+        shutil.rmtree(folder)
 
 
 @pytest.fixture
