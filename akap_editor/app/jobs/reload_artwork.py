@@ -51,7 +51,7 @@ def can_reload(state: AppState) -> bool:
 
 
 def reload_artwork(state: AppState) -> None:
-    """Read the drawing's picture again, which was painted anew; ask for it if its file is gone or unknown."""
+    """Read the drawing's picture again; ask for its file if that is gone or unknown."""
     document = state.document
     if document is None:
         return
@@ -66,9 +66,7 @@ def reload_artwork(state: AppState) -> None:
         folder = next((each for each in (folder, *folder.parents) if each.is_dir()), state.folder)
     suffixes = (*PICTURE_SUFFIXES, *LAYER_SUFFIXES)
     use = partial(_reload, state)
-    state.part(FileDialog).ask(
-        FileRequest(tr("Choose the picture painted anew"), suffixes, folder, use, name)
-    )
+    state.part(FileDialog).ask(FileRequest(tr("Choose the changed picture"), suffixes, folder, use, name))
 
 
 def _reload(state: AppState, path: Path) -> None:

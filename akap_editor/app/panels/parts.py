@@ -1,4 +1,4 @@
-"""What sections of the side panel are made of: titles that fold them, and lists of a fixed height."""
+"""Building blocks of the side panel: titles that fold sections, and lists of a fixed height."""
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons

@@ -12,7 +12,7 @@ from akap_editor.app.jobs.reload_artwork import notice_changed_artwork
 from akap_editor.io.images import write_png
 from tests.support.pictures import figure_picture
 
-ASKED = "Choose the picture painted anew"
+ASKED = "Choose the changed picture"
 
 
 @pytest.fixture

@@ -22,7 +22,7 @@ class KeyMoves:
     def view(self, animation: Animation, view: View) -> View:
         """The view for the animation shown now: another one than ``view``, the last one, after undo and redo.
 
-        Who has moved the playhead or selected other keyframes since the move keeps the last view.
+        If the playhead or the selection has changed since the move, ``view`` stays.
         """
         seen, self._seen = self._seen, animation
         if seen is None or seen is animation:
