@@ -34,7 +34,6 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from ..editor.document.drawing import Drawing
     from ..layers.layered_picture import LayeredPicture
 
 MAX_EXPANSION = 1000.0  # pixels
@@ -233,20 +232,31 @@ def _measure_layers(
 ) -> MeshRow:
     """`measure` of a picture in layers, which are meshed as in the editor. Raises InputError."""
     from ..editor.document.drawing import make_drawing
+    from ..geometry.mesh import TriMesh
     from ..io.layers.open_layers import left_out_notes
     from ..io.mesh_files.obj_off import write_obj
-    from ..meshing.quality import smallest_angles
+    from ..meshing.faint import fitting_threshold
+    from ..meshing.quality import mesh_quality, smallest_angles
 
     with file_errors("mesh", picture):
         drawing = make_drawing(None, shown, layers=layered, **asdict(options))
         seconds = time.perf_counter() - started
+        assert drawing.meshing is not None
+        mesh, level = drawing.mesh, drawing.meshing.threshold
         if output is not None:
             make_folder_of(output)
-            write_obj(output, drawing.mesh, drawing.size)
-        rows = _layer_rows(drawing)
-    mesh, angles = drawing.mesh, smallest_angles(drawing.mesh)
+            write_obj(output, mesh, drawing.size)
+        rows = []
+        for number, layer in enumerate(drawing.layers):
+            own, alpha = mesh.face_layers == number, np.pad(layer.artwork.picture[..., 3], 1)
+            used = np.flatnonzero(mesh.layers == number)
+            origin = np.subtract(layer.artwork.offset, 1)
+            part = TriMesh(mesh.vertices[used] - origin, mesh.faces[own] - used[0])
+            quality = mesh_quality(part, alpha, fitting_threshold(alpha, level))
+            rows.append((LayerRow("/".join(layer.path), **asdict(quality)), float(part.rest_areas.sum())))
     areas = np.array([area for _, area in rows])
     common = areas * [1 - row.outside for row, _ in rows]
+    angles = smallest_angles(mesh)
     return MeshRow(
         picture=str(named_path(picture)),
         parts=sum(row.parts for row, _ in rows),
@@ -268,24 +278,6 @@ def _measure_layers(
         notes=tuple(left_out_notes(layered)),
         layers=tuple(row for row, _ in rows),
     )
-
-
-def _layer_rows(drawing: "Drawing") -> list[tuple[LayerRow, float]]:
-    """The measures of each layer's mesh from back to front, with its area in square pixels."""
-    from ..geometry.mesh import TriMesh
-    from ..meshing.faint import fitting_threshold
-    from ..meshing.quality import mesh_quality
-
-    assert drawing.meshing is not None
-    mesh, rows = drawing.mesh, []
-    for number, layer in enumerate(drawing.layers):
-        alpha = np.pad(layer.artwork.picture[..., 3], 1)
-        used = np.flatnonzero(mesh.layers == number)
-        origin = np.subtract(layer.artwork.offset, 1)
-        part = TriMesh(mesh.vertices[used] - origin, mesh.faces[mesh.face_layers == number] - used[0])
-        quality = mesh_quality(part, alpha, fitting_threshold(alpha, drawing.meshing.threshold))
-        rows.append((LayerRow("/".join(layer.path), **asdict(quality)), float(part.rest_areas.sum())))
-    return rows
 
 
 def _expand_folders(pictures: tuple[Path, ...]) -> list[Path]:
