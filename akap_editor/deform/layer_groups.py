@@ -9,8 +9,7 @@ solved together; the others ride.
 import time
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,20 +21,51 @@ from ..geometry.validation import Floats, Ints, as_indices, as_numbers, as_point
 from .deformer import Deformer, Flow, StepReport, StepResult, as_targets
 
 DeformerFactory = Callable[..., Deformer]  # of a mesh, with parameters by keyword
-_MAX_KEPT = 16  # groups whose deformers are kept when pins come and go
+_MAX_KEPT = 16  # groups whose parts are kept when pins come and go
 
 
-@dataclass(frozen=True, eq=False)
-class _Group:
-    """Components of a mesh with pins, joined with one another, as a mesh of their own, and its deformer.
+class _Part:
+    """Components of a mesh, joined with one another, as a mesh of their own, and its deformer.
 
-    vertices: (v,) of the whole mesh; faces: (m,) the number of each of its faces in the group, −1 of others;
-    pins: (p,) indices of the pins on it.
+    The deformer is made when it is first needed. While pins are added one after another, most groups are
+    never solved for; and a step may run in another thread, while pins are changed in that of the window.
+
+    vertices: (v,) of the whole mesh; faces: (m,) the number of each of its faces in the part, −1 of others.
     """
 
-    vertices: Ints
-    faces: Ints
-    deformer: Any  # may have more methods than the contract asks for
+    def __init__(self, vertices: Ints, faces: Ints, make: Callable[[], Deformer]) -> None:
+        self.vertices, self.faces, self._make = vertices, faces, make
+        self._points = NO_POINTS
+        self._scales: Floats | None = None
+        self._made: Any = None
+
+    @property
+    def deformer(self) -> Any:
+        """The deformer, with the pins and scales last set; it may have more methods than the contract."""
+        if self._made is None:
+            self._made = self._make()
+            self._made.set_pins(self._points)
+            if self._made.takes_scales:
+                self._made.set_scales(self._scales)
+        return self._made
+
+    def set_pins(self, points: MeshPoints) -> None:
+        """Choose the pins, k points of the part."""
+        self._points = points
+        if self._made is not None:
+            self._made.set_pins(points)
+
+    def set_scales(self, scales: Floats | None) -> None:
+        """Take scales of the part's faces, if its deformer takes them."""
+        self._scales = scales
+        if self._made is not None:
+            self._made.set_scales(scales)
+
+
+class _Group(NamedTuple):
+    """A part with pins, and the indices (p,) of the pins on it."""
+
+    part: _Part
     pins: Ints
 
 
@@ -59,9 +89,9 @@ class LayerGroupDeformer(Deformer):
         if stiffness is not None:
             self._stiffness = as_numbers(stiffness, "stiffness", count, 0.0, np.inf)
         self._face_components = mesh.component[mesh.faces[:, 0]]
-        self._kept: dict[tuple[int, ...], tuple[Ints, Ints, Any]] = {}
+        self._kept: dict[tuple[int, ...], _Part] = {}
         smallest = int(np.argmin(np.bincount(self._face_components)))
-        sample = self._part((smallest,))[2]  # also checks the parameters
+        sample = self._part((smallest,)).deformer  # also checks the parameters
         self.holds_angles, self.takes_stiffness = sample.holds_angles, sample.takes_stiffness
         self.has_memory, self.has_vector_fields = sample.has_memory, sample.has_vector_fields
         self.takes_joints = sample.takes_joints
@@ -80,10 +110,9 @@ class LayerGroupDeformer(Deformer):
         components = self._face_components[points.faces]
         groups = []
         for group in solved_groups(self._joined, np.unique(components).tolist()):
-            vertices, faces, deformer = self._part(group)
-            pins = np.flatnonzero(np.isin(components, group))
-            deformer.set_pins(MeshPoints(faces[points.faces[pins]], points.weights[pins]))
-            groups.append(_Group(vertices, faces, deformer, pins))
+            part, pins = self._part(group), np.flatnonzero(np.isin(components, group))
+            part.set_pins(MeshPoints(part.faces[points.faces[pins]], points.weights[pins]))
+            groups.append(_Group(part, pins))
         self._groups, self._pin_count = groups, len(points)
         self._pass_scales()
 
@@ -99,32 +128,29 @@ class LayerGroupDeformer(Deformer):
         for group in self._groups:
             own = None
             if self._scales is not None:
-                own = np.asarray(self._scales, dtype=np.float64)[group.faces >= 0]
-            group.deformer.set_scales(own)
+                own = np.asarray(self._scales, dtype=np.float64)[group.part.faces >= 0]
+            group.part.set_scales(own)
 
-    def _part(self, group: tuple[int, ...]) -> tuple[Ints, Ints, Any]:
-        """Vertices, numbers of faces and deformer of some components, see `_Group`."""
+    def _part(self, group: tuple[int, ...]) -> _Part:
+        """The part of some components, the same one if it is one of those that are kept."""
         if group in self._kept:
             self._kept[group] = self._kept.pop(group)  # the last one used
             return self._kept[group]
         mesh = self._mesh
         vertices = np.flatnonzero(np.isin(mesh.component, group))
         own = np.flatnonzero(np.isin(self._face_components, group))
-        number = np.full(len(mesh.vertices), -1)
-        number[vertices] = np.arange(len(vertices))
         faces = np.full(len(mesh.faces), -1)
         faces[own] = np.arange(len(own))
         more: dict[str, Any] = {} if self._stiffness is None else {"stiffness": self._stiffness[own]}
-        layers = None
-        if len(group) > 1:  # then their vertices may coincide
-            layers = mesh.component[vertices]
+        if len(group) > 1:
             inside = np.isin(self._joined, group).all(axis=1)
             joints = self._joints
             more["joints"] = MeshJoints(
                 faces[joints.faces[inside]], joints.weights[inside], joints.is_weld[inside]
             )
-        part = TriMesh(mesh.vertices[vertices], number[mesh.faces[own]], False, layers, mesh.is_cut)
-        self._kept[group] = vertices, faces, self._make(part, **self._parameters, **more)
+        self._kept[group] = _Part(
+            *(vertices, faces, lambda: self._make(mesh.part(vertices, own), **self._parameters, **more))
+        )
         while len(self._kept) > _MAX_KEPT:
             del self._kept[next(iter(self._kept))]
         return self._kept[group]
@@ -142,7 +168,7 @@ class LayerGroupDeformer(Deformer):
         results: list[tuple[_Group, StepResult]] = []
         for group in self._groups:
             optional = () if wanted is None else (wanted[group.pins],)
-            result = group.deformer.step(pose[group.vertices], goals[group.pins], *optional)
+            result = group.part.deformer.step(pose[group.part.vertices], goals[group.pins], *optional)
             results.append((group, result))
         moved = self._together(pose, [(group, result.positions) for group, result in results])
         fields = [(group, result.field) for group, result in results if result.field is not None]
@@ -154,7 +180,7 @@ class LayerGroupDeformer(Deformer):
         """``values`` (n, 2) with those of groups in place."""
         result = values.copy()
         for group, part in parts:
-            result[group.vertices] = part
+            result[group.part.vertices] = part
         return result
 
     def _flow(self, pose: Floats, results: list[tuple[_Group, StepResult]]) -> Flow | None:
@@ -178,8 +204,8 @@ class LayerGroupDeformer(Deformer):
         rates = as_points(velocities, "velocities", self._pin_count)
         optimal, smooth = np.zeros_like(pose), np.zeros_like(pose)
         for group in self._groups:
-            fields = group.deformer.vector_fields(pose[group.vertices], rates[group.pins])
-            optimal[group.vertices], smooth[group.vertices] = fields
+            fields = group.part.deformer.vector_fields(pose[group.part.vertices], rates[group.pins])
+            optimal[group.part.vertices], smooth[group.part.vertices] = fields
         return optimal, smooth
 
 

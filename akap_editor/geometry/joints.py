@@ -5,6 +5,7 @@ joint, and three weak ones on a circle around it: without them a limb without pi
 the matrix would be singular. A weld has three strong rows on the circle.
 """
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,11 +14,13 @@ from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
 from .mesh import TriMesh, barycentric
+from .operators import to_points
 from .validation import Complexes, Floats, Ints, as_indices, freeze
 
 STRONG, WEAK = 1e4, 1.0  # λ² of a row: a pin's, and one that hardly resists a rotation
 _RADIUS = 0.02  # share of √area: of the circle of the weak rows
 _RADIUS_OF_SMALL = 0.2  # the same of the smaller of the two components, which it may not exceed
+_ROUNDING = 1e-12  # barycentric weight below zero that still counts as on the face
 _CIRCLE = np.exp(2j * np.pi * np.arange(3) / 3)
 
 
@@ -59,39 +62,64 @@ NO_JOINTS = MeshJoints(np.zeros((0, 2), dtype=np.int32), np.zeros((0, 2, 3)), np
 class JointRows:
     """The rows of joints of a mesh, and the energy Σ strength |W_a p − W_b p|².
 
-    places: (j, 2) of the joints in the rest pose. Each joint has four successive rows, its own and three on
-    the circle. corners, weights: (r, 6) vertices of both points, and their weights, negative for the second
-    point; strengths: (r,) λ²; is_strong: (r,) which rows close their gap, the others only resist.
+    places: (j, 2) of the joints in the rest pose; components: (j, 2) that they hold together. Each joint has
+    four successive rows, its own and three on the circle. corners, weights: (r, 6) vertices of both points,
+    and their weights, negative for the second point; strengths: (r,) λ²; is_strong: (r,) which rows close
+    their gap, the others only resist.
     """
 
     def __init__(self, mesh: TriMesh, joints: MeshJoints) -> None:
-        places = joints.places(mesh, mesh.vertices).mean(axis=1)
-        components = joints.components(mesh)
-        if (components[:, 0] == components[:, 1]).any():
+        self.components = joints.components(mesh)
+        if (self.components[:, 0] == self.components[:, 1]).any():
             raise InputError("joints: expected points of two components each")
-        face_components = mesh.component[mesh.faces[:, 0]]
-        areas = np.bincount(face_components, mesh.rest_areas)
-        radii = np.minimum(_RADIUS * mesh.length, _RADIUS_OF_SMALL * np.sqrt(areas[components].min(axis=1)))
-        boxes = {
-            number: _Boxes(mesh, np.flatnonzero(face_components == number))
-            for number in np.unique(components).tolist()
-        }
-        corners, weights, strengths = [], [], []
-        for j, (faces, place, radius) in enumerate(zip(joints.faces, places, radii, strict=True)):
-            side = STRONG if joints.is_weld[j] else WEAK
-            around = [(place + radius * np.array([z.real, z.imag]), side) for z in _CIRCLE]
-            near = [boxes[number].near(place, radius) for number in components[j].tolist()]
-            for point, strength in [(place, STRONG), *around]:
-                ends = [_row_end(mesh, int(face), own, point) for face, own in zip(faces, near, strict=True)]
-                corners.append(np.concatenate([ends[0][0], ends[1][0]]))
-                weights.append(np.concatenate([ends[0][1], -ends[1][1]]))
-                strengths.append(strength)
-        self.corners: Ints = np.array(corners, dtype=np.int64).reshape(-1, 6)
-        self.weights: Floats = np.array(weights).reshape(-1, 6)
-        self.strengths: Floats = np.array(strengths)
+        self.places: Floats = joints.places(mesh, mesh.vertices).mean(axis=1)
+        strengths = np.where(joints.is_weld[:, None], STRONG, [STRONG, WEAK, WEAK, WEAK])
+        self.strengths: Floats = strengths.ravel()
         self.is_strong = self.strengths == STRONG
-        self.places: Floats = places
-        self._n = len(mesh.vertices)
+        self._set_ends(mesh, self._find_ends(mesh, joints.faces))
+
+    def renumber(self, mesh: TriMesh, face_numbers: Ints) -> "JointRows":
+        """The same rows of the renumbered mesh; face_numbers: (m,) the number there of each face."""
+        rows = copy(self)
+        rows._set_ends(mesh, face_numbers[self._ends])
+        return rows
+
+    def _circles(self, mesh: TriMesh) -> tuple[Floats, Floats]:
+        """The points of the rows, (j, 4, 2), and the radii of the circles, (j,)."""
+        areas = np.bincount(mesh.component[mesh.faces[:, 0]], mesh.rest_areas)
+        smaller = np.sqrt(areas[self.components].min(axis=1))
+        radii = np.minimum(_RADIUS * mesh.length, _RADIUS_OF_SMALL * smaller)
+        around = self.places[:, None] + radii[:, None, None] * to_points(_CIRCLE)
+        return np.concatenate([self.places[:, None], around], axis=1), radii
+
+    def _find_ends(self, mesh: TriMesh, faces: Ints) -> Ints:
+        """The faces at the two ends of each row, (r, 2).
+
+        Where a component has no face at the point of a row, its face of the joint, ``faces`` (j, 2), is
+        extended, so that the row is 0 at rest in any case.
+        """
+        points, radii = self._circles(mesh)
+        ends = np.repeat(faces[:, None], points.shape[1], axis=1)
+        component_of_face = mesh.component[mesh.faces[:, 0]]
+        for number in np.unique(self.components):
+            boxes = _Boxes(mesh, np.flatnonzero(component_of_face == number))
+            for joint, side in np.argwhere(self.components == number):
+                near, rows = boxes.near(self.places[joint], radii[joint]), points[joint]
+                if len(near):
+                    corners = np.tile(mesh.vertices[mesh.faces[near]], (len(rows), 1, 1))
+                    weights = barycentric(corners, np.repeat(rows, len(near), axis=0))
+                    inside = weights.min(axis=1).reshape(len(rows), len(near))
+                    is_on_face = inside.max(axis=1) >= -_ROUNDING
+                    ends[joint, is_on_face, side] = near[inside.argmax(axis=1)[is_on_face]]
+        return ends.reshape(-1, 2)
+
+    def _set_ends(self, mesh: TriMesh, ends: Ints) -> None:
+        """Set corners and weights from the faces at the ends of the rows, (r, 2)."""
+        self._ends, self._n = ends, len(mesh.vertices)
+        corners, points = mesh.faces[ends], self._circles(mesh)[0].reshape(-1, 2)
+        first, second = (barycentric(mesh.vertices[corners[:, side]], points) for side in range(2))
+        self.corners: Ints = corners.reshape(-1, 6).astype(np.int64)
+        self.weights: Floats = np.concatenate([first, -second], axis=1)
 
     @property
     def links(self) -> Ints:
@@ -128,8 +156,9 @@ class _Boxes:
     """The bounding boxes of the faces of one component of a mesh at rest."""
 
     def __init__(self, mesh: TriMesh, faces: Ints) -> None:
-        corners = mesh.vertices[mesh.faces[faces]]
-        self._faces, self._low, self._high = faces, corners.min(axis=1), corners.max(axis=1)
+        a, b, c = (mesh.vertices[corners] for corners in mesh.faces[faces].T)
+        self._faces = faces
+        self._low, self._high = (extreme(extreme(a, b), c) for extreme in (np.minimum, np.maximum))
 
     def near(self, place: Floats, radius: float) -> Ints:
         """The faces whose boxes reach into the square around a circle, ascending."""
@@ -138,22 +167,12 @@ class _Boxes:
         return self._faces[is_near[:, 0] & is_near[:, 1]]
 
 
-def _row_end(mesh: TriMesh, face: int, near: Ints, point: Floats) -> tuple[Ints, Floats]:
-    """Corners (3,) of the face at a point (2,) of the rest pose, one of those ``near``, and weights.
+def joined_groups(mesh: TriMesh, joined: Ints) -> Ints:
+    """The number of the group of components that each vertex belongs to, (n,) int32.
 
-    Outside all of them, the face ``face`` is extended, so that the row is 0 at rest in any case.
+    joined: (j, 2) components that a joint holds together.
     """
-    if len(near):
-        weights = barycentric(mesh.vertices[mesh.faces[near]], point)
-        best = int(weights.min(axis=1).argmax())
-        if weights[best].min() >= -1e-12:
-            return mesh.faces[near[best]], weights[best]
-    return mesh.faces[face], barycentric(mesh.vertices[mesh.faces[[face]]], point)[0]
-
-
-def joined_groups(mesh: TriMesh, joints: MeshJoints) -> Ints:
-    """The number of the group of components joined by joints that each vertex belongs to, (n,) int32."""
     count = int(mesh.component.max()) + 1
-    first, second = joints.components(mesh).T
+    first, second = joined.T
     graph = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
     return connected_components(graph, directed=False)[1][mesh.component].astype(np.int32)

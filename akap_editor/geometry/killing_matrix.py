@@ -36,6 +36,18 @@ class Triangles:
     edges: Ints
 
 
+def coupled_pairs(edges: Ints, links: Ints, n: int) -> Ints:
+    """The edges (e, 2) of a mesh and further pairs (l, 2) of its n vertices, each once, (e + l, 2).
+
+    Both have the lower vertex first; edges and result are in lexicographic order.
+    """
+    factors = np.array([n, 1], dtype=np.int64)
+    keys, more = edges @ factors, np.unique(links @ factors)
+    places = np.searchsorted(keys, more)
+    is_new = keys[np.minimum(places, len(keys) - 1)] != more
+    return np.insert(edges, places[is_new], np.stack(np.divmod(more[is_new], n), axis=1), axis=0)
+
+
 class VertexBlocks:
     """The sparsity pattern: one block for each vertex and each edge of a mesh, and for each of its links.
 
@@ -50,8 +62,7 @@ class VertexBlocks:
     def __init__(self, mesh: TriMesh | Triangles, links: Ints | None = None) -> None:
         n, pairs = len(mesh.vertices), mesh.edges.astype(np.int64)
         if links is not None and len(links):
-            keys = np.unique(np.concatenate([pairs, links]) @ np.array([n, 1], dtype=np.int64))
-            pairs = np.stack(np.divmod(keys, n), axis=1)
+            pairs = coupled_pairs(pairs, links, n)
         low, high = pairs.T
         higher_neighbors = np.bincount(low, minlength=n)
         ends = np.cumsum(3 + 4 * higher_neighbors)

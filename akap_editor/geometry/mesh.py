@@ -120,18 +120,51 @@ class TriMesh:
         """
         numbers = np.empty(len(vertex_order), dtype=np.int32)
         numbers[vertex_order] = np.arange(len(vertex_order))
-        mesh = object.__new__(TriMesh)  # what `__post_init__` checks does not depend on the order
-        object.__setattr__(mesh, "vertices", freeze(self.vertices[vertex_order]))
-        object.__setattr__(mesh, "faces", freeze(numbers[self.faces[face_order]]))
-        object.__setattr__(mesh, "tied", self.tied)
-        object.__setattr__(mesh, "is_cut", self.is_cut)
-        layers = None if self.layers is None else freeze(self.layers[vertex_order])
-        object.__setattr__(mesh, "layers", layers)
         edges = np.sort(numbers[self.edges], axis=1)
         keys = edges @ np.array([len(numbers), 1], dtype=np.int64)
-        mesh.__dict__["edges"] = freeze(edges[np.argsort(keys)])  # these are cheaper than from the faces
-        mesh.__dict__["_boundary_half_edges"] = numbers[self._boundary_half_edges]
-        mesh.__dict__["component"] = freeze(self.component[vertex_order])
+        layers = None if self.layers is None else self.layers[vertex_order]
+        return self._derived(
+            *(vertex_order, numbers[self.faces[face_order]], self.tied, layers, edges[np.argsort(keys)]),
+            *(numbers[self._boundary_half_edges], self.component[vertex_order]),
+        )
+
+    def part(self, vertices: Ints, faces: Ints) -> "TriMesh":
+        """The mesh of some whole components, each on a layer of its own if there are several; not tied.
+
+        vertices: (v,), faces: (q,) ascending, all of those components, which keep their order.
+        """
+        numbers = np.full(len(self.vertices), -1, dtype=np.int32)
+        numbers[vertices] = np.arange(len(vertices))
+        own = self.component[vertices]
+        is_present = np.bincount(own) > 0
+        edges, rim = numbers[self.edges], numbers[self._boundary_half_edges]
+        return self._derived(
+            *(vertices, numbers[self.faces[faces]], False, own if is_present.sum() > 1 else None),
+            *(edges[edges[:, 0] >= 0], rim[rim[:, 0] >= 0], (np.cumsum(is_present) - 1)[own]),
+        )
+
+    def _derived(
+        self,
+        chosen: Ints,
+        faces: Ints,
+        tied: bool,
+        layers: Ints | None,
+        edges: Ints,
+        boundary_half_edges: Ints,
+        component: Ints,
+    ) -> "TriMesh":
+        """A mesh of the ``chosen`` vertices; for its arrays see the properties of their names.
+
+        Nothing is checked or sorted again, because this mesh was.
+        """
+        mesh = object.__new__(TriMesh)
+        for name, array in (("vertices", self.vertices[chosen]), ("faces", faces), ("layers", layers)):
+            object.__setattr__(mesh, name, None if array is None else freeze(array))
+        object.__setattr__(mesh, "tied", tied)
+        object.__setattr__(mesh, "is_cut", self.is_cut)
+        mesh.__dict__["edges"] = freeze(edges)
+        mesh.__dict__["_boundary_half_edges"] = boundary_half_edges
+        mesh.__dict__["component"] = freeze(component.astype(np.int32))
         return mesh
 
     @cached_property

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.deform.layer_groups import LayerGroupDeformer, solved_groups
 from akap_editor.deform.methods import make_deformer, method_names
 from akap_editor.errors import InputError
 from akap_editor.geometry.joints import MeshJoints
-from akap_editor.geometry.mesh import TriMesh, signed_areas
+from akap_editor.geometry.mesh import MeshPoints, TriMesh, signed_areas
 from tests.support.puppets import ARM, BODY, EYES, HAT, SKULL, joints, puppet
 
 MESH = puppet().mesh
@@ -226,6 +227,31 @@ def test_methods_without_joints_let_layers_ride_by_them(method):
     pose = deformer.step(MESH.vertices, [(95.0, 160.0)]).positions
     assert not deformer.takes_joints
     np.testing.assert_allclose((pose - MESH.vertices)[MESH.layers == ARM].mean(axis=0), [15, 5], atol=0.5)
+
+
+def test_what_is_solved_for_is_prepared_when_it_is_needed_bit_for_bit():
+    """Choosing pins one after another prepares the last chain only, as if they were chosen at once."""
+    made = []
+
+    def make(mesh, **parameters):
+        made.append(mesh)
+        return AkapDeformer(mesh, **parameters)
+
+    deformer = LayerGroupDeformer(MESH, make, RIG, memory=1.0)
+    at_once = LayerGroupDeformer(MESH, make, RIG, memory=1.0)
+    made.clear()
+    points = MESH.locate([(80.0, 155.0), (150.0, 118.0), (80.0, 40.0)], layers=[BODY, ARM, SKULL])
+    scales = np.full(len(MESH.faces), 1.25)
+    for count in (1, 2, 3):
+        deformer.set_pins(MeshPoints(points.faces[:count], points.weights[:count]))
+        deformer.set_scales(scales)
+    assert not made
+    at_once.set_scales(scales)
+    at_once.set_pins(points)
+    targets = MESH.evaluate(points, MESH.vertices) + np.array([(0, 0), (4, 9), (0, 0)])
+    poses = [each.step(MESH.vertices, targets).positions for each in (deformer, at_once)]
+    assert len(made) == 2
+    assert (poses[0] == poses[1]).all()
 
 
 def test_no_joints_are_as_none_at_all_bit_for_bit():

@@ -44,13 +44,31 @@ def test_entries_and_pull_are_those_of_the_energy():
     assert {pair for pair in cross if layers[pair[0]] != layers[pair[1]]} == coupled
 
 
+def test_rows_of_a_renumbered_mesh_are_those_of_the_same_places():
+    """Also where a joint lies on a vertex, and which of the faces around it is taken depends on rounding."""
+    rng = np.random.default_rng(8)
+    vertex_order, face_order = (rng.permutation(len(part)) for part in (MESH.vertices, MESH.faces))
+    mesh = MESH.renumber(vertex_order, face_order)
+    x, y = MESH.vertices.T
+    of_arm = MESH.vertices[(MESH.layers == ARM) & (x > 87) & (x < 97) & (abs(y - 119) < 6)]
+    rows = JointRows(MESH, joints(*((ARM, BODY, place, False) for place in of_arm), NECK))
+    assert len(of_arm)
+    found = rows.renumber(mesh, np.argsort(face_order))
+    assert (vertex_order[found.corners] == rows.corners).all()
+    assert np.abs(found.weights - rows.weights).max() < 1e-9
+    assert (found.places == rows.places).all()
+    assert {frozenset(pair) for pair in vertex_order[found.links].tolist()} == {
+        frozenset(pair) for pair in rows.links.tolist()
+    }
+
+
 def test_joined_components_form_groups():
-    groups = joined_groups(MESH, joints(SHOULDER, NECK))
+    groups = joined_groups(MESH, joints(SHOULDER, NECK).components(MESH))
     of_layer = [set(groups[MESH.layers == layer]) for layer in range(5)]
     assert of_layer[BODY] == of_layer[ARM] == of_layer[SKULL]
     assert of_layer[EYES].isdisjoint(of_layer[BODY])
     assert len(of_layer[EYES]) == 2
-    assert (joined_groups(MESH, NO_JOINTS) == MESH.component).all()
+    assert (joined_groups(MESH, NO_JOINTS.components(MESH)) == MESH.component).all()
 
 
 @pytest.mark.parametrize(

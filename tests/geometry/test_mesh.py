@@ -348,6 +348,25 @@ def test_renumbered_mesh_is_that_made_anew(mesh):
     assert (found.component == mesh.component[vertex_order]).all()
 
 
+@pytest.mark.parametrize("chosen", [(0,), (2,), (0, 1), (1, 2), (0, 1, 2)])
+def test_part_of_a_mesh_is_that_made_anew(chosen):
+    triangles = [TRIANGLE + offset for offset in ((0.0, 0.0), (9.0, 0.0), (0.0, 9.0))]
+    fourth_corner = np.array([(10.0, 1.0)])  # of the second one, whose faces are the first and the last
+    faces = np.array([(3, 4, 5), (6, 7, 8), (0, 1, 2), (4, 9, 5)])
+    whole = TriMesh(np.concatenate([*triangles, fourth_corner]), faces)
+    component = whole.component
+    vertices = np.flatnonzero(np.isin(component, chosen))
+    own = np.flatnonzero(np.isin(component[whole.faces[:, 0]], chosen))
+    found = whole.part(vertices, own)
+    layers = component[vertices] if len(chosen) > 1 else None
+    anew = TriMesh(whole.vertices[vertices], np.searchsorted(vertices, whole.faces[own]), layers=layers)
+    for name in ("vertices", "faces", "edges", "component", "boundary_vertices", "face_layers"):
+        got, expected = getattr(found, name), getattr(anew, name)
+        assert got.dtype == expected.dtype
+        assert np.array_equal(got, expected)
+    assert [loop.tolist() for loop in found.boundary_loops] == [loop.tolist() for loop in anew.boundary_loops]
+
+
 # --- layers ---
 
 TWO = np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)] * 2)

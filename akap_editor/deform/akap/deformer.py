@@ -118,15 +118,15 @@ class AkapDeformer(Deformer):
             count = len(mesh.faces)
             self._stiffness = as_numbers(stiffness, "stiffness", count, _MIN_STIFFNESS, _MAX_STIFFNESS)
         joints = joints if joints is not None and len(joints) else None
-        self._order = EliminationOrder(mesh, None if joints is None else JointRows(mesh, joints).links)
+        rows = None if joints is None else JointRows(mesh, joints)
+        self._order = EliminationOrder(mesh, None if rows is None else rows.links)
         if self._stiffness is not None:
             self._stiffness = self._order.face_values(self._stiffness)
         mesh = self._mesh = self._order.mesh
         self._joints: JointRows | None = None
         self._groups = mesh.component  # of components that are joined
-        if joints is not None:
-            renumbered = self._order.joints(joints)
-            self._joints, self._groups = JointRows(mesh, renumbered), joined_groups(mesh, renumbered)
+        if rows is not None:
+            self._joints, self._groups = self._order.joint_rows(rows), joined_groups(mesh, rows.components)
         self._dirichlet = as_switch(dirichlet, "dirichlet")
         self._max_step = max_step * mesh.length
         # Soft pins give way a little to the rest memory. With memory, they are not moved back from within the

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ...geometry.joints import MeshJoints
+from ...geometry.joints import JointRows
+from ...geometry.killing_matrix import coupled_pairs
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints
@@ -22,7 +23,7 @@ class EliminationOrder:
     def __init__(self, mesh: TriMesh, links: Ints | None = None) -> None:
         coupled = mesh.edges
         if links is not None and len(links):
-            coupled = np.unique(np.concatenate([coupled, links]), axis=0).astype(np.int32)
+            coupled = coupled_pairs(coupled, links, len(mesh.vertices))
         order, self.starts = dissect(mesh.vertices, coupled)
         self._vertices = order.astype(np.intp)
         n, m = len(order), len(mesh.faces)
@@ -37,9 +38,9 @@ class EliminationOrder:
         """The same points of the renumbered mesh."""
         return MeshPoints(self._face_numbers[points.faces], points.weights)
 
-    def joints(self, joints: MeshJoints) -> MeshJoints:
-        """The same joints of the renumbered mesh."""
-        return MeshJoints(self._face_numbers[joints.faces], joints.weights, joints.is_weld)
+    def joint_rows(self, rows: JointRows) -> JointRows:
+        """The same rows of joints of the renumbered mesh."""
+        return rows.renumber(self.mesh, self._face_numbers)
 
     def face_values(self, values: Floats) -> Floats:
         """Values (m,) of the faces in the order of the renumbered mesh."""
