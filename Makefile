@@ -27,8 +27,8 @@ run:
 # Without DISPLAY the tests open their windows on an Xvfb of their own, never on the user's screen.
 test:
 	@sh tools/setup.sh test
-	@$(BIN)/python tools/precompile.py
-	env -u DISPLAY -u WAYLAND_DISPLAY $(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
+	@env -u PYTHONDONTWRITEBYTECODE $(BIN)/python tools/precompile.py
+	env -u DISPLAY -u WAYLAND_DISPLAY -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
 lint:
 	@sh tools/setup.sh lint

@@ -14,6 +14,7 @@ from akap_editor.io.akap.project import save
 from akap_editor.io.images import write_png
 from akap_editor.io.open_document import open_document
 from tests.support.command_line import Result
+from tests.support.opengl import shared_context  # noqa: F401  # for all tests of this folder
 from tests.support.pictures import bar_picture
 
 

@@ -12,6 +12,7 @@ from akap_editor.editor.document.pin import Pin
 from akap_editor.editor.document.settings import Settings
 from akap_editor.geometry.mesh import TriMesh
 from tests.support.cartoons import cartoon_paths
+from tests.support.opengl import shared_context  # noqa: F401  # for all tests of this folder
 
 
 @pytest.fixture
