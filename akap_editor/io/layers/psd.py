@@ -11,7 +11,7 @@ from PIL import Image
 from psd_tools import ParseLimits, PSDDecompressionWarning, PSDImage
 from psd_tools.api.layers import AdjustmentLayer, Group
 from psd_tools.api.layers import Layer as PsdLayer
-from psd_tools.constants import BlendMode, ChannelID, ColorMode, Tag
+from psd_tools.constants import BlendMode, ChannelID, ColorMode, CompatibilityMode, Tag
 from psd_tools.psd.descriptor import Descriptor
 
 from ...errors import AkapError, InputError, error_context
@@ -40,6 +40,11 @@ _BLEND_MODES = {
     BlendMode.PASS_THROUGH: PASS_THROUGH,
 }
 
+# Of Photoshop CS2 and before, which psd-tools takes for layers with pixels
+_OLD_ADJUSTMENTS = (Tag.BRIGHTNESS_AND_CONTRAST, Tag.HUE_SATURATION_V4)
+_SOFT_EDGE = 1  # pixels by which shapes are larger than the artboard that they fill
+_ARTBOARD_DATA = (Tag.ARTBOARD_DATA1, Tag.ARTBOARD_DATA2, Tag.ARTBOARD_DATA3)
+
 logging.getLogger("psd_tools").addHandler(logging.NullHandler())  # its remarks are not for our users
 
 
@@ -59,6 +64,7 @@ def decode_psd(file: BinaryIO) -> LayeredPicture:
                 raise InputError(os_error_reason(error)) from error
             raise InputError(tr("the file is damaged or not a Photoshop file")) from error
         file.close()
+        psd.compatibility_mode = CompatibilityMode.CLIP_STUDIO_PAINT  # groups may be clipped
         return _PsdReader(psd).read()
 
 
@@ -127,13 +133,12 @@ class _PsdReader:
     def _read_layer(self, layer: PsdLayer, place: dict[str, Any], masks: tuple[PsdLayer, ...]) -> None:
         name = quoted(layer.name)
         announce(self.budget.layers / (self._count + 1), tr("Reading the layer {name}", name=name))
-        if not layer.has_pixels():
-            if isinstance(layer, AdjustmentLayer):
+        if not layer.has_pixels() or layer.width < 1 or layer.height < 1:
+            is_old_adjustment = any(tag in layer.tagged_blocks for tag in _OLD_ADJUSTMENTS)
+            if isinstance(layer, AdjustmentLayer) or is_old_adjustment:
                 self.left_out.append(tr("the adjustment layer {name}", name=name))
             elif layer.kind != "pixel":
                 self.left_out.append(tr("{name}, of which the file contains no picture", name=name))
-            return
-        if layer.width < 1 or layer.height < 1:
             return
         self._name_what_is_left_out(layer)
         with error_context(tr("layer {name}", name=name)):
@@ -173,6 +178,10 @@ class _PsdReader:
             self.left_out.append(tr("the effects of {name}", name=name))
         if _has_background(layer):
             self.left_out.append(tr("the background of the artboard {name}", name=name))
+        if _has_crop(layer):
+            self.left_out.append(tr("the crop of the artboard {name}", name=name))
+        if layer.tagged_blocks.get_data(Tag.KNOCKOUT_SETTING):
+            self.left_out.append(tr("the knockout of {name}", name=name))
         has_rendered_mask = layer.mask is not None and layer.mask.has_real()
         if layer.has_vector_mask() and layer.kind != "shape" and not has_rendered_mask:
             self.left_out.append(tr("the vector mask of {name}", name=name))
@@ -196,12 +205,26 @@ def _has_older_effects(layer: PsdLayer) -> bool:
 
 def _has_background(layer: PsdLayer) -> bool:
     """Whether a layer is an artboard that is not transparent."""
-    for tag in (Tag.ARTBOARD_DATA1, Tag.ARTBOARD_DATA2, Tag.ARTBOARD_DATA3):
-        data = layer.tagged_blocks.get_data(tag)
-        kind = data.get(b"artboardBackgroundType") if data is not None else None
-        if kind is not None and int(kind) != 1:
-            return True
+    kinds = (data.get(b"artboardBackgroundType") for data in _artboard_data(layer))
+    return any(kind is not None and int(kind) != 1 for kind in kinds)
+
+
+def _has_crop(layer: Any) -> bool:
+    """Whether a layer is an artboard that hides pixels outside of it, which are kept here."""
+    for data in _artboard_data(layer):
+        sides = data.get(b"artboardRect") or {}
+        keys = (b"Left", b"Top ", b"Rght", b"Btom")
+        left, top, right, bottom = (float(sides.get(key, 0.0)) for key in keys)
+        for part in layer.descendants() if left < right and top < bottom else ():
+            sides_inside = part.left - left, part.top - top, right - part.right, bottom - part.bottom
+            if part.has_pixels() and min(sides_inside) < -_SOFT_EDGE:
+                return True
     return False
+
+
+def _artboard_data(layer: PsdLayer) -> list[Any]:
+    found = (layer.tagged_blocks.get_data(tag) for tag in _ARTBOARD_DATA)
+    return [data for data in found if data is not None]
 
 
 def _is_masked(layer: PsdLayer) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from psd_tools import PSDImage
-from psd_tools.constants import BlendMode, Tag
+from psd_tools.constants import BlendMode, Clipping, Tag
 from psd_tools.psd.descriptor import Bool, Descriptor, DescriptorBlock, DescriptorBlock2, Double, Integer
 
 from akap_editor.errors import InputError
@@ -87,6 +87,35 @@ def test_the_background_of_an_artboard_is_named(kind):
     assert read(build).left_out == (("the background of the artboard “page”",) if kind == 2 else ())
 
 
+@pytest.mark.parametrize(("right", "is_cropping"), [(3.0, False), (2.0, False), (1.0, True)])
+def test_what_an_artboard_hides_is_drawn_and_named(right, is_cropping):
+    def build(psd):
+        board = psd.create_group(name="page")
+        sides = {b"Top ": Double(0.0), b"Left": Double(0.0), b"Btom": Double(2.0), b"Rght": Double(right)}
+        rectangle = Descriptor(classID=b"classFloatRect", items=sides)
+        block = DescriptorBlock(classID=b"artboard", items={b"artboardRect": rectangle}, version=16)
+        board.tagged_blocks.set_data(Tag.ARTBOARD_DATA1, block)
+        add_layer(board, "a", RED)
+
+    layered = read(build)
+    assert layered.layers[0].box == (0, 0, 3, 2)
+    assert layered.left_out == (("the crop of the artboard “page”",) if is_cropping else ())
+
+
+def test_a_knockout_and_old_adjustment_layers_are_named():
+    def build(psd):
+        add_layer(psd, "base", RED)
+        add_layer(psd, "hole", RED).tagged_blocks.set_data(Tag.KNOCKOUT_SETTING, 1)
+        light = add_layer(psd, "light", filled(1, 1, 0, 0, 0))
+        light.tagged_blocks.set_data(Tag.BRIGHTNESS_AND_CONTRAST, 20, 0, 127)
+        record = light._record
+        record.top = record.left = record.bottom = record.right = 0
+
+    layered = read(build)
+    assert [layer.name for layer in layered.layers] == ["base", "hole"]
+    assert layered.left_out == ("the knockout of “hole”", "the adjustment layer “light”")
+
+
 def test_groups_keep_opacity_visibility_and_blending():
     def build(psd):
         outer = psd.create_group(name="outer")
@@ -147,6 +176,20 @@ def test_clipping():
 
     layered = read(build)
     assert [layer.clipping for layer in layered.layers] == [False, True]
+    came = composite(layered)
+    assert (came[1:3, 1:4] == [0, 0, 255, 255]).all()
+    assert came[..., 3].sum() == 6 * 255
+
+
+def test_a_group_is_clipped_as_painting_programs_write_it():
+    def build(psd):
+        add_layer(psd, "base", RED, 1, 1)
+        group = psd.create_group(name="pattern")
+        add_layer(group, "spots", filled(6, 4, 0, 0, 255))
+        group._record.clipping = Clipping.NON_BASE  # psd-tools' setter refuses it
+
+    layered = read(build)
+    assert layered.layers[1].groups[0].clipping
     came = composite(layered)
     assert (came[1:3, 1:4] == [0, 0, 255, 255]).all()
     assert came[..., 3].sum() == 6 * 255
