@@ -24,6 +24,8 @@ from ..multifrontal import Matrix, dot, iterate, multiply
 MAX_WASTED_ITERATIONS = 2
 MAX_WASTED_ITERATIONS_OF_SMALL = 8  # small meshes factorize at once: a thread would cost more than it saves
 _FACTORIZATION_DELAY = 1  # poses for which the old factors serve while new ones are made beside
+_LONG_DELAY = 2  # the same for many vertices, whose factors take longer than a pose
+MIN_LONG_DELAY_VERTICES = 50_000
 _MAX_ITERATIONS = 12  # of one solution; without convergence the current matrix is factorized
 MIN_HALF_VERTICES = 1500  # factors of fewer vertices fit into the caches in double precision, too
 _EXACT_ITERATIONS = 5  # that reach double precision from the factors of the very matrix
@@ -56,6 +58,7 @@ class PreconditionedCholesky:
         self._matrix = Matrix(*pattern.neighbors(), np.empty(0))
         self._exact, self._confirm = exact, confirm
         self._is_small = n < MIN_HALF_VERTICES
+        self._delay = _LONG_DELAY if n >= MIN_LONG_DELAY_VERTICES else _FACTORIZATION_DELAY
         self._precision: Precision = np.float64 if exact or self._is_small else np.float16
         self._factors = CholeskyFactors(self.symbolic, self._precision)
         self._spare: CholeskyFactors | None = None  # made beside, or used before
@@ -162,7 +165,7 @@ class PreconditionedCholesky:
             self._spare = CholeskyFactors(self.symbolic, self._precision)
         self._job = _FactorizationThread(self._spare, self._matrix.nonzeros, self._frame)
         self._job.start()
-        self._poses_to_wait = _FACTORIZATION_DELAY
+        self._poses_to_wait = self._delay
 
     def _finish_job(self) -> "_FactorizationThread | None":
         """Wait until nothing is factorized beside; returns the thread if there was one."""

@@ -1,6 +1,7 @@
 """Conjugate gradients preconditioned by earlier factors: exact results, few factorizations."""
 
 import time
+from threading import Thread
 
 import numpy as np
 import pytest
@@ -217,7 +218,10 @@ def test_factors_of_the_very_matrix_give_double_precision(system):
 
 @pytest.mark.usefixtures("half_precision")
 @pytest.mark.parametrize("slow_calls", [range(0), range(2, 100), range(2, 100, 3)])
-def test_poses_do_not_depend_on_how_fast_factors_are_made_beside(monkeypatch, slow_calls):
+@pytest.mark.parametrize("long_delay", [False, True])
+def test_poses_do_not_depend_on_how_fast_factors_are_made_beside(monkeypatch, slow_calls, long_delay):
+    if long_delay:
+        monkeypatch.setattr(preconditioned_cholesky, "MIN_LONG_DELAY_VERTICES", 0)
     expected = drag_of_bar()
     factorize, calls = CholeskyFactors.factorize, []
 
@@ -230,6 +234,22 @@ def test_poses_do_not_depend_on_how_fast_factors_are_made_beside(monkeypatch, sl
     monkeypatch.setattr(CholeskyFactors, "factorize", slow)
     assert all((a == b).all() for a, b in zip(drag_of_bar(), expected, strict=True))
     assert len(calls) > 4
+
+
+@pytest.mark.usefixtures("half_precision")
+@pytest.mark.parametrize(("min_vertices", "delay"), [(10**6, 1), (0, 2)])
+def test_factors_are_taken_over_later_in_a_large_mesh(monkeypatch, system, min_vertices, delay):
+    monkeypatch.setattr(preconditioned_cholesky, "MIN_LONG_DELAY_VERTICES", min_vertices)
+    solver, start, begun, taken_over = prepared(system), Thread.start, [], []
+    monkeypatch.setattr(Thread, "start", lambda thread: (begun.append(pose), start(thread)))
+    ones = np.ones(system.size // 2, dtype=complex)
+    for pose in range(20):
+        before = solver.factorizations
+        solver.prepare(system.nonzeros(system.mesh.vertices * [1.0 + 0.05 * pose, 1.0]), ones)
+        taken_over += [pose] * (solver.factorizations - before)
+        solver.solve(right_side(system, pose), TOLERANCE)
+    assert len(taken_over) > 1
+    assert (np.subtract(taken_over, begun[: len(taken_over)]) == delay).all()
 
 
 @pytest.mark.usefixtures("half_precision")
