@@ -1,12 +1,14 @@
 """Sparse Cholesky factorization, symbolic and numeric phase apart (paper, section 3.1)."""
 
+from functools import cached_property
+
 import numpy as np
 
 from ..errors import SolverError
 from ..geometry.validation import Complexes, Floats, Indices, Ints
 from . import multifrontal
 from .dissection import Dissection
-from .fronts import SymbolicCholesky
+from .fronts import SymbolicCholesky, column_starts
 
 
 class SymmetricPattern:
@@ -24,13 +26,22 @@ class SymmetricPattern:
         """The number of nonzeros."""
         return len(self.rows)
 
+    @cached_property
+    def column_starts(self) -> Ints:
+        """(size + 1,) int32, where the nonzeros of each column start, and their number."""
+        return column_starts(self.columns, self.size)
+
     def neighbors(self) -> tuple[Indices, Indices]:
         """The later neighbors of each of n vertices with two unknowns, as in `multifrontal.Matrix`."""
-        first = self.columns % 2 == 0
-        columns, rows = self.columns[first] // 2, self.rows[first] // 2
-        is_block = (self.rows[first] % 2 == 0) & (rows > columns)
-        starts = np.searchsorted(columns[is_block], np.arange(self.size // 2 + 1))
-        return starts.astype(np.uint32), rows[is_block].astype(np.uint32)
+        is_block = ((self.rows | self.columns) & 1 == 0) & (self.rows > self.columns)
+        columns, rows = self.columns[is_block] // 2, self.rows[is_block] // 2
+        return column_starts(columns, self.size // 2).astype(np.uint32), rows.astype(np.uint32)
+
+    def find(self, rows: Ints, columns: Ints) -> Ints:
+        """The indices (q,) among the nonzeros of those in ``rows`` and ``columns`` (q,), which must exist."""
+        begin, end = self.column_starts[columns], self.column_starts[columns + 1]
+        places = begin[:, None] + np.arange((end - begin).max(initial=1))
+        return begin + (self.rows.take(places, mode="clip") == rows[:, None]).argmax(axis=1)
 
     def restrict(self, indices: Ints) -> tuple["SymmetricPattern", Ints]:
         """The pattern of the submatrix of some rows and columns, ascending ``indices``.
@@ -39,8 +50,9 @@ class SymmetricPattern:
         """
         number = np.full(self.size, -1, dtype=np.int32)
         number[indices] = np.arange(len(indices))
-        chosen = np.flatnonzero((number[self.rows] >= 0) & (number[self.columns] >= 0)).astype(np.int32)
-        return SymmetricPattern(number[self.rows[chosen]], number[self.columns[chosen]], len(indices)), chosen
+        rows, columns = number[self.rows], number[self.columns]
+        chosen = np.flatnonzero((rows | columns) >= 0).astype(np.int32)
+        return SymmetricPattern(rows[chosen], columns[chosen], len(indices)), chosen
 
 
 class SummedPattern(SymmetricPattern):

@@ -70,8 +70,7 @@ class FollowThrough:
         number = np.full(self._count, -1)
         number[self._vertices] = np.arange(len(self._vertices))
         self._faces = number[mesh.faces[loose]].astype(np.int32)
-        sides = np.sort(self._faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        part = Triangles(mesh.vertices[self._vertices], self._faces, np.unique(sides, axis=0))
+        part = Triangles(mesh.vertices[self._vertices], self._faces)
         self._free = self._swinging(part, is_held[self._vertices])
         self._masses = np.zeros(0)
         if self.is_empty:
@@ -138,7 +137,7 @@ class FollowThrough:
         return to_complex(np.ascontiguousarray(pose[self._vertices]))
 
     def _energy(self, goal: Complexes) -> SymmetricDirichlet:
-        return SymmetricDirichlet(Triangles(to_points(goal), self._faces, self._faces[:0, :2]))
+        return SymmetricDirichlet(Triangles(to_points(goal), self._faces))
 
     def _substep(self, state: SwingState, goal: Complexes, h: float) -> SwingState:
         """One step of h seconds to a pose (v,)."""

@@ -40,6 +40,13 @@ class Fronts(NamedTuple):  # numba's caches on disk refer to this name: renamed,
     update_starts: Ints
 
 
+def column_starts(columns: Ints, count: int) -> Ints:
+    """(count + 1,) int32, where the nonzeros of each column start, given ``columns`` (z,), ascending."""
+    starts = np.zeros(count + 1, dtype=np.int32)
+    np.cumsum(np.bincount(columns, minlength=count), out=starts[1:])
+    return starts
+
+
 class SymbolicCholesky:
     """The symbolic phase: prepares factorizations of matrices with one sparsity pattern.
 
@@ -53,9 +60,9 @@ class SymbolicCholesky:
     def __init__(self, rows: Ints, columns: Ints, width: int, starts: Ints) -> None:
         starts = starts.astype(np.int32)
         count = len(starts) - 1
-        column_starts = np.searchsorted(columns, np.arange(width * starts[-1] + 1)).astype(np.int32)
+        nonzero_starts = column_starts(columns, width * int(starts[-1]))
         row_starts, front_rows, parents, run_starts, runs, entries = _analyze(
-            width, starts, column_starts, rows
+            width, starts, nonzero_starts, rows
         )
         children = np.argsort(parents, kind="stable").astype(np.int32)
         child_starts = np.searchsorted(parents[children], np.arange(count + 1)).astype(np.int32)
@@ -69,7 +76,7 @@ class SymbolicCholesky:
         unknowns = (width * front_rows[:, None] + np.arange(width)).astype(np.uint32).ravel()
         self.fronts = Fronts(
             width * starts, width * row_starts, unknowns, child_starts, children, run_starts, runs,
-            column_starts[width * starts], entries.view(np.uint32), factor_starts, update_starts,
+            nonzero_starts[width * starts], entries.view(np.uint32), factor_starts, update_starts,
         )  # fmt: skip
         self.factor_size = int(factor_starts[-1])
         self.largest_front = int((own + below).max())

@@ -5,10 +5,12 @@ The matrices are symmetric, 2n × 2n, with interleaved unknowns: 2 i and 2 i + 1
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from .edges import coupled_pairs, unique_edges
 from .jit import compiled
 from .mesh import TriMesh
 from .validation import Complexes, Floats, Indices, Ints
@@ -29,23 +31,25 @@ class Slots(NamedTuple):  # numba's caches on disk refer to this name: renamed, 
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """Part of a mesh, which need be no mesh itself: vertices (v, 2), faces (q, 3), edges (e, 2), sorted."""
+    """Part of a mesh, which need be no mesh itself: vertices (v, 2) and faces (q, 3).
+
+    edges: (e, 2) and face_edges: (q, 3), as those of a `TriMesh`.
+    """
 
     vertices: Floats
     faces: Ints
-    edges: Ints
 
+    @cached_property
+    def _edges_and_sides(self) -> tuple[Ints, Ints]:
+        return unique_edges(self.faces, len(self.vertices))
 
-def coupled_pairs(edges: Ints, links: Ints, n: int) -> Ints:
-    """The edges (e, 2) of a mesh and further pairs (l, 2) of its n vertices, each once, (e + l, 2).
+    @property
+    def edges(self) -> Ints:
+        return self._edges_and_sides[0]
 
-    Both have the lower vertex first; edges and result are in lexicographic order.
-    """
-    factors = np.array([n, 1], dtype=np.int64)
-    keys, more = edges @ factors, np.unique(links @ factors)
-    places = np.searchsorted(keys, more)
-    is_new = keys[np.minimum(places, len(keys) - 1)] != more
-    return np.insert(edges, places[is_new], np.stack(np.divmod(more[is_new], n), axis=1), axis=0)
+    @property
+    def face_edges(self) -> Ints:
+        return self._edges_and_sides[1]
 
 
 class VertexBlocks:
@@ -60,31 +64,33 @@ class VertexBlocks:
     """
 
     def __init__(self, mesh: TriMesh | Triangles, links: Ints | None = None) -> None:
-        n, pairs = len(mesh.vertices), mesh.edges.astype(np.int64)
+        n, pairs, edge_numbers = len(mesh.vertices), mesh.edges.astype(np.int64), mesh.face_edges
         if links is not None and len(links):
-            pairs = coupled_pairs(pairs, links, n)
-        low, high = pairs.T
+            pairs, to_key = coupled_pairs(pairs, links, n), np.array([n, 1])
+            edge_numbers = np.searchsorted(pairs @ to_key, mesh.edges @ to_key)[edge_numbers]
+        low, high = np.ascontiguousarray(pairs.T)
         higher_neighbors = np.bincount(low, minlength=n)
-        ends = np.cumsum(3 + 4 * higher_neighbors)
-        first = ends - (3 + 4 * higher_neighbors)
+        x_counts = 2 + 2 * higher_neighbors  # nonzeros in the column of x; one less in that of y
+        ends = np.cumsum(2 * x_counts - 1)
+        first = ends - (2 * x_counts - 1)
         rank = np.arange(len(low)) - (np.cumsum(higher_neighbors) - higher_neighbors)[low]  # edges are sorted
-        vertices = np.stack([first, first + 2 + 2 * higher_neighbors], axis=1)
+        vertices = np.stack([first, first + x_counts], axis=1)
         edges = np.stack([first[low] + 2, vertices[low, 1] + 1], axis=1) + 2 * rank[:, None]
-        self.rows, self.columns = np.empty((2, ends[-1]), dtype=np.int32)
-        x = 2 * np.arange(n)
-        for slots, row, column in [
-            (vertices[:, 0], x, x),
-            (vertices[:, 0] + 1, x + 1, x),
-            (vertices[:, 1], x + 1, x + 1),
-            (edges[:, 0], 2 * high, 2 * low),
-            (edges[:, 0] + 1, 2 * high + 1, 2 * low),
-            (edges[:, 1], 2 * high, 2 * low + 1),
-            (edges[:, 1] + 1, 2 * high + 1, 2 * low + 1),
+        x, later = 2 * np.arange(n, dtype=np.int32), 2 * high.astype(np.int32)
+        counts = np.stack([x_counts, x_counts - 1], axis=1).ravel()
+        self.columns = np.repeat(np.arange(2 * n, dtype=np.int32), counts)
+        self.rows = np.empty(ends[-1], dtype=np.int32)
+        for slots, row in [
+            (vertices[:, 0], x),
+            (vertices[:, 0] + 1, x + 1),
+            (vertices[:, 1], x + 1),
+            (edges[:, 0], later),
+            (edges[:, 0] + 1, later + 1),
+            (edges[:, 1], later),
+            (edges[:, 1] + 1, later + 1),
         ]:
-            self.rows[slots], self.columns[slots] = row, column
-        start, end = mesh.faces.astype(np.int64), mesh.faces[:, [1, 2, 0]].astype(np.int64)
-        edge = np.searchsorted(low * n + high, np.minimum(start, end) * n + np.maximum(start, end))
-        face_edges = 2 * edge + (start > end)
+            self.rows[slots] = row
+        face_edges = 2 * edge_numbers + (mesh.faces > mesh.faces[:, [1, 2, 0]])
         self.slots = Slots(*(indices.astype(np.uint32) for indices in (vertices, edges, face_edges)))
 
 

@@ -9,6 +9,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
+from .edges import half_edges, unique_edges
 from .layer_ties import layer_ties
 from .validation import Floats, Ints, as_indices, as_instance, as_points, freeze
 
@@ -80,7 +81,7 @@ class TriMesh:
             worst = int(np.argmin(areas))
             kind = "has no area" if areas[worst] == 0 else f"is flipped ({areas[worst]:g})"
             raise InputError(f"faces: expected positive signed areas, but face {worst} {kind}")
-        unused = np.setdiff1d(np.arange(len(vertices)), faces)
+        unused = np.flatnonzero(np.bincount(faces.ravel(), minlength=len(vertices)) == 0)
         if len(unused):
             raise InputError(f"vertices: expected each to belong to a face, but vertex {unused[0]} does not")
         object.__setattr__(self, "vertices", freeze(vertices))
@@ -101,10 +102,9 @@ class TriMesh:
             raise InputError(f"vertices: {order[first]} and {order[first + 1]} are at the same place")
 
     def _check_edges(self) -> None:
-        n = len(self.vertices)
-        directed, counts = np.unique(self._half_edges @ np.array([n, 1], dtype=np.int64), return_counts=True)
+        counts = np.bincount((2 * self.face_edges + (self.faces > self.faces[:, [1, 2, 0]])).ravel())
         if counts.max() > 1:
-            edge = sorted(divmod(int(directed[np.argmax(counts)]), n))
+            edge = self.edges[np.argmax(counts) // 2].tolist()
             raise InputError(f"faces: edge {edge} has two faces on one side, expected one face on each side")
         leaving = np.bincount(self._boundary_half_edges[:, 0])
         if leaving.max(initial=0) > 1:
@@ -121,11 +121,14 @@ class TriMesh:
         numbers = np.empty(len(vertex_order), dtype=np.int32)
         numbers[vertex_order] = np.arange(len(vertex_order))
         edges = np.sort(numbers[self.edges], axis=1)
-        keys = edges @ np.array([len(numbers), 1], dtype=np.int64)
+        order = np.argsort(edges @ np.array([len(numbers), 1], dtype=np.int64))
+        edge_numbers = np.empty(len(edges), dtype=np.int32)
+        edge_numbers[order] = np.arange(len(edges))
         layers = None if self.layers is None else self.layers[vertex_order]
         return self._derived(
-            *(vertex_order, numbers[self.faces[face_order]], self.tied, layers, edges[np.argsort(keys)]),
-            *(numbers[self._boundary_half_edges], self.component[vertex_order]),
+            *(vertex_order, numbers[self.faces[face_order]], self.tied, layers, edges[order]),
+            *(edge_numbers[self.face_edges[face_order]], numbers[self._boundary_half_edges]),
+            self.component[vertex_order],
         )
 
     def part(self, vertices: Ints, faces: Ints) -> "TriMesh":
@@ -138,9 +141,11 @@ class TriMesh:
         own = self.component[vertices]
         is_present = np.bincount(own) > 0
         edges, rim = numbers[self.edges], numbers[self._boundary_half_edges]
+        is_own = edges[:, 0] >= 0
+        face_edges = (np.cumsum(is_own, dtype=np.int32) - 1)[self.face_edges[faces]]
         return self._derived(
             *(vertices, numbers[self.faces[faces]], False, own if is_present.sum() > 1 else None),
-            *(edges[edges[:, 0] >= 0], rim[rim[:, 0] >= 0], (np.cumsum(is_present) - 1)[own]),
+            *(edges[is_own], face_edges, rim[rim[:, 0] >= 0], (np.cumsum(is_present) - 1)[own]),
         )
 
     def _derived(
@@ -150,6 +155,7 @@ class TriMesh:
         tied: bool,
         layers: Ints | None,
         edges: Ints,
+        face_edges: Ints,
         boundary_half_edges: Ints,
         component: Ints,
     ) -> "TriMesh":
@@ -162,32 +168,32 @@ class TriMesh:
             object.__setattr__(mesh, name, None if array is None else freeze(array))
         object.__setattr__(mesh, "tied", tied)
         object.__setattr__(mesh, "is_cut", self.is_cut)
-        mesh.__dict__["edges"] = freeze(edges)
+        mesh.__dict__["_edges_and_sides"] = freeze(edges), freeze(face_edges)
         mesh.__dict__["_boundary_half_edges"] = boundary_half_edges
         mesh.__dict__["component"] = freeze(component.astype(np.int32))
         return mesh
-
-    @cached_property
-    def _half_edges(self) -> Ints:
-        """(3m, 2) int32, directed edges in the order of the faces."""
-        return self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        return mesh
 
     @cached_property
     def _boundary_half_edges(self) -> Ints:
         """(b, 2) int32, directed edges without a face on their other side."""
-        _, inverse, counts = np.unique(self._edge_keys, return_inverse=True, return_counts=True)
-        return self._half_edges[counts[inverse] == 1]
+        edges = self.face_edges.ravel()
+        return half_edges(self.faces)[np.bincount(edges)[edges] == 1]
 
     @cached_property
-    def _edge_keys(self) -> Ints:
-        """(3m,) int64, a number for each directed edge that is the same in both directions."""
-        return np.sort(self._half_edges, axis=1) @ np.array([len(self.vertices), 1], dtype=np.int64)
+    def _edges_and_sides(self) -> tuple[Ints, Ints]:
+        edges, face_edges = unique_edges(self.faces, len(self.vertices))
+        return freeze(edges), freeze(face_edges)
 
-    @cached_property
+    @property
     def edges(self) -> Ints:
         """(e, 2) int32, each edge once, the smaller index first, in lexicographic order."""
-        keys = np.unique(self._edge_keys)
-        return freeze(np.stack(np.divmod(keys, len(self.vertices)), axis=1).astype(np.int32))
+        return self._edges_and_sides[0]
+
+    @property
+    def face_edges(self) -> Ints:
+        """(m, 3) int32, the edge from each corner of a face to the next, as an index of `edges`."""
+        return self._edges_and_sides[1]
 
     @cached_property
     def boundary_loops(self) -> tuple[Ints, ...]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from akap_editor.geometry.killing_matrix import KillingMatrix, VertexBlocks, add_face, coupled_pairs
+from akap_editor.geometry.killing_matrix import KillingMatrix, VertexBlocks, add_face
 from akap_editor.geometry.operators import to_complex
 from tests.support import dense
 from tests.support.dense import killing_energy
@@ -120,12 +120,3 @@ def test_energy_of_linear_fields(mesh, jacobian, density):
     expected = pytest.approx(density * mesh.rest_areas.sum(), rel=1e-12)
     assert killing_energy(mesh.vertices, mesh.faces, field) == expected
     assert field.ravel() @ assembled(mesh, mesh.vertices) @ field.ravel() == expected
-
-
-@pytest.mark.parametrize(
-    "links", [[], [(0, 3)], [(2, 4), (0, 3), (0, 3)], [(0, 1), (3, 4)], [(0, 2), (1, 2), (2, 3)]]
-)
-def test_coupled_pairs_are_edges_and_links_each_once_in_order(links):
-    edges = np.array([(0, 1), (1, 3), (2, 3)], dtype=np.int32)
-    found = coupled_pairs(edges, np.array(links, dtype=np.int64).reshape(-1, 2), 5)
-    assert [tuple(pair) for pair in found.tolist()] == sorted({*map(tuple, edges.tolist()), *links})

@@ -100,6 +100,8 @@ def sides(mesh: TriMesh) -> Counter:
 
 def test_edges_are_those_of_the_faces(mesh):
     assert [tuple(edge) for edge in mesh.edges.tolist()] == sorted(sides(mesh))
+    sides_of_faces = np.stack([mesh.faces, mesh.faces[:, [1, 2, 0]]], axis=2)
+    assert (mesh.edges[mesh.face_edges] == np.sort(sides_of_faces, axis=2)).all()
 
 
 def test_loops_cover_each_boundary_edge_once(mesh):
@@ -339,6 +341,7 @@ def test_renumbered_mesh_is_that_made_anew(mesh):
     found = mesh.renumber(vertex_order, face_order)
     anew = TriMesh(found.vertices, found.faces)
     assert (found.edges == anew.edges).all()
+    assert (found.face_edges == anew.face_edges).all()
     assert (found.boundary_vertices == anew.boundary_vertices).all()
     assert {frozenset(loop.tolist()) for loop in found.boundary_loops} == {
         frozenset(loop.tolist()) for loop in anew.boundary_loops
@@ -360,7 +363,7 @@ def test_part_of_a_mesh_is_that_made_anew(chosen):
     found = whole.part(vertices, own)
     layers = component[vertices] if len(chosen) > 1 else None
     anew = TriMesh(whole.vertices[vertices], np.searchsorted(vertices, whole.faces[own]), layers=layers)
-    for name in ("vertices", "faces", "edges", "component", "boundary_vertices", "face_layers"):
+    for name in ("vertices", "faces", "edges", "face_edges", "component", "boundary_vertices", "face_layers"):
         got, expected = getattr(found, name), getattr(anew, name)
         assert got.dtype == expected.dtype
         assert np.array_equal(got, expected)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ...geometry.edges import coupled_pairs
 from ...geometry.joints import JointRows
-from ...geometry.killing_matrix import coupled_pairs
 from ...geometry.mesh import MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Ints

@@ -278,8 +278,7 @@ class KillingSystem:
 
     def _slots(self, rows: Ints, columns: Ints) -> Ints:
         """The indices of matrix entries in the nonzeros of `pattern`."""
-        keys = self.pattern.columns.astype(np.int64) * self.pattern.size + self.pattern.rows
-        return np.searchsorted(keys, columns.astype(np.int64) * self.pattern.size + rows)
+        return self.pattern.find(rows, columns)
 
 
 class _VertexFrames:
