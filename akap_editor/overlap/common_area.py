@@ -37,9 +37,10 @@ def common_areas(pose: Floats, faces: Ints, first: Ints, second: Ints) -> Floats
                     clipped[size, 0], clipped[size, 1] = ax + t * (bx - ax), ay + t * (by - ay)
                     size += 1
             count = size
-            shape[:count] = clipped[:count]
+            shape, clipped = clipped, shape
         for j in range(1, count - 1):
             ax, ay = shape[j, 0] - shape[0, 0], shape[j, 1] - shape[0, 1]
             bx, by = shape[j + 1, 0] - shape[0, 0], shape[j + 1, 1] - shape[0, 1]
             areas[i] += 0.5 * (ax * by - ay * bx)
-    return np.maximum(areas, 0.0)
+        areas[i] = max(areas[i], 0.0)
+    return areas

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..geometry.jit import compiled
 from ..geometry.validation import Floats, Ints, read_only
-from .seeds import overlap_seeds
+from .seeds import enlarged, overlap_seeds
 from .topology import Topology
 
 MAX_PAIRS_PER_FACE = 30  # a pose with more is crumpled beyond any order; two sheets have about eight
@@ -130,7 +130,9 @@ def _flood(pose: Floats, faces: Ints, neighbors: Ints, seeds: Ints, capacity: in
     `FacePairs`, and whether they are complete.
     """
     m = len(faces)
-    heads = np.full(m, -1, dtype=np.int32)
+    heads = np.empty(m, dtype=np.int32)
+    for f in range(m):
+        heads[f] = -1
     first, second = np.empty(capacity, dtype=np.int32), np.empty(capacity, dtype=np.int32)
     regions, crossed = np.empty(capacity, dtype=np.int32), np.empty(capacity, dtype=np.int8)
     starts, links = np.empty(capacity + 1, dtype=np.int32), np.empty(capacity, dtype=np.int32)
@@ -154,7 +156,7 @@ def _flood(pose: Floats, faces: Ints, neighbors: Ints, seeds: Ints, capacity: in
             if is_new:
                 count += 1
                 is_new = False
-            begin = size
+            begin = starts[blocks]
             size, is_exchanged = _fill_block(
                 f, g, begin, blocks + 1, corners, neighbors, second, heads, starts, links, crossed, visited
             )
@@ -168,9 +170,7 @@ def _flood(pose: Floats, faces: Ints, neighbors: Ints, seeds: Ints, capacity: in
             blocks += 1
             starts[blocks] = size
             if depth + 3 * (size - begin) > len(stack):
-                larger = np.empty((2 * (depth + 3 * (size - begin)), 2), dtype=np.int32)
-                larger[:depth] = stack[:depth]
-                stack = larger
+                stack = enlarged(stack, 2 * (depth + 3 * (size - begin)))
             depth = _cross_edges(
                 f, begin, size, corners, neighbors, second, heads, starts, links, crossed, stack, depth
             )

@@ -116,7 +116,9 @@ def seam_pairs(  # type: ignore[no-untyped-def]
     sides = np.zeros(len(neighbors), dtype=np.int8)  # of each first face: 1 with a positive pair, 2 negative
     for i in members:
         sides[first[i]] |= 1 if signs[i] > 0 else 2
-    distance = np.full(len(first), -1, dtype=np.int32)
+    distance = np.empty(len(first), dtype=np.int32)
+    for i in range(len(first)):
+        distance[i] = -1
     queue, size = np.empty(len(members), dtype=np.int64), 0
     beside = np.empty(6, dtype=np.int64)
     for i in members:

@@ -52,8 +52,10 @@ def _merge_tree(order: Ints, starts: Ints, neighbors: Ints, areas: Floats):  # t
     order: (n,) vertices as they are added, the farthest first; a vertex that nothing joins has itself.
     """
     n = len(order)
-    roots, latest = np.arange(n), np.arange(n)  # union-find, and the newest vertex of each set
-    sizes, parents, added = areas.copy(), np.arange(n), np.zeros(n, dtype=np.bool_)
+    roots, latest = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
+    sizes, parents, added = areas.copy(), np.empty(n, dtype=np.int64), np.zeros(n, dtype=np.bool_)
+    for v in range(n):  # union-find, and the newest vertex of each set
+        roots[v] = latest[v] = parents[v] = v
     for v in order:
         added[v] = True
         for j in range(starts[v], starts[v + 1]):
@@ -84,7 +86,8 @@ def _branch_areas(distances: Floats, parents: Ints, sizes: Floats, room: float) 
     while 1 << height < n:
         height += 1
     ancestors = np.empty((height + 1, n), dtype=np.int64)  # 2^k generations up
-    ancestors[0] = parents
+    for v in range(n):
+        ancestors[0, v] = parents[v]
     for k in range(height):
         for v in range(n):
             ancestors[k + 1, v] = ancestors[k, ancestors[k, v]]

@@ -33,11 +33,12 @@ def carried_signs(  # type: ignore[no-untyped-def]
     on the drawing. centers: (m, 2) of the faces at rest, pixels.
     """
     count = len(first)
-    signs, sources = np.zeros(count, dtype=np.int8), np.full(count, -1, dtype=np.int32)
+    signs, sources = np.zeros(count, dtype=np.int8), np.empty(count, dtype=np.int32)
     known = np.zeros(count, dtype=np.bool_)
     limit = (_REACH * length) ** 2
     for i in range(count):
         f, g = first[i], second[i]
+        sources[i] = -1
         if heads[f] < 0 and heads[g] < 0:
             continue
         at = pair_index(f, g, old_second, heads, starts, links)
@@ -72,7 +73,9 @@ def tally(regions: Ints, signs: Ints, known: Ints, sources: Ints, old_ages: Ints
     Age is the rank of the oldest region that a pair comes from; as large as `len(old_ages)` for none.
     """
     votes, guesses = np.zeros((count, 2), dtype=np.int64), np.zeros((count, 2), dtype=np.int64)
-    ages = np.full(count, len(old_ages), dtype=np.int64)
+    ages = np.empty(count, dtype=np.int64)
+    for r in range(count):
+        ages[r] = len(old_ages)
     for i in range(len(regions)):
         if signs[i] == 0:
             continue
@@ -95,9 +98,7 @@ def deciding_pairs(
     where they serve. The same object as ``before`` if nothing changed.
     """
     arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
-    indices, sides = find_pairs(
-        before[:, 0], before[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
-    )
+    indices, sides = find_pairs(before, pairs.second, pairs.heads, pairs.starts, pairs.links)
     valid = (indices >= 0) & (signs[indices] == sides)
     ends = np.searchsorted(pairs.regions, np.arange(pairs.region_count + 1))
     chosen = []
@@ -130,9 +131,7 @@ def recalled_signs(topology: Topology, pairs: FacePairs, crossings: Ints) -> tup
     signs = np.zeros(len(pairs), dtype=np.int8)
     ages = np.full(pairs.region_count, len(crossings), dtype=np.int64)
     arrays = pairs.first, pairs.second, topology.neighbors, pairs.heads, pairs.starts, pairs.links
-    indices, sides = find_pairs(
-        crossings[:, 0], crossings[:, 1], pairs.second, pairs.heads, pairs.starts, pairs.links
-    )
+    indices, sides = find_pairs(crossings, pairs.second, pairs.heads, pairs.starts, pairs.links)
     for row in range(len(crossings) - 1, -1, -1):
         if indices[row] >= 0:
             signs[indices[row]] = sides[row]
@@ -144,12 +143,11 @@ def recalled_signs(topology: Topology, pairs: FacePairs, crossings: Ints) -> tup
 
 
 @compiled
-def find_pairs(first: Ints, second: Ints, seconds: Ints, heads: Ints, starts: Ints, links: Ints):  # type: ignore[no-untyped-def]
-    """Indices (s,) of pairs in either order, −1 for none, and whether they are in this order, 1 or −1."""
-    indices, signs = np.full(len(first), -1, dtype=np.int64), np.ones(len(first), dtype=np.int8)
-    for i in range(len(first)):
-        indices[i] = pair_index(first[i], second[i], seconds, heads, starts, links)
+def find_pairs(rows: Ints, seconds: Ints, heads: Ints, starts: Ints, links: Ints):  # type: ignore[no-untyped-def]
+    """Indices (s,) of pairs (s, 2) in either order, −1 for none, and 1 or −1 for this order or the other."""
+    indices, signs = np.empty(len(rows), dtype=np.int64), np.empty(len(rows), dtype=np.int8)
+    for i in range(len(rows)):
+        indices[i], signs[i] = pair_index(rows[i, 0], rows[i, 1], seconds, heads, starts, links), 1
         if indices[i] < 0:
-            indices[i] = pair_index(second[i], first[i], seconds, heads, starts, links)
-            signs[i] = -1
+            indices[i], signs[i] = pair_index(rows[i, 1], rows[i, 0], seconds, heads, starts, links), -1
     return indices, signs

@@ -118,7 +118,7 @@ def restored_overlaps(mesh: TriMesh, pose: Floats, crossings: Ints, rules: Rules
     """
     topology = mesh_topology(mesh)
     pairs = overlapping_faces(topology, pose)
-    crossings = crossings[((crossings >= 0) & (crossings < len(mesh.faces))).all(axis=1)]
+    crossings = freeze(crossings[((crossings >= 0) & (crossings < len(mesh.faces))).all(axis=1)])
     if not len(pairs) or not pairs.is_complete:
         return no_overlaps(mesh, crossings if len(pairs) else NO_CROSSINGS)
     decision = _Decision(mesh, topology, pose, pairs)
@@ -156,7 +156,9 @@ def asked_overlaps(mesh: TriMesh, pose: Floats, overlaps: Overlaps, limb: Ints, 
         firmness = np.where(wanted, 1.0, _WEAK) * _PULL / mesh.length
         hidden = decision.hidden(region)
         steps = len(members)  # the seam may be anywhere
-        decision.signs = cut_signs(decision.topology, pose, pairs, members, signs, firmness, hidden, steps)
+        decision.signs = cut_signs(
+            decision.topology, decision.pose, pairs, members, signs, firmness, hidden, steps
+        )
     decision.firm = np.where(decision.signs == wanted, wanted, 0).astype(np.int8)
     return overlaps if np.array_equal(decision.signs, overlaps.signs) else decision.result(overlaps)
 

@@ -109,7 +109,8 @@ def _block_values(
     graph.data[:] = 1.0
     sizes = np.bincount(blocks[members] - first_block, minlength=count)
     means: Floats = np.bincount(blocks[members] - first_block, signs[members], count) / sizes
-    band, values = _straightened(graph.indptr, graph.indices, means)
+    band, smoothed = _straightened(graph.indptr, graph.indices, means)
+    values = smoothed[band]
     labels = connected_components(graph[band][:, band], directed=False)[1]
     faces = pairs.first[pairs.starts[band + first_block]]
     corners = mesh.faces[faces]
@@ -126,13 +127,14 @@ def _block_values(
 
 @compiled
 def _straightened(starts: Ints, neighbors: Ints, means: Floats):  # type: ignore[no-untyped-def]
-    """The blocks near a change of sign, (b,), and their mean signs smoothed between blocks, (b,).
+    """The blocks near a change of sign, (b,) ascending, and the mean signs (n,), smoothed between those.
 
     starts, neighbors: the graph of blocks by rows; means: (n,) mean sign of each block.
     """
-    distance = np.full(len(means), -1, dtype=np.int64)
+    distance = np.empty(len(means), dtype=np.int64)
     queue, size, reached = np.empty(len(means), dtype=np.int64), 0, 0
     for i in range(len(means)):
+        distance[i] = -1
         total = 0.0
         for j in range(starts[i], starts[i + 1]):
             total += means[neighbors[j]]
@@ -148,7 +150,12 @@ def _straightened(starts: Ints, neighbors: Ints, means: Floats):  # type: ignore
                 distance[neighbors[j]] = distance[i] + 1
                 queue[size] = neighbors[j]
                 size += 1
-    band = np.sort(queue[:size])
+    size = 0
+    for i in range(len(means)):
+        if distance[i] >= 0:
+            queue[size] = i
+            size += 1
+    band = queue[:size]
     values, smoothed = means.copy(), means.copy()
     for _ in range(_ROUNDS):
         for i in band:
@@ -158,8 +165,9 @@ def _straightened(starts: Ints, neighbors: Ints, means: Floats):  # type: ignore
                 total += values[neighbors[j]]
             if is_inner:
                 smoothed[i] = 0.25 * values[i] + 0.75 * total / (starts[i + 1] - starts[i])
-        values[band] = smoothed[band]
-    return band, values[band]
+        for i in band:
+            values[i] = smoothed[i]
+    return band, values
 
 
 @compiled
@@ -181,10 +189,10 @@ def _block_links(  # type: ignore[no-untyped-def]
     sides = np.zeros(len(neighbors), dtype=np.int8)  # of each first face: 1 with a positive pair, 2 negative
     for i in members:
         sides[first[i]] |= 1 if signs[i] > 0 else 2
-    distance = np.full(len(neighbors), -1, dtype=np.int64)
+    distance = np.empty(len(neighbors), dtype=np.int64)
     queue, size, reached = np.empty(len(neighbors), dtype=np.int64), 0, 0
     for f in range(len(neighbors)):
-        around = sides[f]
+        around, distance[f] = sides[f], -1
         for k in range(3):
             if around and neighbors[f, k] >= 0:
                 around |= sides[neighbors[f, k]]

@@ -19,10 +19,12 @@ def overlap_seeds(topology: Topology, pose: Floats) -> Ints:
     wholly inside another one. Faces of different layers do not count: the order of the layers decides there.
     """
     t = topology
-    seeds = _rim_crossings(pose, t.rim, t.rim_faces, t.layers)
-    wound = _wound_vertices(pose, t.faces, t.rim_faces, t.rim_previous, t.fans, t.fan_edges)
-    if len(wound):
-        seeds = np.concatenate([seeds, wound])
+    order = np.argsort(pose[t.rim, 0].min(axis=1), kind="stable")
+    seeds = _rim_crossings(pose, t.rim, t.rim_faces, t.layers, order)
+    wound = np.flatnonzero(_fan_angles(pose, t.faces, t.fans, t.fan_edges, len(t.rim)) > _FULL_TURN)
+    if len(wound):  # the first and the last face of each such fan
+        ends = np.stack([t.rim_faces[wound], t.rim_faces[t.rim_previous[wound]]], axis=1)
+        seeds = np.concatenate([seeds, ends])
     if len(t.loops) > 1 and t.components.any():
         inside = _enclosed_loops(pose, t.faces, t.rim, t.rim_faces, t.components, t.layers, t.loops)
         seeds = np.concatenate([seeds, inside])
@@ -36,17 +38,25 @@ def overlap_seeds(topology: Topology, pose: Floats) -> Ints:
 
 
 @compiled
-def _rim_crossings(pose: Floats, rim: Ints, rim_faces: Ints, layers: Ints) -> Ints:
-    """Faces of rim edges that cross, (s, 2): edges sorted by their left ends, swept from left to right."""
+def enlarged(rows: Ints, count: int) -> Ints:
+    """Room for ``count`` rows that begins with ``rows`` (r, 2)."""
+    result = np.empty((count, 2), dtype=np.int32)
+    for i in range(len(rows)):
+        result[i, 0], result[i, 1] = rows[i, 0], rows[i, 1]
+    return result
+
+
+@compiled
+def _rim_crossings(pose: Floats, rim: Ints, rim_faces: Ints, layers: Ints, order: Ints) -> Ints:
+    """Faces of rim edges that cross, (s, 2); order: (r,) the edges by their left ends, which is swept."""
     count = len(rim)
     left, right = np.empty(count), np.empty(count)
     low, high = np.empty(count), np.empty(count)
-    for e in range(count):
-        px, py, qx, qy = pose[rim[e, 0], 0], pose[rim[e, 0], 1], pose[rim[e, 1], 0], pose[rim[e, 1], 1]
-        left[e], right[e] = min(px, qx), max(px, qx)
-        low[e], high[e] = min(py, qy), max(py, qy)
-    order = np.argsort(left)
-    left, right, low, high = left[order], right[order], low[order], high[order]
+    for i in range(count):
+        p, q = rim[order[i], 0], rim[order[i], 1]
+        px, py, qx, qy = pose[p, 0], pose[p, 1], pose[q, 0], pose[q, 1]
+        left[i], right[i] = min(px, qx), max(px, qx)
+        low[i], high[i] = min(py, qy), max(py, qy)
     found, size = np.empty((64, 2), dtype=np.int32), 0
     for i in range(count):
         for j in range(i + 1, count):
@@ -68,31 +78,23 @@ def _rim_crossings(pose: Floats, rim: Ints, rim_faces: Ints, layers: Ints) -> In
             d = (sx - rx) * (qy - ry) - (sy - ry) * (qx - rx)
             if (a > 0) != (b > 0) and (c > 0) != (d > 0):
                 if size == len(found):
-                    larger = np.empty((2 * size, 2), dtype=np.int32)
-                    larger[:size] = found
-                    found = larger
+                    found = enlarged(found, 2 * size)
                 found[size, 0], found[size, 1] = rim_faces[e], rim_faces[g]
                 size += 1
     return found[:size]
 
 
 @compiled
-def _wound_vertices(
-    pose: Floats, faces: Ints, rim_faces: Ints, rim_previous: Ints, fans: Ints, fan_edges: Ints
-) -> Ints:
-    """First and last face, (s, 2), of the fans that wind around a vertex of the rim more than once."""
-    angle = np.zeros(len(rim_faces))
+def _fan_angles(pose: Floats, faces: Ints, fans: Ints, fan_edges: Ints, count: int) -> Floats:
+    """The sum (count,) of the angles in radians of the faces around the first vertex of each rim edge."""
+    angle = np.zeros(count)
     for i in range(len(fans)):
         f, k = fans[i, 0], fans[i, 1]
         o, u, v = faces[f, k], faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]
         ux, uy = pose[u, 0] - pose[o, 0], pose[u, 1] - pose[o, 1]
         vx, vy = pose[v, 0] - pose[o, 0], pose[v, 1] - pose[o, 1]
         angle[fan_edges[i]] += np.arctan2(abs(ux * vy - uy * vx), ux * vx + uy * vy)
-    wound = np.flatnonzero(angle > _FULL_TURN)
-    found = np.empty((len(wound), 2), dtype=np.int32)
-    for i in range(len(wound)):
-        found[i, 0], found[i, 1] = rim_faces[wound[i]], rim_faces[rim_previous[wound[i]]]
-    return found
+    return angle
 
 
 @compiled
@@ -101,9 +103,12 @@ def _enclosed_loops(
 ) -> Ints:
     """Face of a boundary loop and face of another component around a vertex of that loop, (s, 2)."""
     found, size = np.empty((64, 2), dtype=np.int32), 0
-    count = components.max() + 1
+    count = components[0] + 1
+    for f in range(len(faces)):
+        count = max(count, components[f] + 1)
     box = np.empty((count, 4))
-    box[:, :2], box[:, 2:] = np.inf, -np.inf
+    for c in range(count):
+        box[c, 0], box[c, 1], box[c, 2], box[c, 3] = np.inf, np.inf, -np.inf, -np.inf
     for e in range(len(rim)):
         c, x, y = components[rim_faces[e]], pose[rim[e, 0], 0], pose[rim[e, 0], 1]
         box[c, 0], box[c, 1] = min(box[c, 0], x), min(box[c, 1], y)
@@ -130,9 +135,7 @@ def _enclosed_loops(
             )
             if inside:
                 if size == len(found):
-                    larger = np.empty((2 * size, 2), dtype=np.int32)
-                    larger[:size] = found
-                    found = larger
+                    found = enlarged(found, 2 * size)
                 found[size, 0], found[size, 1] = rim_faces[e], f
                 size += 1
     return found[:size]

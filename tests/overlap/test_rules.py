@@ -125,7 +125,9 @@ def test_a_brushed_limb_passes_to_the_front_gradually(scene: tuple[Scene, Sessio
         shares.append(turned_area(mesh, session.state.positions, before[0], overlaps))
         before[0] = overlaps
 
-    played(*scene, 14, each_step)  # on this way a hand is brushed whatever the roundings are
+    for seed in (29, 32):  # a hand is brushed on these ways, on one of them whatever the roundings are
+        before[0] = no_overlaps(scene[1].drawing.mesh)
+        played(*scene, seed, each_step)
     assert 0 < max(shares) <= SEAM_TRAVEL
 
 
