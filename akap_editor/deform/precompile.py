@@ -5,11 +5,9 @@ import numpy as np
 from ..geometry.mesh import TriMesh
 from ..geometry.operators import to_complex
 from .akap.deformer import AkapDeformer
-from .akap.preconditioned_cholesky import MIN_HALF_VERTICES
 from .akap.rest_energy import SymmetricDirichlet
 
-_SIDE = int(np.sqrt(MIN_HALF_VERTICES)) + 3  # of a square whose interior, too, has factors in half precision
-_SMALL_SIDE = 3  # of a square with factors in double precision; vertices on a side
+_SIDE = 3  # of the square that is deformed, vertices
 
 
 def precompile() -> None:
@@ -19,42 +17,42 @@ def precompile() -> None:
     Without it, the first steps take that time.
     """
     precompile_steps()
-    precompile_steps_of_small_meshes()
+    precompile_exact_steps()
 
 
 def precompile_new_mesh() -> None:
     """Compile only what a new mesh needs."""
-    AkapDeformer(_square(_SMALL_SIDE), memory=1.0)
+    AkapDeformer(_square(), memory=1.0)
 
 
 def precompile_steps() -> None:
-    """Compile what steps need if factors have half precision."""
-    _step_square(_SIDE)
-    mesh = _square(_SMALL_SIDE)
+    """Compile what steps need unless they are exact."""
+    _step_square(exact=False)
+    mesh = _square()
     n, m = len(mesh.vertices), len(mesh.faces)
     energy, change = SymmetricDirichlet(mesh), np.ones((m, 2), dtype=np.complex128)
     energy.relax(to_complex(mesh.vertices).copy(), change, 1.0, np.zeros(n, dtype=bool))
 
 
-def precompile_steps_of_small_meshes() -> None:
-    """Compile what steps need if factors have double precision."""
-    _step_square(_SMALL_SIDE)
+def precompile_exact_steps() -> None:
+    """Compile what steps need in double precision: if they are exact, or material is extremely stiff."""
+    _step_square(exact=True)
 
 
-def _step_square(side: int) -> None:
-    """Make two steps of a square with ``side``² vertices."""
-    mesh = _square(side)
-    deformer = AkapDeformer(mesh, memory=1.0)
+def _step_square(exact: bool) -> None:
+    """Make two steps of a square."""
+    mesh = _square()
+    deformer = AkapDeformer(mesh, memory=1.0, exact=exact)
     deformer.set_pins(mesh.locate([[10.0, 5.0], [60.0, 70.0]]))
     targets = [[10.0, 5.0], [62.0, 71.0]]
     moved = deformer.step(mesh.vertices, targets).positions
     deformer.step(moved, targets)
 
 
-def _square(side: int) -> TriMesh:
-    """A square of 100 pixels with ``side``² vertices."""
-    x, y = np.meshgrid(np.linspace(0, 100, side), np.linspace(0, 100, side))
-    corner = np.arange(side * side).reshape(side, side)
+def _square() -> TriMesh:
+    """A square of 100 pixels with ``_SIDE``² vertices."""
+    x, y = np.meshgrid(np.linspace(0, 100, _SIDE), np.linspace(0, 100, _SIDE))
+    corner = np.arange(_SIDE**2).reshape(_SIDE, _SIDE)
     a, b, c, d = (
         part.ravel() for part in (corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1])
     )

@@ -45,7 +45,7 @@ def compiled_with_fast_sums(function: F) -> F:
 
 
 def _compile(function: F, **options: Any) -> F:
-    options |= {"nogil": True, "error_model": "numpy"}
+    options |= {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
     try:
         machine_code: F = numba.njit(function, cache=True, **options)
     except RuntimeError:  # neither the package's folder nor the user's cache is writable

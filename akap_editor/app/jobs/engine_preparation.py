@@ -36,7 +36,7 @@ PARTS: dict[str, tuple[Stage, Stage, Stage]] = {
     "solver": (
         solver.precompile_new_mesh,
         solver.precompile_steps,
-        solver.precompile_steps_of_small_meshes,
+        solver.precompile_exact_steps,
     ),
     "overlaps": (overlaps.precompile_rest, overlaps.precompile_crossings, overlaps.precompile),
 }

@@ -11,7 +11,6 @@ from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import Complexes, Floats, Indices, Ints
 from ..cholesky import SymmetricPattern
 from ..deformer import SAME_PLACE
-from ..fronts import SymbolicCholesky
 from .joint_frames import JointFrames
 from .pin_rotation import PinRotationConstraints
 from .preconditioned_cholesky import PreconditionedCholesky
@@ -89,11 +88,6 @@ class KillingSystem:
         self._same_place = SAME_PLACE * mesh.length
         self._frames = _VertexFrames(mesh)
         self.set_pins(NO_POINTS)
-
-    @property
-    def symbolic(self) -> SymbolicCholesky:
-        """The symbolic factorization of (7)."""
-        return self._pinned_system.symbolic
 
     def set_pins(self, points: MeshPoints, rotation: PinRotationConstraints | None = None) -> None:
         """Choose the constraints C of eq. 3, k points, and the faces that rotate with pins."""
@@ -190,6 +184,10 @@ class KillingSystem:
         tolerance and warm_start_key: as in `PreconditionedCholesky.solve`.
         """
         return self._pinned_system.solve(right, tolerance, warm_start_key)
+
+    def solve_once(self, nonzeros: Floats, right: Complexes, is_definite: bool) -> Complexes:
+        """B⁻¹ b for another matrix B with the pattern of (7), see `PreconditionedCholesky.solve_once`."""
+        return self._pinned_system.solve_once(nonzeros, right, is_definite)
 
     def at_pins(self, values: Complexes) -> Complexes:
         """W p, (k,), for values p (n,) at the vertices: e.g. the positions of the pins in a pose."""

@@ -5,8 +5,8 @@ vertex by the rotation R since then. So R A₀⁻¹ Rᵀ is an excellent precond
 many poses. Which earlier pose was factorized changes the cost of a solution, and the solution within its
 tolerance.
 
-Factors of large meshes are kept in half precision, which quarters the memory that a solve reads. Residuals
-and solutions have double precision.
+Factors are kept in half precision, which quarters the memory that a solve reads. Residuals and solutions
+have double precision.
 """
 
 from threading import Thread
@@ -22,12 +22,13 @@ from ..multifrontal import Matrix, dot, iterate, multiply
 # A factorization costs as much as ten iterations. With fresh factors, each iteration gains a digit or more;
 # refactorize once the iterations beyond that cost as much as a factorization.
 MAX_WASTED_ITERATIONS = 2
-MAX_WASTED_ITERATIONS_OF_SMALL = 8  # small meshes factorize at once: a thread would cost more than it saves
+MAX_WASTED_ITERATIONS_OF_SMALL = 8  # small meshes factorize at once
 _FACTORIZATION_DELAY = 1  # poses for which the old factors serve while new ones are made beside
 _LONG_DELAY = 2  # the same for many vertices, whose factors take longer than a pose
 MIN_LONG_DELAY_VERTICES = 50_000
 _MAX_ITERATIONS = 12  # of one solution; without convergence the current matrix is factorized
-MIN_HALF_VERTICES = 1500  # factors of fewer vertices fit into the caches in double precision, too
+_MIN_REUSE_VERTICES = 100  # of a mesh whose factors serve for several poses: other ones cost nothing
+MIN_THREAD_VERTICES = 1500  # of a mesh that is factorized beside: on smaller ones, a thread costs more
 _EXACT_ITERATIONS = 5  # that reach double precision from the factors of the very matrix
 _WARM_STARTS = 2  # earlier solutions from which the next one starts
 # The contraction is 1 to 2 % after a factorization, and then grows from pose to pose.
@@ -57,11 +58,12 @@ class PreconditionedCholesky:
         self.symbolic = SymbolicCholesky(pattern.rows, pattern.columns, 2, starts)
         self._matrix = Matrix(*pattern.neighbors(), np.empty(0))
         self._exact, self._confirm = exact, confirm
-        self._is_small = n < MIN_HALF_VERTICES
+        self._is_tiny, self._is_small = n < _MIN_REUSE_VERTICES, n < MIN_THREAD_VERTICES
         self._delay = _LONG_DELAY if n >= MIN_LONG_DELAY_VERTICES else _FACTORIZATION_DELAY
-        self._precision: Precision = np.float64 if exact or self._is_small else np.float16
+        self._precision: Precision = np.float64 if exact else np.float16
         self._factors = CholeskyFactors(self.symbolic, self._precision)
         self._spare: CholeskyFactors | None = None  # made beside, or used before
+        self._other_factors: CholeskyFactors | None = None  # of `solve_once`
         self._job: _FactorizationThread | None = None
         self._frame = self._rotation = self._factorized_frame = np.ones(n, np.complex128)
         self._poses_to_wait = 0
@@ -84,7 +86,7 @@ class PreconditionedCholesky:
         """
         self._matrix = self._matrix._replace(nonzeros=nonzeros)
         self._frame, self._is_exact = frame, False
-        if self._exact or not self._has_factors:
+        if self._exact or self._is_tiny or not self._has_factors:
             self.factorize()
             return
         if self._job is not None:
@@ -121,6 +123,23 @@ class PreconditionedCholesky:
             solution = self._solve_directly(right)
         return solution
 
+    def solve_once(self, nonzeros: Floats, right: Complexes, is_definite: bool) -> Complexes:
+        """B⁻¹ b to double precision, for another matrix B with this pattern, given by its nonzeros (z,).
+
+        is_definite: whether B is known to be positive definite, so that what is too much for half precision
+        is factorized in double. Raises SolverError if B is not positive definite.
+        """
+        if self._other_factors is None:
+            self._other_factors = CholeskyFactors(self.symbolic, self._precision)
+        try:
+            self._other_factors.factorize(nonzeros)
+            return self._solve_exactly(self._other_factors, nonzeros, right)
+        except SolverError:
+            if self._precision is np.float64 or not is_definite:
+                raise
+        self._use_double_precision()
+        return self.solve_once(nonzeros, right, is_definite)
+
     def energy(self, values: Complexes) -> float:
         """xᵀ A x for values x (n,) and the matrix last set."""
         return dot(values, self.multiply(values))
@@ -150,7 +169,8 @@ class PreconditionedCholesky:
         """Make all further factors in double precision."""
         self._finish_job()
         self._precision = np.float64
-        self._factors, self._spare = CholeskyFactors(self.symbolic, self._precision), None
+        self._factors = CholeskyFactors(self.symbolic, self._precision)
+        self._spare = self._other_factors = None
 
     def _use_factors_of(self, frame: Complexes) -> None:
         """Begin to use new factors of a matrix at a pose with the rotations ``frame`` (n,)."""
@@ -187,6 +207,20 @@ class PreconditionedCholesky:
         """A⁻¹ b, (n,), with factors of the current matrix in double precision. Raises SolverError."""
         return self._factors.solve(right.view(np.float64)).view(np.complex128)
 
+    def _solve_exactly(self, factors: CholeskyFactors, nonzeros: Floats, right: Complexes) -> Complexes:
+        """B⁻¹ b, (n,), to double precision from factors of the very matrix B. Raises SolverError."""
+        if self._precision is np.float64:
+            return factors.solve(right.view(np.float64)).view(np.complex128)
+        unrotated, solution = np.ones_like(right), np.empty_like(right)
+        count, _, _ = iterate(
+            factors.preconditioner(unrotated), self._matrix._replace(nonzeros=nonzeros), right, unrotated,
+            np.empty((_WARM_STARTS, len(right)), np.complex128), 0, np.inf, 1.0,
+            _EXACT_ITERATIONS, _MAX_ITERATIONS, solution,
+        )  # fmt: skip
+        if not count:
+            raise SolverError("the linear system is not positive definite")
+        return solution
+
     def _iterate(self, right: Complexes, tolerance: float, warm_start_key: str) -> Complexes | None:
         """The solution (n,) by preconditioned conjugate gradients; None if they do not converge soon."""
         earlier, known = np.empty((_WARM_STARTS, len(right)), np.complex128), 0
@@ -205,8 +239,9 @@ class PreconditionedCholesky:
             seen = (last / first) ** (1 / (count - 1))
             self._contraction = max(seen, 0.5 * (seen + self._contraction))
         self.iterations += count
-        digits = float(np.log10(max(first / tolerance, 1.0))) if tolerance else np.inf
-        self._wasted_iterations += max(count - 1 - digits, 0.0)
+        if not self._is_exact:  # there more iterations are made than the tolerance asks for
+            digits = float(np.log10(max(first / tolerance, 1.0))) if tolerance else np.inf
+            self._wasted_iterations += max(count - 1 - digits, 0.0)
         return solution
 
 

@@ -6,9 +6,8 @@ import numpy as np
 
 from ...errors import SolverError
 from ...geometry.mesh import MeshPoints, TriMesh
-from ...geometry.operators import to_complex, to_points
+from ...geometry.operators import to_points
 from ...geometry.validation import Complexes, Floats
-from ..cholesky import CholeskyFactors
 from .killing_field import KillingSystem
 from .pin_rotation import PinRotationConstraints
 from .preconditioned_cholesky import dot
@@ -38,7 +37,6 @@ class RestMemory:
     def __init__(self, mesh: TriMesh, system: KillingSystem, stiffness: Floats | None) -> None:
         self._mesh, self._system = mesh, system
         self._energy = SymmetricDirichlet(mesh, stiffness)
-        self._hessian: CholeskyFactors | None = None
 
     def set_scales(self, scales: Floats | None) -> None:
         """Remember the rest shape enlarged by scales (m,) of the faces, None for 1."""
@@ -120,16 +118,14 @@ class RestMemory:
         """Newton's direction (n,) for the gradient (n,) of rest energy and pin energies at a pose (n,)."""
         if not gradient.any():
             return gradient
-        if self._hessian is None:
-            self._hessian = CholeskyFactors(self._system.symbolic)
         rotation_weights = None if self._rotation is None else self._rotation.rotation_weights
-        for convex in (False, True):  # far from a minimum the Hessian has negative eigenvalues
+
+        def solve(convex: bool) -> Complexes:
             nonzeros = self._energy.half_hessian(columns, convex, self._system.blocks, rotation_weights)
             self._system.add_constraints(nonzeros, to_points(pose))
-            try:
-                self._hessian.factorize(nonzeros)
-                break
-            except SolverError:
-                if convex:
-                    raise
-        return -0.5 * to_complex(self._hessian.solve(gradient.view(np.float64)).reshape(-1, 2))
+            return -0.5 * self._system.solve_once(nonzeros, gradient, is_definite=convex)
+
+        try:
+            return solve(convex=False)
+        except SolverError:  # far from a minimum the Hessian has negative eigenvalues
+            return solve(convex=True)
