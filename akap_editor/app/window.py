@@ -376,6 +376,7 @@ class Window:
     def drop(self, paths: list[Path]) -> None:
         """Open files that were dropped on the window, in the next frame."""
         self._dropped.append(paths)
+        self._woken.set()  # it may be the last frame that is due, and a dialog takes several to appear
 
     def request_close(self) -> None:
         """Close the window after the next frame; ask about unsaved changes first."""

@@ -2,6 +2,7 @@
 
 from imgui_bundle import imgui  # isort: skip
 import time
+from pathlib import Path
 from threading import Event
 from types import SimpleNamespace
 
@@ -162,6 +163,20 @@ def test_nothing_is_drawn_until_the_step_is_there_or_the_hand_moves(held, loop):
     loop.run(1)
     assert not held.ui.state.is_busy
     np.testing.assert_allclose(held.ui.pin_position(3), held.goal, atol=0.25)
+
+
+@pytest.mark.parametrize("before", range(SETTLE_FRAMES))
+def test_a_question_about_dropped_files_is_seen_whenever_they_come(pinned, loop, before):
+    """Also when they come with the last frame that is due, before the loop sleeps."""
+    pinned.session.mark_unsaved()
+    pinned.settle()
+    window, first = pinned.window, pinned.window.frames
+    loop.on_poll = lambda _: window.frames == first + before and window.drop([Path("other.png")])
+    ((_, frames),) = loop.run(1)
+    assert frames >= before + SETTLE_FRAMES
+    (dialog,) = imgui.get_current_context().open_popup_stack
+    assert dialog.window.active
+    assert dialog.window.hidden_frames_can_skip_items == 0
 
 
 @pytest.mark.parametrize("press", ["wheel", "key"])
