@@ -95,6 +95,14 @@ class Deformer(Protocol):
     def set_pins(self, points: MeshPoints) -> None:
         """Choose the pins, k points of the mesh; moves nothing. Raises InputError."""
 
+    def prepare(self, positions: ArrayLike) -> None:
+        """Announce that the next step will probably start from the pose (n, 2).
+
+        A method may then begin to compute beside, in another thread, what that step needs. Results do not
+        depend on it. By default nothing is done.
+        """
+        return
+
     def step(self, positions: ArrayLike, targets: ArrayLike) -> StepResult:
         """Move the pose (n, 2) so that its pins reach ``targets`` (k, 2), as far as the method allows.
 

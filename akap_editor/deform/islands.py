@@ -137,6 +137,10 @@ class IslandDeformer(Deformer):
         min_arms = _COLLAPSED * np.abs(arms @ self._rest)
         self._islands = Islands(vertices, patch[vertices], mean, arms.tocsr(), min_arms)
 
+    def prepare(self, positions: ArrayLike) -> None:
+        """Announce the pose (n, 2) of the next step, see `Deformer.prepare`."""
+        self._deformer.prepare(positions)
+
     def step(self, positions: ArrayLike, targets: ArrayLike, angles: ArrayLike | None = None) -> StepResult:
         """Move the pose (n, 2) so that its pins reach ``targets`` (k, 2), see `Deformer.step`.
 

@@ -55,6 +55,11 @@ class _Part:
         if self._made is not None:
             self._made.set_pins(points)
 
+    def prepare(self, pose: Floats) -> None:
+        """Announce the next pose of the part to its deformer, if that has been made."""
+        if self._made is not None:
+            self._made.prepare(pose)
+
     def set_scales(self, scales: Floats | None) -> None:
         """Take scales of the part's faces, if its deformer takes them."""
         self._scales = scales
@@ -154,6 +159,15 @@ class LayerGroupDeformer(Deformer):
         while len(self._kept) > _MAX_KEPT:
             del self._kept[next(iter(self._kept))]
         return self._kept[group]
+
+    def prepare(self, positions: ArrayLike) -> None:
+        """Announce the pose (n, 2) of the next step, see `Deformer.prepare`.
+
+        A deformer that the next step has to make is not prepared.
+        """
+        pose = as_points(positions, "positions", len(self._mesh.vertices))
+        for group in self._groups:
+            group.part.prepare(pose[group.part.vertices])
 
     def step(self, positions: ArrayLike, targets: ArrayLike, angles: ArrayLike | None = None) -> StepResult:
         """Move the pose (n, 2) so that its pins reach ``targets`` (k, 2), see `Deformer.step`.

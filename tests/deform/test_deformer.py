@@ -120,6 +120,9 @@ def test_result_depends_on_nothing_but_the_arguments(case, mesh):
     bound = 1e-5 * mesh.length if case[0] == "akap" and not case[1].get("exact") else 1e-9
     assert np.abs(used.step(pose, targets).positions - expected).max() < bound
     assert stepped(case, mesh, points, pose, targets).tolist() == expected.tolist()
+    prepared = deformer_of(case, mesh, points)
+    prepared.prepare(mesh.vertices)
+    assert prepared.step(pose, targets).positions.tolist() == expected.tolist()
 
 
 @pytest.mark.parametrize(("factor", "shift"), [(np.exp(0.7j), 0), (1, 400 - 90j), (12.5, 0), (0.04j, 3 + 1j)])

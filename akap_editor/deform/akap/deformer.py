@@ -159,6 +159,15 @@ class AkapDeformer(Deformer):
         self._points = self._order.points(points)
         self._set_angle_pins(np.zeros(len(points), dtype=bool))
 
+    def prepare(self, positions: ArrayLike) -> None:
+        """Make the factors for a step from the pose (n, 2) beside, see `Deformer.prepare`.
+
+        Those of pins that hold angles are made in the step.
+        """
+        pose = self._order.pose(as_points(positions, "positions", len(self._mesh.vertices)))
+        if len(self._points):
+            self._system.factorize_ahead(to_points(pose))
+
     def set_scales(self, scales: ArrayLike | None) -> None:
         """Remember the rest shape enlarged, see `Deformer`; without memory this has no effect."""
         if scales is self._given_scales or not self._memory_strength:

@@ -1,5 +1,7 @@
 """As-Killing-as-possible vector fields (paper, sections 2.1 and 2.2)."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -139,6 +141,16 @@ class KillingSystem:
 
     def prepare(self, positions: Floats) -> None:
         """Set the pose (n, 2) of both systems. Raises SolverError if one is singular."""
+        for system, nonzeros, frames in self._matrices(positions):
+            system.prepare(nonzeros, frames)
+
+    def factorize_ahead(self, positions: Floats) -> None:
+        """Begin to factorize beside what `prepare` will factorize at the pose (n, 2)."""
+        for system, nonzeros, frames in self._matrices(positions):
+            system.factorize_ahead(nonzeros, frames)
+
+    def _matrices(self, positions: Floats) -> Iterator[tuple[PreconditionedCholesky, Floats, Complexes]]:
+        """The systems that fields need at a pose (n, 2), each with its nonzeros and rotations from rest."""
         self._set_anchors(positions)
         rotation_weights = None
         if self._rotation is not None:
@@ -153,9 +165,9 @@ class KillingSystem:
         if self.joints is not None:
             frames = self._joint_frames.blend(frames)
         if self._interior_system is not None and self._needs_interior:
-            self._interior_system.prepare(nonzeros.take(self._inner_nonzeros), frames[self._interior])
+            yield self._interior_system, nonzeros.take(self._inner_nonzeros), frames[self._interior]
         np.add.at(nonzeros, self._pin_slots, self._pin_entries)
-        self._pinned_system.prepare(nonzeros, frames)
+        yield self._pinned_system, nonzeros, frames
 
     def measure_gaps(self, pose: Complexes) -> None:
         """Let the next fields close the gaps that the joints have at the pose (n,)."""

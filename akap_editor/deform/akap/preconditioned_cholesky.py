@@ -87,7 +87,12 @@ class PreconditionedCholesky:
         self._matrix = self._matrix._replace(nonzeros=nonzeros)
         self._frame, self._is_exact = frame, False
         if self._exact or self._is_tiny or not self._has_factors:
-            self.factorize()
+            job = self._finish_job()
+            if job is not None and job.has_factors_of(nonzeros, frame):
+                self._use_factors_made_beside(job)
+                self._is_exact = True
+            else:
+                self.factorize()
             return
         if self._job is not None:
             self._poses_to_wait -= 1
@@ -97,9 +102,20 @@ class PreconditionedCholesky:
             self.factorize()
             return
         elif not self._is_small and self._wasted_iterations >= MAX_WASTED_ITERATIONS:
-            self._factorize_beside()
+            self._factorize_beside(nonzeros, frame)
         self._rotation = frame * self._factorized_frame.conj()
         self._contraction = min(_CONTRACTION_GROWTH * self._contraction, 1.0)
+
+    def factorize_ahead(self, nonzeros: Floats, frame: Complexes) -> None:
+        """Begin to factorize the matrix that `prepare` will probably be called with next, beside.
+
+        If it is called with another one, that is factorized as ever; solutions are the same in any case.
+        Nothing is done if `prepare` would not factorize, if the mesh is small, or as long as other factors
+        are being made.
+        """
+        is_busy = self._job is not None and self._job.is_alive()
+        if not (self._exact or self._is_small or self._has_factors or is_busy):
+            self._factorize_beside(nonzeros, frame)
 
     def solve(self, right: Complexes, tolerance: float, warm_start_key: str = "") -> Complexes:
         """A⁻¹ b for a right-hand side b (n,), exact if every matrix is factorized.
@@ -179,11 +195,11 @@ class PreconditionedCholesky:
         self._wasted_iterations, self._contraction = 0.0, 1.0
         self.factorizations += 1
 
-    def _factorize_beside(self) -> None:
-        """Begin to factorize the current matrix in another thread."""
+    def _factorize_beside(self, nonzeros: Floats, frame: Complexes) -> None:
+        """Begin to factorize a matrix in another thread, see `prepare`."""
         if self._spare is None:
             self._spare = CholeskyFactors(self.symbolic, self._precision)
-        self._job = _FactorizationThread(self._spare, self._matrix.nonzeros, self._frame)
+        self._job = _FactorizationThread(self._spare, nonzeros, frame)
         self._job.start()
         self._poses_to_wait = self._delay
 
@@ -198,10 +214,14 @@ class PreconditionedCholesky:
         """Use the factors that were made beside. If they could not be made, the old ones go on serving."""
         job = self._finish_job()
         if job is not None and job.has_factors:
-            self._factors, self._spare = job.factors, self._factors
-            self._use_factors_of(job.frame)
+            self._use_factors_made_beside(job)
         else:
             self._wasted_iterations = 0.0
+
+    def _use_factors_made_beside(self, job: "_FactorizationThread") -> None:
+        """Exchange the factors for those of a thread that has ended."""
+        self._factors, self._spare = job.factors, self._factors
+        self._use_factors_of(job.frame)
 
     def _solve_directly(self, right: Complexes) -> Complexes:
         """A⁻¹ b, (n,), with factors of the current matrix in double precision. Raises SolverError."""
@@ -264,3 +284,8 @@ class _FactorizationThread(Thread):
         except SolverError:
             return
         self.has_factors = True
+
+    def has_factors_of(self, nonzeros: Floats, frame: Complexes) -> bool:
+        """Whether it succeeded with this matrix at a pose with these rotations."""
+        is_same = np.array_equal(nonzeros, self._nonzeros) and np.array_equal(frame, self.frame)
+        return self.has_factors and is_same

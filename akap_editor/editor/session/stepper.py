@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...deform.deformer import StepResult
+from ...deform.deformer import Deformer, StepResult
 from ...deform.methods import get_method, make_deformer
 from ...errors import SolverError
 from ...geometry.mesh import TriMesh
@@ -110,6 +110,7 @@ class Stepper:
             parameters["stiffness"] = state.stiffness
         deformer = make_deformer(method, mesh, mesh_joints(state.joints), **parameters)
         deformer.set_pins(state.points)
+        _prepare(deformer, state)
         with self._lock:
             # Any: a method may have more than the contract asks for, e.g. angles of pins and vector fields
             self._deformer: Any = deformer
@@ -125,6 +126,7 @@ class Stepper:
         """Take over the pins of a state and stop; no vertex moves."""
         with self._lock:
             self._deformer.set_pins(state.points)
+            _prepare(self._deformer, state)
             self._pin_count = len(state.pins)
         self.steps_left = 0
 
@@ -266,3 +268,9 @@ class Stepper:
                 return None
             optimal, smooth = self._deformer.vector_fields(*motion)
         return optimal, smooth
+
+
+def _prepare(deformer: Deformer, state: EditState) -> None:
+    """Let a deformer prepare the next step beside; a pin with an angle changes in that step what it needs."""
+    if not np.isfinite(state.angles).any():
+        deformer.prepare(state.positions)

@@ -1,7 +1,7 @@
 """Conjugate gradients preconditioned by earlier factors: exact results, few factorizations."""
 
+import threading
 import time
-from threading import Thread
 
 import numpy as np
 import pytest
@@ -259,11 +259,47 @@ def test_poses_do_not_depend_on_how_fast_factors_are_made_beside(monkeypatch, sl
 
 
 @pytest.mark.usefixtures("factors_beside")
+@pytest.mark.parametrize(
+    "announced", ["the pose", "another pose", "other pins", "none that can be factorized"]
+)
+def test_factors_made_ahead_change_no_bit(monkeypatch, announced):
+    """A step with the factors of the pose announced does not factorize; each other one does, as ever."""
+    mesh = shapes.SHAPES["bar"]
+    points, others = shapes.random_pins(mesh, 4, 3), shapes.random_pins(mesh, 5, 3)
+    goal = mesh.evaluate(points, mesh.vertices)
+    goal[-1] += [-1.0, 1.5]
+    later_goal = goal + np.array([1.0, 0.5])
+    usual, prepared = AkapDeformer(mesh, memory=1.0), AkapDeformer(mesh, memory=1.0)
+    usual.set_pins(points)
+    expected = [usual.step(mesh.vertices, goal).positions]
+    expected.append(usual.step(expected[0], later_goal).positions)
+
+    prepared.set_pins(others if announced == "other pins" else points)
+    if announced == "none that can be factorized":
+        prepared.prepare(np.zeros_like(mesh.vertices))
+    else:
+        prepared.prepare(mesh.vertices * (1.1 if announced == "another pose" else 1.0))
+    for thread in threading.enumerate():
+        if thread.name == "factorization":
+            thread.join()
+    prepared.set_pins(points)
+    callers, factorize = [], CholeskyFactors.factorize
+    monkeypatch.setattr(
+        CholeskyFactors,
+        "factorize",
+        lambda *arguments: (callers.append(threading.current_thread()), factorize(*arguments))[1],
+    )
+    assert (prepared.step(mesh.vertices, goal).positions == expected[0]).all()
+    assert (threading.main_thread() in callers) == (announced != "the pose")
+    assert (prepared.step(expected[0], later_goal).positions == expected[1]).all()
+
+
+@pytest.mark.usefixtures("factors_beside")
 @pytest.mark.parametrize(("min_vertices", "delay"), [(10**6, 1), (0, 2)])
 def test_factors_are_taken_over_later_in_a_large_mesh(monkeypatch, system, min_vertices, delay):
     monkeypatch.setattr(preconditioned_cholesky, "MIN_LONG_DELAY_VERTICES", min_vertices)
-    solver, start, begun, taken_over = prepared(system), Thread.start, [], []
-    monkeypatch.setattr(Thread, "start", lambda thread: (begun.append(pose), start(thread)))
+    solver, start, begun, taken_over = prepared(system), threading.Thread.start, [], []
+    monkeypatch.setattr(threading.Thread, "start", lambda thread: (begun.append(pose), start(thread)))
     ones = np.ones(system.size // 2, dtype=complex)
     for pose in range(20):
         before = solver.factorizations

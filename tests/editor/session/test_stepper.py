@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from akap_editor.deform.akap.deformer import AkapDeformer
 from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
 from akap_editor.editor.editor import FRAME_BUDGET, STEP_WAIT
@@ -251,3 +252,22 @@ def test_fields_and_edits_wait_for_a_step_in_a_real_thread(drawing):
     assert fields is not None
     assert fields[0].shape == driver.state.positions.shape
     assert driver.session.vector_fields() is None, "the last motion had other pins"
+
+
+def test_the_next_step_is_announced_with_each_change_of_the_pins(drawing, monkeypatch):
+    announced = []
+    monkeypatch.setattr(AkapDeformer, "prepare", lambda _, positions: announced.append(positions))
+    driver = Driver(new_document(drawing))
+    for change in (
+        lambda: driver.click((20.0, 40.0)),
+        lambda: gestures.set_settings(driver.editor, driver.state.settings.with_parameter("memory", 0.5)),
+        driver.undo,
+        lambda: driver.click(END),
+    ):
+        announced.clear()
+        change()
+        assert announced[-1] is driver.state.positions
+    hold_angles(driver.session, {1})
+    announced.clear()
+    driver.click((62.0, 40.0))
+    assert not announced, "the step itself changes what it needs"
