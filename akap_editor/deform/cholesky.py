@@ -79,6 +79,7 @@ class CholeskyFactors:
     """
 
     def __init__(self, symbolic: SymbolicCholesky, precision: Precision = np.float64) -> None:
+        self.precision = precision
         self._is_half = precision is np.float16
         self._type = np.float32 if self._is_half else np.float64
         self.fronts = symbolic.fronts

@@ -151,9 +151,9 @@ class PreconditionedCholesky:
             self._other_factors.factorize(nonzeros)
             return self._solve_exactly(self._other_factors, nonzeros, right)
         except SolverError:
-            if self._precision is np.float64 or not is_definite:
+            if self._other_factors.precision is np.float64 or not is_definite:
                 raise
-        self._use_double_precision()
+        self._other_factors = CholeskyFactors(self.symbolic, np.float64)  # from now on
         return self.solve_once(nonzeros, right, is_definite)
 
     def energy(self, values: Complexes) -> float:
@@ -229,7 +229,7 @@ class PreconditionedCholesky:
 
     def _solve_exactly(self, factors: CholeskyFactors, nonzeros: Floats, right: Complexes) -> Complexes:
         """B⁻¹ b, (n,), to double precision from factors of the very matrix B. Raises SolverError."""
-        if self._precision is np.float64:
+        if factors.precision is np.float64:
             return factors.solve(right.view(np.float64)).view(np.complex128)
         unrotated, solution = np.ones_like(right), np.empty_like(right)
         count, _, _ = iterate(
