@@ -1,7 +1,7 @@
 """Keys: their names, and the keys of commands that the user has changed."""
 
-import re
 from collections.abc import Mapping
+from functools import cache
 
 from imgui_bundle import imgui
 
@@ -60,22 +60,28 @@ def _key_name(key: int) -> str:
 
 
 _KEYS_BY_NAME = {_key_name(key): key for key in KEYS}
+_IMGUI_KEYS = tuple(map(Key, KEYS))
 
 
-def chord_name(chord: int) -> str:
-    """The name of a chord in English, e.g. "Ctrl+Shift+S", by which the preferences store it."""
+@cache  # asked for dozens of times a frame
+def _chord_parts(chord: int) -> tuple[str, ...]:
+    """The names of a chord's modifiers and of its key, in English."""
     parts, chord = [], int(chord)
     for name, modifier in _MODIFIERS.items():
         if chord & int(modifier):
             parts.append(name)
             chord &= ~int(modifier)
-    return "+".join([*parts, _key_name(chord)])
+    return *parts, _key_name(chord)
+
+
+def chord_name(chord: int) -> str:
+    """The name of a chord in English, e.g. "Ctrl+Shift+S", by which the preferences store it."""
+    return "+".join(_chord_parts(chord))
 
 
 def shown_chord(chord: int) -> str:
     """The name of a chord as keyboards of the user's language show it."""
-    parts = re.split(r"\+(?=.)", chord_name(chord))
-    return "+".join(tr(part) for part in parts)
+    return "+".join(map(tr, _chord_parts(chord)))
 
 
 def chord_named(name: str) -> int | None:
@@ -87,6 +93,11 @@ def chord_named(name: str) -> int | None:
             rest = rest.removeprefix(f"{modifier_name}+")
     key = _KEYS_BY_NAME.get(rest)
     return None if key is None else chord | key
+
+
+def is_any_pressed() -> bool:
+    """Whether a key of commands was pressed in this frame, or repeats, or a character was typed."""
+    return bool(imgui.get_io().input_queue_characters) or any(map(imgui.is_key_pressed, _IMGUI_KEYS))
 
 
 def pressed_chord() -> int | None:

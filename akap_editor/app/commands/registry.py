@@ -39,7 +39,7 @@ from .command import (
 from .edit.arrange import ALIGN_PINS, DISTRIBUTE_PINS
 from .edit.mirror import MIRROR
 from .keyboard_pointer import CONTEXT_MENU, CROSSHAIR, FINISH, NEXT_PIN, PANNING, PIN_VALUES, PREVIOUS_PIN
-from .keymap import KEYMAP
+from .keymap import KEYMAP, is_any_pressed
 from .palette import Palette
 from .shortcuts_page import ShortcutsPage
 from .timeline import ANIMATION, has_selected_keyframes
@@ -391,7 +391,7 @@ def restore_keys(preferences: Preferences) -> None:
 
 def run_pressed(state: AppState) -> None:
     """Run the commands whose keys were pressed in this frame."""
-    for command in COMMANDS:
+    for command in COMMANDS if is_any_pressed() else ():
         if not command.is_pressed():
             continue
         if not command.enabled(state):

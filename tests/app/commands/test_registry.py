@@ -73,6 +73,14 @@ def scattered(ui):
     ui.editor.select_all()
 
 
+def stacked(ui):
+    """Three pins in the head, one below the other; all are selected."""
+    gestures.remove_pins(ui.editor, {pin.id for pin in ui.pins})
+    for place in ((40.0, 62.0), (60.0, 80.0), (48.0, 98.0)):
+        gestures.add_pin(ui.editor, place)
+    ui.editor.select_all()
+
+
 def paired(ui):
     ui.editor.select({1, 3})
     mirroring.pair_selected(ui.editor)
@@ -350,9 +358,9 @@ CASES = {
     ),
     "Animate Tab": (nothing, lambda ui: layout.current_tab(ui.state) == "Animate"),
     "Mesh Tab": (nothing, lambda ui: layout.current_tab(ui.state) == "Mesh"),
-    "Align Left": (scattered, targets_are(0, [40.0, 40.0, 40.0])),
-    "Align Horizontal Centers": (scattered, targets_are(0, [130.0, 130.0, 130.0])),
-    "Align Right": (scattered, targets_are(0, [220.0, 220.0, 220.0])),
+    "Align Left": (stacked, targets_are(0, [40.0, 40.0, 40.0])),
+    "Align Horizontal Centers": (stacked, targets_are(0, [50.0, 50.0, 50.0])),
+    "Align Right": (stacked, targets_are(0, [60.0, 60.0, 60.0])),
     "Align Top": (scattered, targets_are(1, [70.0, 70.0, 70.0])),
     "Align Vertical Centers": (scattered, targets_are(1, [80.0, 80.0, 80.0])),
     "Align Bottom": (scattered, targets_are(1, [90.0, 90.0, 90.0])),
