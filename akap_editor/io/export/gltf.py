@@ -16,6 +16,7 @@ from ...overlap.seams import CutMesh
 from .baked_animation import BakedAnimation
 from .drawn_faces import DrawnFaces, drawn_faces, stacked
 from .texture import encode_texture, level_height, y_up
+from .unique_names import UniqueNames
 
 PIXELS_PER_UNIT = 100.0  # by the scale of the node; the mesh itself is in pixels
 
@@ -105,7 +106,7 @@ def encode_glb(
         "nodes": nodes,
         "meshes": meshes,
         **animations,
-        "materials": [_material(drawing.name, layer) for layer in drawing.layers or (None,)],
+        "materials": _materials(drawing),
         "textures": [{"sampler": 0, "source": 0}],
         "samplers": [{"magFilter": _LINEAR, "minFilter": _MIPMAPS, "wrapS": _CLAMP, "wrapT": _CLAMP}],
         "images": [{"name": drawing.name, "bufferView": image, "mimeType": "image/png"}],
@@ -221,11 +222,18 @@ def _to_3d(points: Floats, z: NDArray[Any]) -> NDArray[np.float32]:
     return np.column_stack([points, z]).astype("<f4")
 
 
-def _material(name: str, layer: DrawingLayer | None) -> dict[str, Any]:
+def _materials(drawing: Drawing) -> list[dict[str, Any]]:
+    """One for each layer, in their order, or for a flat drawing."""
+    if not drawing.layers:
+        return [_material(drawing.name, 1.0)]
+    names = UniqueNames()
+    return [_material(names.next(layer.name), layer.opacity) for layer in drawing.layers]
+
+
+def _material(name: str, opacity: float) -> dict[str, Any]:
     """An unlit material that blends alpha and shows both sides, as a pose may flip faces."""
-    opacity = 1.0 if layer is None else layer.opacity
     return {
-        "name": name if layer is None else layer.name,
+        "name": name,
         "pbrMetallicRoughness": {
             **({} if opacity == 1 else {"baseColorFactor": [1.0, 1.0, 1.0, opacity]}),
             "baseColorTexture": {"index": 0},

@@ -4,10 +4,10 @@ import numpy as np
 
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
-from ...layers.drawing_layer import DrawingLayer
 from ...overlap.seams import CutMesh
 from .drawn_faces import drawn_faces, stacked
 from .texture import companion_stem, encode_texture, level_height, texture_name, y_up
+from .unique_names import UniqueNames
 
 
 def encode_obj(
@@ -36,8 +36,12 @@ def encode_obj(
         *(f"vt {u:.9g} {v:.9g}" for u, v in uv.tolist()),
         "vn 0 0 1",
         "usemtl drawing",
-        *(line for layer, run in drawn.layer_runs(drawing) for line in _face_lines(layer, drawn.faces[run])),
     ]
+    groups = _group_names(drawing)
+    for layer, run in drawn.layer_runs(drawing):
+        if layer is not None:
+            lines.append(f"g {groups[drawn.layers[run[0]]]}")
+        lines += [f"f {a}/{a}/1 {b}/{b}/1 {c}/{c}/1" for a, b, c in (drawn.faces[run, ::-1] + 1).tolist()]
     return {
         texture: encode_texture(drawing),
         material: _material(texture).encode(),
@@ -45,10 +49,10 @@ def encode_obj(
     }
 
 
-def _face_lines(layer: DrawingLayer | None, faces: Ints) -> list[str]:
-    """The lines of faces (f, 3); those of a layer are a group with its name."""
-    lines = [] if layer is None else [f"g {companion_stem(layer.name) or 'layer'}"]
-    return lines + [f"f {a}/{a}/1 {b}/{b}/1 {c}/{c}/1" for a, b, c in (faces[:, ::-1] + 1).tolist()]
+def _group_names(drawing: Drawing) -> list[str]:
+    """The name of the group of each layer, which differ."""
+    names = UniqueNames("_")
+    return [names.next(companion_stem(layer.name) or "layer") for layer in drawing.layers]
 
 
 def companion_names(stem: str) -> list[str]:

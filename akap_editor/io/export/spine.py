@@ -17,6 +17,7 @@ from .baked_animation import BakedAnimation, DrawingOrder
 from .component_runs import component_runs
 from .drawn_faces import DrawnFaces, drawn_faces
 from .texture import companion_stem, encode_texture, texture_name, y_up
+from .unique_names import UniqueNames
 
 SPINE_VERSION = "4.2.00"
 MAX_ATTACHMENT_VERTICES = 32767  # runtimes count vertices with signed 16-bit integers
@@ -55,7 +56,7 @@ def encode_spine(
     offsets = _Offsets(drawing)
     runs_of_orders = [_layered_runs(drawing, shapes[id(each.cut)], each) for each in orders]
     slots_of_orders: list[list[str]] = [[] for _ in orders]
-    slot_names = _SlotNames()
+    slot_names = UniqueNames()
     for run, numbers in _shared_runs(runs_of_orders):
         name = slot_names.next(_title(drawing, run))
         shown = {"attachment": name} if 0 in numbers else {}
@@ -245,21 +246,6 @@ def _shared_runs(runs_of_orders: Sequence[Sequence[_Run]]) -> list[tuple[_Run, l
 def _follow_alike(first: Collection[Hashable], second: Collection[Hashable]) -> bool:
     """Whether what two sequences have in common follows one another in the same order."""
     return [key for key in first if key in second] == [key for key in second if key in first]
-
-
-class _SlotNames:
-    """Names of slots, which must differ: a number follows from the second of one name on."""
-
-    def __init__(self) -> None:
-        self._used: set[str] = set()
-
-    def next(self, name: str) -> str:
-        """The name for the next slot."""
-        number, result = 2, name
-        while result in self._used:
-            result, number = f"{name} {number}", number + 1
-        self._used.add(result)
-        return result
 
 
 def _layered_runs(drawing: Drawing, shape: _Shape, order: DrawingOrder) -> list[_Run]:

@@ -57,6 +57,30 @@ def test_spine_has_a_slot_for_each_part_of_a_layer(document, tmp_path):
     assert (attachment["width"], attachment["height"]) == (width, height)
 
 
+def test_layers_of_one_name_differ_in_the_formats_that_tell_parts_apart_by_name(document, tmp_path):
+    """As slots do in Spine files, whose parts of one layer have numbers, too."""
+    names = ["left eye", "left eye", "eyes", "left_eye", "hat"]
+    layers = tuple(
+        replace(each, name=name) for each, name in zip(document.drawing.layers, names, strict=True)
+    )
+    twins = new_document(replace(document.drawing, layers=layers))
+    for ending in ("obj", "glb", "spine.json"):
+        export(twins, tmp_path / f"a.{ending}")
+    groups = re.findall(r"^g (.*)$", (tmp_path / "a.obj").read_text(), re.MULTILINE)
+    assert groups == ["left_eye", "eyes", "left_eye_3", "left_eye_2"]
+    data = (tmp_path / "a.glb").read_bytes()
+    scene = json.loads(data[20 : 20 + struct.unpack_from("<I", data, 12)[0]])
+    assert [each["name"] for each in scene["materials"]] == [
+        "left eye",
+        "left eye 2",
+        "eyes",
+        "left_eye",
+        "hat",
+    ]
+    slots = [slot["name"] for slot in json.loads((tmp_path / "a.spine.json").read_text())["slots"]]
+    assert slots == ["left eye", "eyes", "left_eye", "left_eye 2", "left eye 2"]
+
+
 def test_json_names_layers_and_the_layer_of_each_face(document, tmp_path):
     export(document, tmp_path / "a.json")
     record = json.loads((tmp_path / "a.json").read_text())
