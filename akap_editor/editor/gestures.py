@@ -210,12 +210,15 @@ def set_layers(
     session.commit(join=joins)
 
 
-def move_layer(editor: EditContext, layer: int, place: int) -> None:
-    """Move a layer to a place among the others, from 0, the hindmost. Raises InputError."""
+def move_layer(editor: EditContext, layer: int, place: int, groups: Sequence[str] | None = None) -> None:
+    """Move a layer to a place among the others, from 0, the hindmost. Raises InputError.
+
+    groups: the names of the groups that it is put into, by default those that it is in.
+    """
     if editor.session is not None:
         order = [number for number in editor.session.drawing.layer_order if number != layer]
         order.insert(place, layer)
-        editor.apply(mark("Reorder Layers"), OrderLayers(order))
+        editor.apply(mark("Reorder Layers"), OrderLayers(order), SetLayers([layer], groups=groups))
 
 
 def show_group(editor: EditContext, path: Sequence[str], visible: bool) -> None:

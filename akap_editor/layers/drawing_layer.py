@@ -84,6 +84,17 @@ class DrawingLayer:
         return (*self.groups, self.name)
 
 
+def closed_groups(layers: Sequence[DrawingLayer], groups: tuple[str, ...]) -> tuple[int, ...]:
+    """The indices in ``groups``, the outermost first, of those whose eye is closed among the layers."""
+    closed = {
+        index
+        for layer in layers
+        for index in layer.closed_groups
+        if layer.groups[: index + 1] == groups[: index + 1]
+    }
+    return tuple(sorted(closed))
+
+
 def shown_layers(layers: Sequence[DrawingLayer]) -> NDArray[np.bool_]:
     """Whether each layer is shown, (l,).
 

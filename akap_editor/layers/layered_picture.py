@@ -11,6 +11,7 @@ from ..geometry.validation import as_choice, as_number, as_picture, as_switch, f
 from ..words import tr
 
 MAX_NAME = 255  # characters
+MAX_GROUPS = 50  # in one another
 PASS_THROUGH = "pass through"  # the blending of a group whose layers are blended with what lies below it
 BLEND_MODES = ("normal", "multiply", "screen", "add")
 

@@ -113,7 +113,7 @@ EDIT_EXAMPLES: dict[str, Callable[[Session], Edit]] = {
     "artwork": lambda session: ReloadArtwork(_painted_anew(session.drawing)),
     "limb": lambda session: OrderLimb([pin.id for pin in session.state.pins[-1:]], False),
     "crossings": lambda session: SetCrossings(np.array([[3, 1]], dtype=np.int32)),
-    "layers": lambda session: SetLayers([0], "trunk", 0.5, False, True, True),
+    "layers": lambda session: SetLayers([0], "trunk", 0.5, False, True, True, "", ["body"]),
     "layer-view": lambda session: SetLayerView(_mirrored_view(session.drawing)),
     "key-layers": lambda session: KeyLayers([0], False),
     "group": lambda session: ShowGroup(["head"], False),

@@ -116,6 +116,10 @@ class LayerList:
         if imgui.selectable(f"###group {index}", False, size=ImVec2(room, side))[0]:
             self._folded ^= {path}
         widgets.show_tooltip(" / ".join(path))
+        dropped, order = _dropped_layer(), state.document.drawing.layer_order
+        if dropped is not None:
+            foremost = max(k for k, number in enumerate(order) if layers[number].groups[: len(path)] == path)
+            _move(state, dropped, foremost + (order.index(dropped) > foremost), path)
         icon = icons.ICON_FA_FOLDER if is_folded else icons.ICON_FA_FOLDER_OPEN
         text = widgets.shortened(f"{icon}  {path[-1]}", room)
         place = ImVec2(corner.x + 0.3 * font_size, corner.y + middle - top)
@@ -200,7 +204,12 @@ class LayerList:
                 layer=" / ".join(layer.path),
             )
         )
-        _drag_and_drop(state, number, place)
+        if imgui.begin_drag_drop_source(imgui.DragDropFlags_.source_no_preview_tooltip):
+            imgui.set_drag_drop_payload_py_id(LAYER_PAYLOAD, number)
+            imgui.end_drag_drop_source()
+        dropped = _dropped_layer()
+        if dropped is not None and dropped != number:
+            _move(state, dropped, place, layer.groups)
         if imgui.is_item_focused() and context_menu_pressed():
             imgui.open_popup(f"menu of layer {number}")
         if imgui.begin_popup_context_item(f"menu of layer {number}"):
@@ -320,8 +329,8 @@ def _set(state: AppState, label: str, number: int, join: bool = False, **values:
     _run(state, lambda: gestures.set_layers(state.editor, label, [number], join=join, **values))
 
 
-def _move(state: AppState, number: int, place: int) -> None:
-    _run(state, lambda: gestures.move_layer(state.editor, number, place))
+def _move(state: AppState, number: int, place: int, groups: Sequence[str] | None = None) -> None:
+    _run(state, lambda: gestures.move_layer(state.editor, number, place, groups))
 
 
 def _run(state: AppState, work: Callable[[], None]) -> None:
@@ -329,16 +338,13 @@ def _run(state: AppState, work: Callable[[], None]) -> None:
     state.run_reporting_errors(work)
 
 
-def _drag_and_drop(state: AppState, number: int, place: int) -> None:
-    """Let the last item be dragged to another layer, whose place it takes."""
-    if imgui.begin_drag_drop_source(imgui.DragDropFlags_.source_no_preview_tooltip):
-        imgui.set_drag_drop_payload_py_id(LAYER_PAYLOAD, number)
-        imgui.end_drag_drop_source()
-    if imgui.begin_drag_drop_target():
-        payload = imgui.accept_drag_drop_payload_py_id(LAYER_PAYLOAD)
-        if payload is not None and payload.data_id != number:
-            _move(state, payload.data_id, place)
-        imgui.end_drag_drop_target()
+def _dropped_layer() -> int | None:
+    """The number of a layer that was just dropped on the last item."""
+    if not imgui.begin_drag_drop_target():
+        return None
+    payload = imgui.accept_drag_drop_payload_py_id(LAYER_PAYLOAD)
+    imgui.end_drag_drop_target()
+    return payload.data_id if payload is not None else None
 
 
 def _draw_opacity(state: AppState, layers: Sequence[DrawingLayer], selected: int | None) -> None:

@@ -13,13 +13,13 @@ from ...errors import InputError, error_context
 from ...geometry.validation import MAX_COORDINATE, Ints, freeze
 from ...layers.drawing_layer import Artwork, DrawingLayer
 from ...layers.layer_view import LayerView
+from ...layers.layered_picture import MAX_GROUPS
 from ...words import tr
 from ..images import decode_image, encode_png
 from .archive import Archive, ArchiveEntry
 from .json_records import Json, numbers, optional, require
 
 MAX_LAYERS = 1000
-MAX_GROUPS = 50  # around a layer
 MAX_TEXTURE_PIXELS = 2**28
 MAX_PICTURE_BYTES = 2**29
 

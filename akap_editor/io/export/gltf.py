@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ...editor.document.drawing import Drawing
 from ...geometry.validation import Floats, Ints
-from ...layers.drawing_layer import DrawingLayer
 from ...overlap.seams import CutMesh
 from .baked_animation import BakedAnimation
 from .drawn_faces import DrawnFaces, drawn_faces, stacked

@@ -8,7 +8,6 @@ from ...words import tr
 from ..images import MAX_PIXELS
 
 MAX_LAYERS = 1000
-MAX_DEPTH = 50  # of groups in groups
 MAX_LAYERS_PIXELS = 2**28  # of all layers together, without their transparent margins
 MAX_SHOWN_NAME = 40  # characters
 

@@ -10,13 +10,13 @@ from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
 from ...errors import InputError, error_context, file_errors
-from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
+from ...layers.layered_picture import MAX_GROUPS, PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
 from ...progress import announce
 from ...words import mark, tr
 from ..akap.archive import Archive
 from ..atomic import os_error_reason, read_file
 from ..images import Picture, decode_image
-from .limits import MAX_DEPTH, LayerBudget, check_size, quoted
+from .limits import LayerBudget, check_size, quoted
 
 ORA_MIMETYPE = b"image/openraster"
 MAX_STACK_BYTES = 2**22
@@ -156,8 +156,8 @@ def _parse_xml(data: bytes) -> Element:
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal depth
         depth += 1
-        if depth > MAX_DEPTH:
-            raise InputError(tr("expected groups in groups at most {most} deep, got more", most=MAX_DEPTH))
+        if depth > MAX_GROUPS:
+            raise InputError(tr("expected groups in groups at most {most} deep, got more", most=MAX_GROUPS))
         builder.start(tag, attributes)
 
     def end(tag: str) -> None:

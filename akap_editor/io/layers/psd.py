@@ -15,12 +15,12 @@ from psd_tools.constants import BlendMode, ChannelID, ColorMode, CompatibilityMo
 from psd_tools.psd.descriptor import Descriptor
 
 from ...errors import AkapError, InputError, error_context
-from ...layers.layered_picture import PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
+from ...layers.layered_picture import MAX_GROUPS, PASS_THROUGH, Layer, LayeredPicture, LayerGroup, trimmed
 from ...progress import announce
 from ...words import tr
 from ..atomic import os_error_reason
 from ..images import MAX_PIXELS, Picture
-from .limits import MAX_DEPTH, LayerBudget, check_size, quoted
+from .limits import LayerBudget, check_size, quoted
 
 MAX_ALLOCATED_BYTES = 2**30  # by psd-tools at once
 _LIMITS = ParseLimits(max_read_bytes=2**30)
@@ -109,8 +109,8 @@ class _PsdReader:
 
         masks: the groups around it that have a mask.
         """
-        if len(groups) > MAX_DEPTH:
-            raise InputError(tr("expected groups in groups at most {most} deep, got more", most=MAX_DEPTH))
+        if len(groups) > MAX_GROUPS:
+            raise InputError(tr("expected groups in groups at most {most} deep, got more", most=MAX_GROUPS))
         base_is_drawn = True  # whether the layer to which others are clipped has pixels
         for layer in group:
             self.budget.add_layer()

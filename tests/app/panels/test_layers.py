@@ -4,7 +4,9 @@ from imgui_bundle import imgui  # isort: skip
 import pytest
 
 from akap_editor.app.panels import layers
+from akap_editor.editor import gestures
 from akap_editor.editor.document.document import new_document
+from akap_editor.editor.session.edits import OrderLayers
 from tests.support.puppets import ARM, BODY, HAT, SKULL, puppet
 
 
@@ -113,9 +115,31 @@ def test_a_double_click_or_f2_renames_a_layer(layered):
 def test_a_layer_takes_the_place_of_the_one_it_is_dragged_to(layered):
     layered.do(lambda hand: hand.item_drag_and_drop(row(BODY, "layer"), row(SKULL, "layer")))
     assert layered.session.drawing.layer_order == (ARM, SKULL, BODY, 3, HAT)
+    assert layer(layered, BODY).groups == ("head",)
     assert labels(layered)[-1] == "Reorder Layers"
     layered.session.undo()
     assert layered.session.drawing.layer_order == (0, 1, 2, 3, 4)
+    assert layer(layered, BODY).groups == ()
+    layered.do(lambda hand: hand.item_drag_and_drop(row(SKULL, "layer"), row(BODY, "layer")))
+    assert layered.session.drawing.layer_order == (SKULL, BODY, ARM, 3, HAT)
+    assert layer(layered, SKULL).groups == ()
+
+
+@pytest.mark.parametrize("before", [(0, 1, 2, 3, 4), (2, 3, 4, 0, 1)])
+@pytest.mark.parametrize("is_open", [True, False])
+def test_a_layer_dropped_on_a_group_is_put_in_front_in_it(layered, before, is_open):
+    gestures.show_group(layered.editor, ("head",), is_open)
+    layered.session.begin("Reorder Layers")
+    layered.session.apply(OrderLayers(before))
+    layered.session.commit()
+    layered.settle()
+    group = next(index for index, number in enumerate(before[::-1]) if number in (SKULL, 3, HAT))
+    layered.do(lambda hand: hand.item_drag_and_drop(row(ARM, "layer"), row(group, "group")))
+    order = layered.session.drawing.layer_order
+    assert order[order.index(HAT) + 1] == ARM
+    assert layer(layered, ARM).groups == ("head",)
+    assert layer(layered, ARM).closed_groups == (() if is_open else (0,))
+    assert [number for number in order if number != ARM] == [number for number in before if number != ARM]
 
 
 def test_the_menu_moves_a_layer(layered):

@@ -7,9 +7,9 @@ from typing import Self
 from ....display_text import display_text
 from ....errors import InputError
 from ....geometry.validation import as_number, as_points, as_switch
-from ....layers.drawing_layer import DrawingLayer
+from ....layers.drawing_layer import DrawingLayer, closed_groups
 from ....layers.layer_view import LayerView, view_with_one_shown, with_one_shown
-from ....layers.layered_picture import MAX_NAME
+from ....layers.layered_picture import MAX_GROUPS, MAX_NAME
 from ....words import tr
 from ...document.document import EditState
 from ...document.drawing import Drawing
@@ -17,16 +17,17 @@ from ...document.rig.joint import Joint, check_joints, make_joint
 from .edit import Edit, Effect, Json, ReplayTarget, layer_view_from_json, layer_view_to_json
 
 _SWITCHES = ("visible", "solo", "locked")
-_VALUES = ("title", "opacity", *_SWITCHES, "slot")
+_VALUES = ("title", "opacity", *_SWITCHES, "slot", "groups")
 
 
 @dataclass(frozen=True)
 class SetLayers(Edit):
-    """Change layers: name, opacity, visible, solo, locked, slot; None leaves a value as it is.
+    """Change layers: name, opacity, visible, solo, locked, slot, groups; None leaves a value as it is.
 
     layers: their numbers in `Drawing.layers`; slot: the name of the slot that they are put into, empty for
     none. Of each slot at most one layer stays visible, also in keyframes: the one that is made so, or the
-    foremost. No vertex moves.
+    foremost. groups: the names of the groups that they are put into, the outermost first; the eyes of these
+    groups stay as they are. No vertex moves.
     """
 
     name = "layers"
@@ -39,6 +40,7 @@ class SetLayers(Edit):
     solo: bool | None = None
     locked: bool | None = None
     slot: str | None = None
+    groups: Sequence[str] | None = None
 
     def apply(self, state: EditState, drawing: Drawing) -> EditState:
         count = len(drawing.layers)
@@ -52,8 +54,10 @@ class SetLayers(Edit):
                 )
             )
         chosen = set(self.layers)
+        values = self._new_values(drawing)
         layers = tuple(
-            self._changed(layer) if number in chosen else layer for number, layer in enumerate(drawing.layers)
+            _with_values(layer, values) if number in chosen else layer
+            for number, layer in enumerate(drawing.layers)
         )
         layers = with_one_shown(layers, drawing.layer_order, chosen if self.visible else ())
         if all(a is b for a, b in zip(layers, drawing.layers, strict=True)):
@@ -63,7 +67,8 @@ class SetLayers(Edit):
             animation = animation.map_layers(lambda view: view_with_one_shown(view, layers))
         return replace(state, drawing=replace(drawing, layers=layers), animation=animation)
 
-    def _changed(self, layer: DrawingLayer) -> DrawingLayer:
+    def _new_values(self, drawing: Drawing) -> Json:
+        """The values of `DrawingLayer` that change, by name."""
         values: Json = {
             name: as_switch(getattr(self, name), name)
             for name in _SWITCHES
@@ -75,17 +80,35 @@ class SetLayers(Edit):
             values["name"] = _as_title(self.title)
         if self.slot is not None:
             values["slot"] = _as_title(self.slot) if self.slot else ""
-        if all(getattr(layer, name) == value for name, value in values.items()):
-            return layer
-        return replace(layer, **values)
+        if self.groups is not None:
+            groups = values["groups"] = _as_groups(self.groups)
+            values["closed_groups"] = closed_groups(drawing.layers, groups)
+        return values
 
     def to_json(self, drawing: Drawing) -> Json:
         given = {name: getattr(self, name) for name in _VALUES if getattr(self, name) is not None}
+        if self.groups is not None:
+            given["groups"] = list(self.groups)
         return {"layers": list(self.layers), **given}
 
     @classmethod
     def from_json(cls, event: Json, target: ReplayTarget, drawing: Drawing) -> Self:
         return cls(tuple(event["layers"]), **{name: event[name] for name in _VALUES if name in event})
+
+
+def _with_values(layer: DrawingLayer, values: Json) -> DrawingLayer:
+    """The layer with other values; itself if it has them."""
+    if all(getattr(layer, name) == value for name, value in values.items()):
+        return layer
+    return replace(layer, **values)
+
+
+def _as_groups(value: object) -> tuple[str, ...]:
+    if not isinstance(value, (list, tuple)):
+        raise InputError(tr("group: expected the names of one around layers, got {path!r:.60}", path=value))
+    if len(value) > MAX_GROUPS:
+        raise InputError(tr("expected groups in groups at most {most} deep, got more", most=MAX_GROUPS))
+    return tuple(map(_as_title, value))
 
 
 def _as_title(value: object) -> str:
