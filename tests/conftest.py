@@ -1,4 +1,4 @@
-"""Fixtures for all tests, reproducible random cases, and the tests of a real window last."""
+"""Fixtures for all tests, reproducible random cases, and the tests of a real window first."""
 
 import os
 
@@ -21,8 +21,8 @@ settings.load_profile("reproducible")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run the tests of a real window, which are slow, after all others."""
-    items.sort(key=lambda item: item.get_closest_marker("window") is not None)
+    """Run the tests of a real window first: they take longest, and all workers end with short tests."""
+    items.sort(key=lambda item: item.get_closest_marker("window") is None)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -134,16 +134,27 @@ def test_bend_save_quit_and_open_again(start, picture, tmp_path):
     assert remembered["recent"] == [str(saved)], "a file that the program is begun with is a recent one"
 
 
-def test_a_mouse_that_comes_to_rest_on_a_tool_sees_what_it_is(start, picture):
+def test_a_tooltip_full_screen_and_the_question_of_a_closed_window(start, picture):
+    """A mouse that rests on a tool sees what it is; closing asks for unsaved changes, and else ends."""
     program = start(picture)
-    before = canvas(program.grab())[:, :200]
+    before = program.grab()
     for x in range(LEFT + 40, LEFT // 2, -2):
         program.xdotool("mousemove", x, 140)
-    program.until(lambda screen: (canvas(screen)[:, :200] != before).any(axis=2).sum() > 2000, "a tooltip")
+    program.until(
+        lambda screen: (canvas(screen)[:, :200] != canvas(before)[:, :200]).any(axis=2).sum() > 2000,
+        "a tooltip",
+    )
+    program.xdotool("mousemove", *CORNER)
+    program.until(lambda screen: (canvas(screen) == canvas(before)).all(), "the tooltip is gone")
 
+    program.key("Tab", "the panels are hidden")
+    program.press("Tab")
+    program.until(lambda screen: (canvas(screen) == canvas(before)).all(), "they are back")
+    program.press("F11")
+    program.until_idle()
+    program.press("F11")
+    program.until(lambda screen: (canvas(screen) == canvas(before)).all(), "the window is as before")
 
-def test_closing_the_window_asks_for_unsaved_changes_and_else_ends(start, picture):
-    program = start(picture)
     alpha = read_image(picture)[..., 3]
     zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
     pinned = canvas(program.click(np.rint(far_apart(alpha, 1)[0] * zoom + offset).astype(int).tolist()))
@@ -163,9 +174,19 @@ def pins_in_copies(state):
     return [len(akap_editor.load(path).state.pins) for path in state.glob("autosave/*.akap")]
 
 
-@pytest.mark.parametrize("end", ["SIGTERM", "SIGHUP", "the display is lost"])
-def test_unsaved_work_survives_the_end_of_the_program(picture, monkeypatch, tmp_path, end):
-    """Also if it comes right after the first pin, while the program sleeps."""
+def assert_rescued(program, state, pin, end):
+    """Unsaved work survives the end of the program, also right after its first pin, while it sleeps.
+
+    state: the folder of recovery copies; pin: a point of the screen; end: ends the program.
+    """
+    program.click(pin)
+    end()
+    assert program.process.wait(DEADLINE) != 0
+    assert pins_in_copies(state) == [1], program.log()
+    assert "Traceback" not in program.log()
+
+
+def test_unsaved_work_survives_the_loss_of_the_display(picture, monkeypatch, tmp_path):
     state = tmp_path / "state"
     monkeypatch.setenv("AKAP_EDITOR_STATE", str(state))
     with x_server() as server:
@@ -176,14 +197,7 @@ def test_unsaved_work_survives_the_end_of_the_program(picture, monkeypatch, tmp_
         alpha = read_image(picture)[..., 3]
         zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
         (pin,) = np.rint(far_apart(alpha, 1) * zoom + offset).astype(int).tolist()
-        program.click(pin)
-        if end == "the display is lost":
-            server.process.kill()
-        else:
-            program.process.send_signal(getattr(signal, end))
-        assert program.process.wait(DEADLINE) != 0
-    assert pins_in_copies(state) == [1], program.log()
-    assert "Traceback" not in program.log()
+        assert_rescued(program, state, pin, server.process.kill)
 
 
 def test_after_a_kill_in_a_drag_the_next_start_offers_the_drawing(start, picture, monkeypatch, tmp_path):
@@ -192,10 +206,10 @@ def test_after_a_kill_in_a_drag_the_next_start_offers_the_drawing(start, picture
     alpha = read_image(picture)[..., 3]
     program = start(picture)
     zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
-    pins = np.rint(far_apart(alpha, 10) * zoom + offset).astype(int)
+    pins = np.rint(far_apart(alpha, 4) * zoom + offset).astype(int)
     for pin in pins.tolist():
         program.click(pin)
-    program.until(lambda _: pins_in_copies(state) == [10], "the tenth pin is in a copy")
+    program.until(lambda _: pins_in_copies(state) == [4], "the last pin is in a copy")
     program.xdotool("mousemove", *pins[0], "mousedown", 1)
     program.xdotool("mousemove", *(pins[0] + 25))
     program.process.kill()
@@ -211,13 +225,13 @@ def test_after_a_kill_in_a_drag_the_next_start_offers_the_drawing(start, picture
     again.press("ctrl+q")
     assert again.exit_code() == 0
     recovered = akap_editor.load(saved)
-    assert len(recovered.state.pins) == 10
+    assert len(recovered.state.pins) == 4
     assert np.linalg.norm(recovered.state.targets - (pins - offset) / zoom, axis=1).max() * zoom < 2.0
     assert not list(state.glob("autosave/*.akap")), "what was saved leaves no copy"
 
 
 @needs_alt
-def test_pins_by_keys_alt_and_the_right_button(start, picture):
+def test_pins_by_keys_alt_and_the_right_button(start, picture, tmp_path):
     alpha = read_image(picture)[..., 3]
     program = start(picture)
     zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
@@ -246,13 +260,6 @@ def test_pins_by_keys_alt_and_the_right_button(start, picture):
     program.xdotool("mousemove", *pins[0], "keydown", "alt", "click", 1, "keyup", "alt", "mousemove", *CORNER)
     program.until(lambda screen: (canvas(screen) == bare).all(), "the pin is cut off")
 
-
-@needs_alt
-def test_an_alt_drag_of_the_ring_rotates_the_drawing_and_the_pin_stays(start, picture, tmp_path):
-    alpha = read_image(picture)[..., 3]
-    program = start(picture)
-    zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
-    pins = np.rint(far_apart(alpha, 2) * zoom + offset).astype(int).tolist()
     for pin in pins:
         program.click(pin)
     pinned = canvas(program.grab())
@@ -270,9 +277,9 @@ def test_an_alt_drag_of_the_ring_rotates_the_drawing_and_the_pin_stays(start, pi
     assert program.exit_code() == 0
     state = akap_editor.load(saved).state
     held, free = (pin.angle for pin in state.pins)
-    assert np.degrees(held) == pytest.approx(60, abs=4)
+    assert np.degrees(held) == pytest.approx(60, abs=4), "the ring rotates the drawing"
     assert free is None
-    assert np.linalg.norm(state.targets - (pins - offset) / zoom, axis=1).max() * zoom < 2.0
+    assert np.linalg.norm(state.targets - (pins - offset) / zoom, axis=1).max() * zoom < 2.0, "pins stay"
 
 
 def test_a_box_a_drag_of_all_pins_a_pan_and_a_zoom(start, picture):
@@ -340,7 +347,9 @@ def test_pins_are_set_bent_and_saved_by_keys_alone(start, tmp_path):
     assert zoom == pytest.approx(min((RIGHT - LEFT) / width, (BOTTOM - TOP) / height), rel=0.2)
 
 
-def test_a_file_dropped_on_the_window_is_opened(start, picture, tmp_path):
+def test_a_file_dropped_on_the_window_is_opened_and_survives_sigterm(start, picture, monkeypatch, tmp_path):
+    state = tmp_path / "state"
+    monkeypatch.setenv("AKAP_EDITOR_STATE", str(state))
     other = tmp_path / "käse & co.png"
     shutil.copy(resource("assets", "drawings", "raptor.png"), other)
     program = start(picture)
@@ -356,23 +365,14 @@ def test_a_file_dropped_on_the_window_is_opened(start, picture, tmp_path):
     for place in far_apart(alpha, 4):
         x, y = np.rint(place * zoom + offset).astype(int)
         assert (plain[y, x] != plain[TOP, LEFT]).any(), "the raptor is where its picture says"
+    assert_rescued(program, state, (x, y), lambda: program.process.send_signal(signal.SIGTERM))
 
 
-def test_f11_covers_the_screen_tab_leaves_only_the_canvas_and_both_come_back(start, picture):
-    program = start(picture)
-    before = program.until_idle()
-    program.key("Tab", "the panels are hidden")
-    program.press("Tab")
-    program.until(lambda screen: (canvas(screen) == canvas(before)).all(), "they are back")
-    program.press("F11")
-    program.until_idle()
-    program.press("F11")
-    program.until(lambda screen: (canvas(screen) == canvas(before)).all(), "the window is as before")
-    program.press("ctrl+q")
-    assert program.exit_code() == 0
-
-
-def test_the_dialog_of_the_system_saves_cancels_and_opens(start, picture, monkeypatch, tmp_path):
+def test_the_dialog_of_the_system_saves_cancels_and_opens_and_sighup_ends(
+    start, picture, monkeypatch, tmp_path
+):
+    state = tmp_path / "state"
+    monkeypatch.setenv("AKAP_EDITOR_STATE", str(state))
     folder = tmp_path / "bin"
     folder.mkdir()
     dialog = StandInDialog(folder, monkeypatch)
@@ -418,5 +418,7 @@ def test_the_dialog_of_the_system_saves_cancels_and_opens(start, picture, monkey
         return is_bright and (canvas(screen) != before).any(axis=2).mean() > 0.05
 
     program.until(is_open, "the raptor is open")
-    program.press("ctrl+q")
-    assert program.exit_code() == 0
+    alpha = read_image(resource("assets", "drawings", "raptor.png"))[..., 3]
+    zoom, offset = find_camera(program.key("shift+c", "the checkerboard is gone"), alpha)
+    (pin,) = np.rint(far_apart(alpha, 1) * zoom + offset).astype(int).tolist()
+    assert_rescued(program, state, pin, lambda: program.process.send_signal(signal.SIGHUP))
