@@ -40,6 +40,7 @@ STEP = 6  # pixels of a move
 def start_seconds(display: str, file: Path, preferences: Path) -> float:
     """Time from the start of the process to the first pixel of the drawing in the window."""
     environment = {**os.environ, "DISPLAY": display, "AKAP_EDITOR_CONFIG": str(preferences)}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # installed programs have their bytecode
     connection = Display(display)
     root = connection.screen().root
     began = time.perf_counter()

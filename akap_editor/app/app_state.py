@@ -126,11 +126,15 @@ class AppState:
     # -- preferences -----------------------------------------------------------------------------------------
 
     @classmethod
-    def from_preferences(cls, preferences: Preferences, wake: Wake = no_window) -> "AppState":
+    def from_preferences(
+        cls, preferences: Preferences, wake: Wake = no_window, engine: EnginePreparation | None = None
+    ) -> "AppState":
         """The state as it was stored, in the chosen language; a thread computes the solver's steps."""
         use_language(preferences.language)
         editor = Editor(worker=BackgroundThread("engine", wake))
-        state = cls(editor, wake, preferences=preferences, notice=preferences.problem)
+        engine = engine or EnginePreparation()
+        engine.wake = wake
+        state = cls(editor, wake, engine=engine, preferences=preferences, notice=preferences.problem)
         for name, option in _STORED_OPTIONS.items():
             setattr(state.view, option, preferences.get(name, getattr(state.view, option)))
         state.timeline.is_shown = preferences.get("show_timeline", False)

@@ -116,8 +116,10 @@ class FullScreen:
 
     def set(self, is_on: bool) -> None:
         """Cover the monitor, or return; nothing if it is so already, or if there is no monitor."""
+        if is_on == self.is_on:
+            return
         monitors = glfw.get_monitors()
-        if is_on == self.is_on or not monitors:
+        if not monitors:
             return
         if self._windowed is not None:
             area, self._windowed = self._windowed, None

@@ -82,8 +82,8 @@ _COLORS: dict[imgui.Col_, Rgba] = {
 }
 
 
-def load_fonts() -> None:
-    """Load Roboto for text and Font Awesome for icons, and fonts of the system for what these lack.
+def load_fonts(others: list[tuple[Path, int]]) -> None:
+    """Load Roboto for text and Font Awesome for icons, and others for what these lack, see `system_fonts`.
 
     May be called again, between two frames, when the language has changed.
     """
@@ -97,7 +97,7 @@ def load_fonts() -> None:
     icons.glyph_offset = ImVec2(0, 1)
     icons.glyph_min_advance_x = FONT_SIZE  # names beside icons are aligned
     fonts.add_font_from_file_ttf(str(folder / "Font_Awesome_6_Free-Solid-900.otf"), FONT_SIZE - 1, icons)
-    for path, number in system_fonts():
+    for path, number in others:
         other = imgui.ImFontConfig()
         other.merge_mode, other.font_no = True, number
         other.flags |= imgui.ImFontFlags_.no_load_error

@@ -6,6 +6,7 @@ import ctypes
 import math
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from threading import Event, Lock
@@ -36,6 +37,7 @@ from .dialogs.file_dialog import FileDialog, has_native_dialogs
 from .dialogs.recovery import RecoveryDialog
 from .frame import frame
 from .glfw_window import FullScreen, create_window, on_key, remembered_position, remembered_size, screens
+from .jobs.engine_preparation import EnginePreparation
 from .jobs.reload_artwork import notice_changed_artwork
 from .preferences import Preferences
 from .termination import TerminationSignals, rescue_on_lost_display
@@ -53,7 +55,8 @@ class Window:
 
     null: use GLFW's null platform with EGL, which needs no display server; hidden: show no window; scale:
     points per design point, by default that of the monitor; size: in points, by default the remembered one;
-    preferences: by default nothing is remembered; autosave: by default unsaved work is not protected.
+    preferences: by default nothing is remembered; autosave: by default unsaved work is not protected;
+    engine: whose preparation has begun; by default its machine code is compiled when it is needed.
     Raises DisplayError without a display, GraphicsError without OpenGL 3.3.
 
     frames: the number of frames drawn so far; after_draw: called in each frame when everything is drawn;
@@ -68,9 +71,10 @@ class Window:
         size: tuple[int, int] | None = None,
         preferences: Preferences | None = None,
         autosave: Autosave | None = None,
+        engine: EnginePreparation | None = None,
     ) -> None:
         self._woken, self._open_lock, self._is_open = Event(), Lock(), False
-        self.state = AppState.from_preferences(preferences or Preferences(), self.wake)
+        self.state = AppState.from_preferences(preferences or Preferences(), self.wake, engine)
         restore_keys(self.state.preferences)
         self.state.autosave = autosave
         if autosave is not None:
@@ -87,7 +91,9 @@ class Window:
         # GLFW's null platform has no events to wait for and would return at once
         wait_for_wake: Callable[[float], object] = self._woken.wait
         self.wait_for_events = wait_for_wake if null else glfw.wait_events_timeout
-        self.handle = create_window(null, hidden, size or remembered_size(self.state.preferences))
+        with ThreadPoolExecutor(1, "fonts") as thread:  # fontconfig takes as long as GLFW
+            fonts = thread.submit(theme.system_fonts)
+            self.handle = create_window(null, hidden, size or remembered_size(self.state.preferences))
         self._is_open, self._full_screen = True, FullScreen(self.handle)
         position = remembered_position(self.state.preferences, screens(), glfw.get_window_size(self.handle))
         if position is not None:
@@ -101,7 +107,7 @@ class Window:
         self.state.thumbnails = Thumbnails(self.ctx)
         self._canvas = Canvas()
         self._set_callbacks()
-        self._start_imgui()
+        self._start_imgui(fonts.result())
 
     def _set_callbacks(self) -> None:
         """Let GLFW call the window. ImGui's callbacks, which are set later, call these first.
@@ -114,12 +120,12 @@ class Window:
         glfw.set_window_content_scale_callback(self.handle, lambda *_: self._apply_scale())
         glfw.set_window_close_callback(self.handle, lambda _: self.request_close())
 
-    def _start_imgui(self) -> None:
+    def _start_imgui(self, system_fonts: list[tuple[Path, int]]) -> None:
         imgui.create_context()
         io = imgui.get_io()
         io.set_ini_filename("")
         io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard
-        theme.load_fonts()
+        theme.load_fonts(system_fonts)
         self._apply_scale()
         address = ctypes.cast(self.handle, ctypes.c_void_p).value
         assert address is not None
@@ -137,7 +143,6 @@ class Window:
         with self._open_lock:  # a thread that is done later must not call GLFW
             self._is_open = False
         self.remember()
-        self.state.engine.close()
         self.state.pose_exports.close()
         self.state.offscreen_renderer.release()
         self.state.thumbnails.release()
@@ -154,7 +159,6 @@ class Window:
     def run(self, document: Document | None = None) -> None:
         """Show a document, and run the loop until the window is closed."""
         lost_display_handler = rescue_on_lost_display(partial(files.rescue, self.state))
-        self.state.engine.start(self.wake)
         if document is not None:
             files.show_when_prepared(self.state, document)
         try:

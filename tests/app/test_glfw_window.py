@@ -6,6 +6,7 @@ import pytest
 from akap_editor.app.glfw_window import (
     DEFAULT_SIZE,
     MIN_SIZE,
+    FullScreen,
     fitting_size,
     remembered_position,
     remembered_size,
@@ -78,6 +79,17 @@ def test_a_remembered_window_is_wholly_on_its_screen(place, size, expected):
 )
 def test_a_window_that_is_larger_than_the_screen_gets_smaller_so_that_its_frame_fits(size, room, fitting):
     assert fitting_size(size, room) == fitting
+
+
+def test_the_monitors_are_asked_for_only_when_the_window_covers_one_or_returns(monkeypatch):
+    calls = []
+    monkeypatch.setattr(glfw, "get_monitors", lambda: calls.append(1) or [])
+    full_screen = FullScreen(None)
+    full_screen.set(False)
+    assert not calls, "the loop calls it in every frame"
+    full_screen.set(True)
+    assert calls
+    assert not full_screen.is_on
 
 
 def test_no_display_is_said_in_one_sentence(monkeypatch):

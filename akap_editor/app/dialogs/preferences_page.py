@@ -80,7 +80,8 @@ class PreferencesPage:
             state.save_preferences()
             words.use_language(_LANGUAGES[index])
             self.open(self._commands)  # in the order of their new names
-            state.run_after_frame(theme.load_fonts)  # its signs may have other shapes in another language
+            # its signs may have other shapes in another language
+            state.run_after_frame(lambda: theme.load_fonts(theme.system_fonts()))
 
     def _draw_command(self, state: AppState, command: Command, scale: float) -> None:
         """Draw the name of a command, a button for each of its keys, and one that adds a key."""

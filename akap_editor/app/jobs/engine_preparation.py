@@ -74,7 +74,10 @@ class _ClosedError(Exception):
 class EnginePreparation:
     """Whether the engine's machine code is there: until `start` is called, it counts as prepared.
 
-    parts: the stages of each child process; start_child: starts the process of a part.
+    As a context manager it starts, and ends its child processes at the exit.
+
+    parts: the stages of each child process; start_child: starts the process of a part; wake: is called in
+    a thread when steps may start that had to wait, the window sets it.
     """
 
     def __init__(
@@ -87,9 +90,16 @@ class EnginePreparation:
         for event in self._events:
             event.set()
         self._is_awaited = self._is_closed = False
-        self._wake: Wake = no_window
+        self.wake: Wake = no_window
         self._children: list[Child] = []
         self._started = 0.0
+
+    def __enter__(self) -> "EnginePreparation":
+        self.start()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
 
     @property
     def _events(self) -> tuple[Event, ...]:
@@ -108,11 +118,11 @@ class EnginePreparation:
         self._is_known.wait()
         return self._can_open.is_set()
 
-    def start(self, wake: Wake) -> None:
-        """Begin to load or compile in a thread. wake: called there when steps may start that had to wait."""
+    def start(self) -> None:
+        """Begin to load or compile in a thread."""
         for event in self._events:
             event.clear()
-        self._wake, self._started = wake, time.perf_counter()
+        self._started = time.perf_counter()
         Thread(target=self._prepare, name="preparation", daemon=True).start()
 
     def wait_to_open(self, and_to_step: bool = False) -> None:
@@ -130,14 +140,18 @@ class EnginePreparation:
 
     def _prepare(self) -> None:
         try:
+            with yielding_lock(), suppress(_ClosedError):
+                self._load_or_compile()
+        finally:
+            self._reach(*self._events)
+
+    def _load_or_compile(self) -> None:
+        try:
             with only_compiled():
                 self._load()
         except NotCompiledError:
             self._is_known.set()
-            with yielding_lock(), suppress(_ClosedError):
-                self._compile()
-        finally:
-            self._reach(*self._events)
+            self._compile()
 
     def _load(self, wait: Callable[[], object] = lambda: None) -> None:
         """Call all that is compiled, by stages. wait: called before each."""
@@ -157,7 +171,7 @@ class EnginePreparation:
         for event in events:
             event.set()
         if self._is_awaited and self._can_step.is_set():
-            self._wake()
+            self.wake()
 
     def _compile(self) -> None:
         """Let child processes compile each stage before it is loaded; or compile in this thread."""

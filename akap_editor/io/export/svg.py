@@ -2,7 +2,7 @@
 
 import base64
 from collections.abc import Iterator
-from xml.sax.saxutils import escape
+from html import escape
 
 import numpy as np
 import shapely

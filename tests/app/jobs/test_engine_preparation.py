@@ -51,7 +51,8 @@ class Bench:
         return self.children[-1]
 
     def start(self):
-        self.engine.start(lambda: self.wakes.put(None))
+        self.engine.wake = lambda: self.wakes.put(None)
+        self.engine.start()
 
     def wait_for_calls(self, count):
         for _ in range(count):
