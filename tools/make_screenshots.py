@@ -268,7 +268,7 @@ def languages(window: Window) -> None:
     """The preferences in Japanese; needs a font for it."""
     window.state.preferences.language = "ja"
     use_language("ja")
-    theme.load_fonts()
+    theme.load_fonts(theme.system_fonts())
     PREFERENCES.run(window.state)
 
 
