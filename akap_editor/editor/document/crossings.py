@@ -274,6 +274,8 @@ def depth_at(mesh: TriMesh, pins: Sequence[Pin], point: MeshPoints) -> int:
     """Blended depth at one point of the mesh, rounded; 0 without pins."""
     if not pins:
         return 0
+    if mesh.layers is None and len({pin.depth for pin in pins}) == 1:  # needs no distances from the pins
+        return pins[0].depth
     depths = _vertex_depths(mesh, _pin_depths(pins))
     return round(float(point.weights[0] @ depths[mesh.faces[point.faces[0]]]))
 
