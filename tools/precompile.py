@@ -1,13 +1,7 @@
 """Compiles the loops of the package, so that several workers of the tests need not do it at once."""
 
-from multiprocessing import Process
-
-from akap_editor.deform import precompile as solver
-from akap_editor.overlap import precompile as overlaps
+from akap_editor.app.jobs.engine_preparation import PARTS, start_child
 
 if __name__ == "__main__":
-    processes = [Process(target=target) for target in (solver.precompile, overlaps.precompile)]
-    for process in processes:
-        process.start()
-    for process in processes:
-        process.join()
+    for child in [start_child(part) for part in PARTS]:
+        child.communicate()

@@ -31,13 +31,15 @@ _WAIT_SECONDS = 0.1  # between two looks whether an opening that waits was cance
 Stage = Callable[[], None]
 Child = subprocess.Popen[bytes]
 
+
+def _nothing() -> None:
+    pass
+
+
 # What each child process compiles: what opening a drawing needs, what most steps need, and the rest.
 PARTS: dict[str, tuple[Stage, Stage, Stage]] = {
-    "solver": (
-        solver.precompile_new_mesh,
-        solver.precompile_steps,
-        solver.precompile_exact_steps,
-    ),
+    "mesh": (solver.precompile_new_mesh, solver.precompile_loops, solver.precompile_exact_steps),
+    "factors": (_nothing, solver.precompile_factors, _nothing),
     "overlaps": (overlaps.precompile_rest, overlaps.precompile_crossings, overlaps.precompile),
 }
 

@@ -9,14 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import SolverError
-from ...geometry.jit import compiled
 from ...geometry.joints import JointRows, MeshJoints, joined_groups
 from ...geometry.mesh import NO_POINTS, MeshPoints, TriMesh
 from ...geometry.operators import to_complex, to_points
 from ...geometry.validation import (
     Complexes,
     Floats,
-    Indices,
     as_choice,
     as_indices,
     as_number,
@@ -26,6 +24,7 @@ from ...geometry.validation import (
 )
 from ..deformer import Deformer, StepReport, StepResult, as_targets
 from .elimination_order import EliminationOrder
+from .flips import count_flipped, is_acceptable
 from .killing_field import KillingSystem
 from .log_spiral import LogSpirals, linear_flow, spiral_factor
 from .pin_rotation import PinRotationConstraints
@@ -253,7 +252,7 @@ class AkapDeformer(Deformer):
                 seconds=time.perf_counter() - started,
                 substeps=len(substeps) if len(self._points) else 0,
                 energy=self._system.energy(last.field) if last.field.any() else 0.0,
-                flipped=_count_flipped(last.end, self._faces),
+                flipped=count_flipped(last.end, self._faces),
                 pin_error=float(np.abs(pin_offsets).max(initial=0.0)),
                 blocked=last.share < 1,
                 unfinished=unfinished,
@@ -391,45 +390,7 @@ class AkapDeformer(Deformer):
         while t >= _MIN_SHARE:
             with np.errstate(over="ignore", invalid="ignore"):  # not finite, and so not bounded
                 moved = self._flow(pose, field, t)
-            if _is_acceptable(pose, moved, max_displacement, self._faces, self._min_areas):
+            if is_acceptable(pose, moved, max_displacement, self._faces, self._min_areas):
                 return moved, t
             t /= 2
         return pose, 0.0
-
-
-@compiled
-def _is_acceptable(
-    before: Complexes, after: Complexes, max_displacement: float, faces: Indices, min_areas: Floats
-) -> bool:
-    """Whether no vertex moves farther than ``max_displacement``, and no face shrinks too much.
-
-    A face must not shrink below its minimum area (m,) or, if that is smaller, 0.9 times its area before.
-    Faces that are flipped before do not count.
-    """
-    for i in range(len(before)):
-        d = after[i] - before[i]
-        if not d.real * d.real + d.imag * d.imag <= max_displacement * max_displacement:  # NaN, too
-            return False
-    for f in range(len(faces)):
-        area_before, area_after = _area(before, faces[f]), _area(after, faces[f])
-        if area_before > 0 and not area_after > min(min_areas[f], 0.9 * area_before):
-            return False
-    return True
-
-
-@compiled
-def _count_flipped(pose: Complexes, faces: Indices) -> int:
-    """The number of faces with an area that is not positive."""
-    count = 0
-    for f in range(len(faces)):
-        if not _area(pose, faces[f]) > 0:
-            count += 1
-    return count
-
-
-@compiled
-def _area(pose: Complexes, corners: Indices) -> float:
-    """The signed area of a face."""
-    p = pose[corners[0]]
-    a, b = pose[corners[1]] - p, pose[corners[2]] - p
-    return 0.5 * (a.real * b.imag - a.imag * b.real)

@@ -88,7 +88,7 @@ class KillingSystem:
             self._joint_gaps = np.zeros(len(joints.strengths), dtype=np.complex128)
             self._joint_frames = JointFrames(mesh, joints)
         self._same_place = SAME_PLACE * mesh.length
-        self._frames = _VertexFrames(mesh)
+        self._frames = VertexFrames(mesh)
         self.set_pins(NO_POINTS)
 
     def set_pins(self, points: MeshPoints, rotation: PinRotationConstraints | None = None) -> None:
@@ -291,7 +291,7 @@ class KillingSystem:
         return self.pattern.find(rows, columns)
 
 
-class _VertexFrames:
+class VertexFrames:
     """The rotation of each vertex from rest: the one that fits its edges best."""
 
     def __init__(self, mesh: TriMesh) -> None:

@@ -177,16 +177,16 @@ def _relax(positions: Complexes, corners: Indices, faces: Indices, hats: Complex
     """
     for _ in range(_SWEEPS):
         for v in corners:
-            before, slope, xx, xy, yy = _expand(v, positions, faces, hats, weights, True)
-            discriminant = xx * yy - xy * xy
-            if not (xx > 0 and discriminant > _MIN_CONVEXITY * xx * yy):
-                before, slope, xx, xy, yy = _expand(v, positions, faces, hats, weights, False)
+            for is_whole in (True, False):
+                before, slope, xx, xy, yy = _expand(v, positions, faces, hats, weights, is_whole)
                 discriminant = xx * yy - xy * xy
+                if xx > 0 and discriminant > _MIN_CONVEXITY * xx * yy:
+                    break
             x, y = slope.real, slope.imag
             step, start = complex(xy * y - yy * x, xy * x - xx * y) / discriminant, positions[v]
             for _ in range(_LOCAL_TRIES):
                 positions[v] = start + step
-                if _expand(v, positions, faces, hats, weights, False)[0] < before:
+                if _expand(v, positions, faces, hats, weights, is_whole)[0] < before:
                     break
                 positions[v] = start
                 step *= 0.5
