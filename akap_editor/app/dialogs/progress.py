@@ -23,7 +23,8 @@ def draw(state: AppState, task: Task, scale: float) -> None:
     imgui.progress_bar(task.progress.share, ImVec2(_WIDTH * scale, 8 * scale), "")
     imgui.pop_style_color()
     room = _WIDTH * scale - imgui.calc_text_size(percent).x
-    text = widgets.shortened(tr(task.progress.text), room - imgui.get_font_size())
+    stage = tr(task.progress.text)
+    text = "" if stage == task.title else widgets.shortened(stage, room - imgui.get_font_size())
     imgui.text_colored(ImVec4(*SECONDARY), text)
     imgui.same_line(imgui.get_style().window_padding.x + room)
     imgui.text(percent)

@@ -24,8 +24,8 @@ COMMAND = "compile-engine"  # hidden command of a bundle, which has no Python to
 TEXT = mark("Preparing the engine, only at the first start")
 
 _NICENESS = 5  # of the child processes: the window goes first
-_USUAL_SECONDS = 20.0  # that all takes on a slow machine, for the progress bar
-_WAIT_SECONDS = 0.1  # between two looks whether an opening that waits was cancelled
+_USUAL_SECONDS = 15.0  # that all takes on a slow machine, for the progress bar
+_WAIT_SECONDS = 0.25  # between two looks whether an opening that waits was cancelled; each draws frames
 
 
 Stage = Callable[[], None]
