@@ -66,7 +66,7 @@ def _load_command(name: str) -> click.Command:
 
         return bench
     if name == "mesh":
-        from .mesh import mesh
+        from .mesh.command import mesh
 
         return mesh
     if name == "integrate":
