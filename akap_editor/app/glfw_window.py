@@ -1,10 +1,11 @@
-"""The GLFW window: its creation, its remembered size and position, its key callback and ImGui's drawing."""
+"""The GLFW window: creation, remembered size and position, key callback, mouse cursors, ImGui's drawing."""
 
 # imgui_bundle first: its import makes pyGLFW load the same libglfw that ImGui's backend is linked to
 from imgui_bundle import imgui  # isort: skip
 import math
 import os
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,16 @@ from .preferences import Preferences
 
 _MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 _UNUSED_KEY = imgui.Key.f24  # no command has it
+_SHAPES = {  # of the system's mouse cursor; the arrow for all others
+    imgui.MouseCursor_.text_input: glfw.IBEAM_CURSOR,
+    imgui.MouseCursor_.resize_all: glfw.RESIZE_ALL_CURSOR,
+    imgui.MouseCursor_.resize_ns: glfw.RESIZE_NS_CURSOR,
+    imgui.MouseCursor_.resize_ew: glfw.RESIZE_EW_CURSOR,
+    imgui.MouseCursor_.resize_nesw: glfw.RESIZE_NESW_CURSOR,
+    imgui.MouseCursor_.resize_nwse: glfw.RESIZE_NWSE_CURSOR,
+    imgui.MouseCursor_.hand: glfw.POINTING_HAND_CURSOR,
+    imgui.MouseCursor_.not_allowed: glfw.NOT_ALLOWED_CURSOR,
+}
 
 Area = tuple[int, int, int, int]  # left, top, width, height in screen coordinates
 
@@ -26,6 +37,7 @@ DEFAULT_SIZE, MIN_SIZE = (1280, 800), (640, 400)  # design points
 MAX_SIDE = 16384  # of a remembered size, design points
 ICON_SIDES = (16, 32, 48, 128)  # pixels
 FRAME_ROOM = 48  # screen coordinates beside a window for its frame and title
+BLANK_SIDE = 16  # pixels of the cursor that is seen through; systems may enlarge a smaller one
 GRIP = 64  # screen coordinates of the window's upper left corner that must be on a screen, to drag it by
 
 
@@ -132,6 +144,41 @@ class FullScreen:
         monitor = min(monitors, key=lambda each: math.dist(glfw.get_monitor_pos(each), center))
         mode = glfw.get_video_mode(monitor)
         glfw.set_window_monitor(self._handle, monitor, 0, 0, *mode.size, mode.refresh_rate)
+
+
+class MouseCursors:
+    """Gives the mouse pointer the cursor that ImGui requests, in place of ImGui's backend.
+
+    The backend hides the cursor by GLFW's cursor mode. When the mode changes, GLFW takes the pointer's
+    position for one that it has reported, and does not report a motion to it that is still queued behind
+    other events, for example the release of a button. So the mode stays; a hidden cursor is a blank one.
+    """
+
+    def __init__(self, handle: Any) -> None:
+        self._handle, self._shown = handle, int(imgui.MouseCursor_.arrow)
+        self._made: dict[int, Any] = {}
+        imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse_cursor_change
+
+    def update(self) -> None:
+        """Show the cursor that was requested in this frame."""
+        wanted = int(imgui.get_mouse_cursor())
+        if wanted != self._shown:
+            self._shown = wanted
+            if wanted not in self._made:
+                self._made[wanted] = self._make(wanted)
+            glfw.set_cursor(self._handle, self._made[wanted])
+
+    @staticmethod
+    def _make(wanted: int) -> Any:
+        """A cursor of GLFW; None, which shows the arrow, for the arrow and for what the system lacks."""
+        if wanted == imgui.MouseCursor_.none:
+            blank = [[(0, 0, 0, 0)] * BLANK_SIDE] * BLANK_SIDE
+            image: Any = BLANK_SIDE, BLANK_SIDE, blank
+            return glfw.create_cursor(image, 0, 0) or None
+        shape = _SHAPES.get(imgui.MouseCursor_(wanted))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", glfw.GLFWError)
+            return None if shape is None else glfw.create_standard_cursor(shape) or None
 
 
 def remembered_size(preferences: Preferences) -> tuple[int, int]:

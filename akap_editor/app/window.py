@@ -131,6 +131,7 @@ class Window:
         assert address is not None
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
+        self._cursors = glfw_window.MouseCursors(self.handle)
 
     def __enter__(self) -> "Window":
         return self
@@ -282,6 +283,7 @@ class Window:
             self._recover(recovery, error_message(error))
             if not isinstance(error, AkapError):  # a bug must not cost unsaved work
                 self.state.editor.cancel()
+        self._cursors.update()
         glfw_window.render_imgui()
         self._scene.draw(self.state, framebuffer, glfw.get_window_size(self.handle), self.scale)
         glfw_window.draw_imgui()

@@ -183,9 +183,7 @@ class RunningProgram:
         self.xdotool("mousedown", 1)
         for x, y in np.linspace(start, end, 11)[1:]:
             self.xdotool("mousemove", round(x), round(y))
-        self.xdotool("mouseup", 1)
-        self.until_idle()  # a hand does not release and leave in the same instant
-        self.xdotool("mousemove", *CORNER)
+        self.xdotool("mouseup", 1, "mousemove", *CORNER)
         return self.until_idle()
 
     def type_file(self, path: Path) -> None:
