@@ -17,8 +17,10 @@ from .gestures import EditContext
 from .session import pin_edits
 from .session.edits import ResetPose, SetAngles, SetMirror, SetPins, SetTargets
 from .session.session import Session
+from .session.stepper import PIN_TOLERANCE
 
 _REACH_SHARE = 0.12  # of the drawing's length: how far a pin may be off the mirrored place of its partner
+_ANGLE_TOLERANCE = 1e-3  # radians
 _NEAR_SHARE = 0.03  # of the drawing's length: pins nearer to the axis, or to a partner's place, are on it
 
 
@@ -174,8 +176,8 @@ def with_partners(session: Session, pins: frozenset[int]) -> frozenset[int]:
 def flip_pose(editor: EditContext) -> None:
     """Flip the pose left to right: each pin goes where its partner is, mirrored; one without goes across.
 
-    The axis is found in the drawing if there is none. A drawing that does not remember its rest shape starts
-    from there, as it would otherwise keep both poses.
+    Nothing is done if the pose is the same then. The axis is found in the drawing if there is none. A drawing
+    that does not remember its rest shape starts from there, as it would otherwise keep both poses.
     """
     session = editor.session
     if session is None:
@@ -184,6 +186,9 @@ def flip_pose(editor: EditContext) -> None:
     if mirror is None:
         mirror = replace(with_pairs(session, find_mirror(session.drawing)), is_on=False)
     has_memory = bool(session.state.settings.get("memory", 0.0))
+
+    if _is_symmetric(session, mirror):
+        return
 
     def flip(session: Session) -> None:
         pin_edits.hold_stopped_pins(session)
@@ -198,6 +203,24 @@ def flip_pose(editor: EditContext) -> None:
             session.apply(SetAngles(angles))
 
     editor.edit(mark("Flip Pose"), flip)
+
+
+def _is_symmetric(session: Session, mirror: Mirror) -> bool:
+    """Whether pins that have arrived have the same targets and angles in the flipped pose."""
+    state = session.state
+    if session.is_moving or session.pin_error() > PIN_TOLERANCE:
+        return False
+    if not state.settings.get("memory", 0.0) and session.is_posed:
+        return False  # the pose does not depend on the pins alone
+    targets, angles, released = _flipped(session, mirror)
+    is_rotated = any(
+        abs(angle - (state.pin(pin).angle or 0.0)) > _ANGLE_TOLERANCE for pin, angle in angles.items()
+    )
+    return (
+        not released
+        and not is_rotated
+        and all(np.hypot(*(pin.target - targets[pin.id])) <= PIN_TOLERANCE for pin in state.pins)
+    )
 
 
 def _flipped(session: Session, mirror: Mirror) -> tuple[dict[int, Point], dict[int, float], set[int]]:

@@ -178,6 +178,15 @@ def test_a_flipped_pose_is_mirrored_and_flips_back(waving):
     assert waving.session.history.labels[-2:] == ["Flip Pose"] * 2
 
 
+def test_a_flip_that_changes_nothing_is_no_gesture(mirrored):
+    for place in (TOP, LEFT):
+        drag(mirrored, place)
+    before = mirrored.session.history.labels, mirrored.state
+    mirroring.flip_pose(mirrored.editor)
+    assert mirrored.session.history.labels == before[0]
+    assert mirrored.state is before[1]
+
+
 def test_all_of_it_is_replayed_to_the_bit(waving, cross):
     mirroring.flip_pose(waving.editor)
     waving.settle()

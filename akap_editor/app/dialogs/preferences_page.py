@@ -11,6 +11,7 @@ from .. import theme, widgets
 from ..app_state import AppState
 from ..commands.command import Command
 from ..commands.keymap import KEYMAP, pressed_chord, shown_chord
+from ..commands.synonyms import has_synonym
 from ..theme import ACCENT, SECONDARY
 
 _WIDTH, _HEIGHT = 620, 380  # of the list, at most, in design points
@@ -50,7 +51,8 @@ class PreferencesPage:
         imgui.end_disabled()
         imgui.begin_child("##keys", size, widgets.NAV_FLATTENED)
         for command in self._commands:
-            if self._query.lower() in command.name.lower():
+            is_named = self._query.lower() in command.name.lower()
+            if is_named or has_synonym(self._query, command.name, command.label):
                 self._draw_command(state, command, scale)
         imgui.end_child()
         waiting = tr("Press the new key, or Esc to keep the old one")

@@ -25,6 +25,7 @@ from .keyframing.group_edits import insert_edits, reverse_edits
 from .keyframing.key_moves import KeyMoves
 from .keyframing.keyframe_clipboard import KeyframeClipboard
 from .keyframing.onion_skin import OnionSkin
+from .keyframing.unkeyed import differs, is_keyed
 from .loose_motion import Crossed, Instant
 from .playback import Playback, VisibleRange
 
@@ -194,14 +195,8 @@ class KeyframePlayback(Playback):
         session = self._editor.session
         if session is None or not self.animation.keyframes or self.is_previewing:
             return False
-        pose, drawing = self.pose(self.time), session.drawing
-        pins = session.state.pins
-        if (
-            self._drawing(session, self.time) is not drawing
-            or self.animation.pins_at(pins, self.time) != pins
-        ):
-            return True
-        return pose is not None and not np.array_equal(pose, session.state.positions)
+        is_drawn = self._drawing(session, self.time) is session.drawing
+        return not is_drawn or differs(session.drawing, session.state, self.crossed(self.time))
 
     def scrub(self, time: float) -> None:
         """Move the playhead and show the pose there, also after the last keyframe."""
@@ -263,6 +258,9 @@ class KeyframePlayback(Playback):
         if session is None or self._editor.is_busy:
             return
         time = as_keyframe_time(self.time if time is None else time)
+        if positions is None and is_keyed(self.animation, time, session.drawing, session.state):
+            self.selected, self.time = frozenset({time}), time
+            return
         layers, depths = session.drawing.layer_view, pin_depths(session.state.pins)
         if positions is None and self.is_previewing:
             positions, crossings = session.state.positions, session.state.crossings
@@ -304,9 +302,11 @@ class KeyframePlayback(Playback):
         pins: replace those of the drawing.
         """
         changes = [] if pins is None else [SetPins(pins)]
+        before, view = self.stored_animation, (self.time, self.selected)
         self._edit(label, *changes, *insert_edits(self.animation, keyframes))
         self.selected = frozenset(each.time for each in keyframes)
         self.scrub(keyframes[0].time)
+        self._moves.add(before, view, self.stored_animation, (self.time, self.selected))
 
     def copy_keyframes(self) -> None:
         """Remember the selected keyframes, or the one at the playhead, for `paste_keyframes`."""

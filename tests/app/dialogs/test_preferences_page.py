@@ -59,11 +59,13 @@ def test_a_new_key_runs_the_command_and_the_old_one_does_not(page):
     assert ("F9", "Stiffness Brush") in shown["Tools"]
 
 
-def test_typed_letters_find_a_command_at_once(page):
+@pytest.mark.parametrize("query", ["stiffness br", "starch"])
+def test_typed_letters_find_a_command_at_once(page, query):
+    """By its name, or by a word of another program."""
     listed = []
 
     def act(hand):
-        hand.key_chars("stiffness br")
+        hand.key_chars(query)
         hand.yield_(2)
         for command in (registry.BRUSH_TOOL, registry.PIN_TOOL):
             item = f"//Preferences###dialog Preferences/**/###key 0 of {command.label}"

@@ -152,6 +152,30 @@ def test_undo_of_a_move_brings_playhead_and_selection_back(playback, pinned):
     assert playback.time == 0.4, "it has been moved since"
 
 
+def test_a_keyframe_that_stays_as_it_is_changes_nothing(playback, pinned):
+    before = pinned.session.present, pinned.session.history.labels
+    for time in (0.0, 1.0):
+        playback.scrub(time)
+        playback.set_keyframe()
+        assert (pinned.session.present, pinned.session.history.labels) == before
+        assert playback.selected == {time}
+    playback.show_present()
+    playback.set_keyframe(1.0)  # of the present pose, which it holds
+    assert (pinned.session.present, pinned.session.history.labels) == before
+
+
+def test_undo_of_inserted_keyframes_brings_the_playhead_back(playback, pinned):
+    pose = pinned.session.present.positions
+    playback.scrub(0.3)
+    playback.update()
+    playback.insert_keyframes("Paste 2 Keyframes", [Keyframe(1.5, pose), Keyframe(2.0, 1.01 * pose)])
+    playback.update()
+    assert playback.time == 1.5
+    pinned.undo()
+    playback.update()
+    assert playback.time == 0.3
+
+
 def test_a_drag_of_keyframes_is_one_edit_and_passes_over_others(playback, pinned):
     playback.set_keyframe(0.5)
     playback.selected = frozenset({1.0})
@@ -389,7 +413,9 @@ def test_the_order_of_limbs_is_changed_at_a_keyframe_of_the_present_pose(playbac
     gestures.order_limb(pinned.editor, False)
     playback.update()
     changed = session.state.crossings
+    assert playback.shows_unkeyed_pose, "another limb is in front"
     playback.set_keyframe(2.0)
+    assert not playback.shows_unkeyed_pose
     for time, is_changed in ((1.0, False), (2.0, True)):
         playback.scrub(time)
         assert np.array_equal(session.state.crossings, changed) == is_changed

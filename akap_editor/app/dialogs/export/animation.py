@@ -161,7 +161,7 @@ class ExportAnimationDialog:
         animation = _written_animation(options, times, framing)
         size_in_bytes = None if animation is None else self._estimate.advance(state, animation)
         _draw_result(options, len(times), framing, problem, scale)
-        _draw_file_size(size_in_bytes, scale)
+        _draw_file_size(size_in_bytes, self._estimate.is_rough, scale)
         imgui.end_child()
         side = min(height / scale, window.x / scale - _WIDTH - _MARGINS)
         if side >= _MIN_PREVIEW:
@@ -374,10 +374,11 @@ def _draw_result(
     imgui.text(problem or size_text(options, framing))
 
 
-def _draw_file_size(size: int | None, scale: float) -> None:
-    """Draw the estimated size of the file in bytes, an ellipsis until it is known."""
+def _draw_file_size(size: int | None, is_rough: bool, scale: float) -> None:
+    """Draw the estimated size of the file, bytes; dimmed while it is rough, an ellipsis if it is unknown."""
     widgets.label("", LABEL_WIDTH * scale)
-    imgui.text("..." if size is None else tr("about {size}", size=size_in_words(size)))
+    text = "..." if size is None else tr("about {size}", size=size_in_words(size))
+    (imgui.text_disabled if is_rough else imgui.text)(text)
 
 
 def size_text(options: AnimationExportOptions, framing: tuple[Box, float] | None) -> str:

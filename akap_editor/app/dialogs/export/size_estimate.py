@@ -50,7 +50,8 @@ class SizeEstimate:
     """Writes a few frames to a temporary folder, at places spread over the animation.
 
     What a frame costs after the one before it is the difference between two files: one with a pair of frames
-    of each place, and one with the first frame of each place. `close` must be called in the end.
+    of each place, and one with the first frame of each place. A rough one of a single pair comes first.
+    `close` must be called in the end.
     """
 
     def __init__(self) -> None:
@@ -58,29 +59,39 @@ class SizeEstimate:
         self._steps: Generator[None, None, None] | None = None
         self._size: int | None = None
 
+    @property
+    def is_rough(self) -> bool:
+        """Whether a better estimate than the last one will follow."""
+        return self._steps is not None
+
     def advance(self, state: AppState, animation: WrittenAnimation) -> int | None:
-        """The estimated size in bytes; None if it is not known yet, or cannot be.
+        """The estimated size in bytes, at first that of the last options; None if it is not known.
 
         To be called once a frame; the window is woken, so that work goes on in the next one.
         """
         content = (animation, state.timeline.mode, *state.timeline.playback.content)
         if content != self._content:
-            self.close()
-            self._content, self._size = content, None
+            self._end()
+            self._content = content
             self._steps = self._estimate(state, animation)
         if self._steps is not None:
             try:
                 next(self._steps)
-            except (StopIteration, InputError, OSError):  # of an error, the export itself will tell
+            except StopIteration:
                 self._steps = None
+            except (InputError, OSError):  # the export itself will tell
+                self._steps = self._size = None
         return self._size
 
     def close(self) -> None:
-        """End what is under way."""
+        """End what is under way, and forget the estimate."""
+        self._end()
+        self._content, self._size = (), None
+
+    def _end(self) -> None:
         steps, self._steps = self._steps, None
         if steps is not None:
             steps.close()
-        self._content = ()
 
     def _estimate(self, state: AppState, animation: WrittenAnimation) -> Generator[None, None, None]:
         count, times = len(animation.times), animation.times
@@ -91,6 +102,9 @@ class SizeEstimate:
         firsts = tuple(times[place] for place in places)
         pairs = tuple(time for place in places for time in times[place : place + 2])
         size_of_one = yield from _written_size(state, animation, firsts[:1])
+        middle = pairs[_PLACES : _PLACES + 2]
+        size_of_pair = yield from _written_size(state, animation, middle)
+        self._size = size_of_one + (count - 1) * max(size_of_pair - size_of_one, 0)
         size_of_firsts = yield from _written_size(state, animation, firsts)
         size_of_pairs = yield from _written_size(state, animation, pairs)
         self._size = size_of_one + (count - 1) * max(size_of_pairs - size_of_firsts, 0) // _PLACES
