@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...document.crossings import draw_order
+from ...document.crossings import face_order
 from ...document.document import EditState
 from ...document.drawing import Drawing
 from ...document.keyframes import Animation
@@ -16,8 +16,11 @@ def differs(drawing: Drawing, state: EditState, crossed: Crossed) -> bool:
         return True
     if np.array_equal(crossed.crossings, state.crossings):
         return False
-    orders = (draw_order(drawing, state.pins, state.positions, each.crossings) for each in (state, crossed))
-    first, second = (each if each is None or isinstance(each, np.ndarray) else each.faces for each in orders)
+    first, second = (
+        face_order(drawing, state.pins, state.positions, each.crossings) for each in (state, crossed)
+    )
+    if first is None or second is None:
+        return first is not second
     return not np.array_equal(first, second)
 
 
