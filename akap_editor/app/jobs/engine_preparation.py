@@ -23,7 +23,7 @@ from .background_thread import Wake, no_window
 COMMAND = "compile-engine"  # hidden command of a bundle, which has no Python to run modules with
 TEXT = mark("Preparing the engine, only at the first start")
 
-_NICENESS = 5  # of the child processes: the window goes first
+_NICENESS = 5  # that child processes add with each stage: the window goes first, then the stages before
 _USUAL_SECONDS = 15.0  # that all takes on a slow machine, for the progress bar
 _WAIT_SECONDS = 0.25  # between two looks whether an opening that waits was cancelled; each draws frames
 
@@ -47,9 +47,9 @@ PARTS: dict[str, tuple[Stage, Stage, Stage]] = {
 def compile_part(name: str) -> None:
     """Compile one of the `PARTS` into the cache on disk; writes a line to stdout after each stage."""
     gc.disable()  # it would take a tenth of the time, and the process ends soon
-    if hasattr(os, "nice"):
-        os.nice(_NICENESS)
     for stage in PARTS[name]:
+        if hasattr(os, "nice"):
+            os.nice(_NICENESS)
         stage()
         print(flush=True)
 
