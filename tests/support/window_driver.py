@@ -383,6 +383,19 @@ class WindowDriver:
         self.drag(start, (start[0], start[1] - 120))
         assert self.session.is_posed
 
+    def add_keyframes(self, end: float, by: Point = (-20.0, -80.0)) -> None:
+        """Show keyframes, and add two, at 0 and ``end`` seconds, between which pin 3 is dragged.
+
+        by: points of the screen. The playhead is at the end.
+        """
+        self.state.timeline.show_keyframes()
+        self.settle()
+        self.state.timeline.keyframe_playback.set_keyframe(0.0)
+        start = self.to_screen(self.pin_position(3))
+        self.drag(start, (start[0] + by[0], start[1] + by[1]))
+        self.state.timeline.keyframe_playback.set_keyframe(end)
+        self.settle()
+
     def click(self, point: Point, shift: bool = False) -> None:
         """Click a point of the screen."""
 

@@ -17,14 +17,8 @@ from akap_editor.io.akap.project import load, save
 @pytest.fixture
 def keyed(pinned):
     """Keyframes of the rest pose at 0, of a bent one at 1 second; one looks at the first."""
-    state = pinned.state
-    state.timeline.is_shown, state.timeline.mode = True, "keyframes"
-    pinned.settle()
-    pinned.key(imgui.Key.k)
-    start = pinned.to_screen(pinned.pin_position(3))
-    pinned.drag(start, (start[0] - 20, start[1] - 100))
-    state.timeline.keyframe_playback.set_keyframe(1.0)
-    state.timeline.keyframe_playback.scrub(0.0)
+    pinned.add_keyframes(1.0, (-20.0, -100.0))
+    pinned.state.timeline.keyframe_playback.scrub(0.0)
     pinned.settle()
     return pinned
 

@@ -10,15 +10,8 @@ from akap_editor.editor.document.pin import pin_points
 @pytest.fixture
 def keyed(pinned):
     """Keyframes at 0 and 0.5 seconds, between which pin 3 moves; it is selected."""
-    state = pinned.state
-    state.timeline.is_shown, state.timeline.mode = True, "keyframes"
-    pinned.settle()
-    state.timeline.keyframe_playback.set_keyframe(0.0)
-    start = pinned.to_screen(pinned.pin_position(3))
-    pinned.drag(start, (start[0] - 20, start[1] - 80))
-    state.timeline.keyframe_playback.set_keyframe(0.5)
-    pinned.settle()
-    state.editor.select({3})
+    pinned.add_keyframes(0.5)
+    pinned.editor.select({3})
     return pinned
 
 

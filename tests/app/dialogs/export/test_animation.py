@@ -32,15 +32,7 @@ TITLE = "Export animation"
 
 @pytest.fixture
 def keyed(pinned):
-    """Keyframes at 0 and 0.4 seconds."""
-    state = pinned.state
-    state.timeline.is_shown, state.timeline.mode = True, "keyframes"
-    pinned.settle()
-    state.timeline.keyframe_playback.set_keyframe(0.0)
-    start = pinned.to_screen(pinned.pin_position(3))
-    pinned.drag(start, (start[0] - 20, start[1] - 80))
-    state.timeline.keyframe_playback.set_keyframe(0.4)
-    pinned.settle()
+    pinned.add_keyframes(0.4)
     return pinned
 
 

@@ -14,14 +14,7 @@ from akap_editor.app.dialogs.export.size_estimate import SizeEstimate, WrittenAn
 
 @pytest.fixture
 def keyed(pinned):
-    """Keyframes at 0 and 1 second."""
-    state = pinned.state
-    state.timeline.show_keyframes()
-    playback = state.timeline.keyframe_playback
-    playback.set_keyframe(0.0)
-    pinned.bend()
-    playback.set_keyframe(1.0)
-    pinned.settle()
+    pinned.add_keyframes(1.0, (0.0, -120.0))
     return pinned
 
 
