@@ -38,8 +38,8 @@ _FOCUS: tuple[Line, ...] = (
     (mark("F6, Shift+F6"), mark("Next, previous panel")),
     (mark("Tab, arrows, Enter"), mark("Use the focused panel")),
 )
-_PLATE_MARGIN, _KEYS_GAP, _COLUMN_GAP = 5, 10, 16  # design points
-_MAX_COLUMNS = 4
+_PLATE_MARGIN, _KEYS_GAP, _COLUMN_GAP = 5, 8, 16  # design points
+_MAX_COLUMNS = 5
 _TOOLS_INDEX = 3  # among the groups: there, all columns have about the same height
 _SCROLL_LINES = {Key.up_arrow: -1, Key.down_arrow: 1, Key.page_up: -10, Key.page_down: 10}
 
@@ -95,7 +95,7 @@ def _draw_groups(groups: list[Group], scale: float) -> None:
     columns, widths = _fitting_columns(groups, room.x - 40 * scale - imgui.get_style().scrollbar_size, scale)
     line_count = max(sum(len(lines) + 2 for _, lines in column) for column in columns)
     height = min(line_count * imgui.get_text_line_height_with_spacing(), room.y - 140 * scale)
-    width = sum(map(sum, widths)) + imgui.get_style().scrollbar_size
+    width = sum(map(sum, widths)) - _COLUMN_GAP * scale + imgui.get_style().scrollbar_size
     imgui.begin_child("##all", ImVec2(width, height), 0, imgui.WindowFlags_.no_nav_inputs)
     scrolled_lines = sum(count for key, count in _SCROLL_LINES.items() if imgui.is_key_pressed(key))
     if scrolled_lines:
@@ -123,7 +123,7 @@ def _fitting_columns(
     for count in range(_MAX_COLUMNS, 0, -1):
         columns = columns_of(groups, count)
         widths = [_column_width(column, scale) for column in columns]
-        if sum(map(sum, widths)) <= room:
+        if sum(map(sum, widths)) - _COLUMN_GAP * scale <= room:
             break
     return columns, widths
 

@@ -53,8 +53,8 @@ def draw(state: AppState, scale: float, is_hidden: bool = False) -> None:
     timeline.playback.advance()
     if is_hidden:
         return
-    height = _HEIGHT + (_GRAPH_GAP + speed_graph.HEIGHT) * state.view.show_speed_graph
-    if widgets.side_bar("Timeline", imgui.Dir.down, height * scale, ImVec2(10 * scale, 8 * scale)):
+    graph = _GRAPH_GAP * scale + speed_graph.height(scale) if state.view.show_speed_graph else 0.0
+    if widgets.side_bar("Timeline", imgui.Dir.down, _HEIGHT * scale + graph, ImVec2(10 * scale, 8 * scale)):
         _draw_content(state, scale)
     imgui.end()
 

@@ -16,7 +16,8 @@ from .speed_samples import SpeedSamples
 from .timeline import snap_time
 from .track import MARK_REACH, TimeScale, zoom_with_wheel
 
-HEIGHT = 104  # design points, as all sizes here
+_HEIGHT, _MIN_HEIGHT = 104, 52  # design points, as all sizes here; the lowest one has room for the title
+_OTHER_HEIGHT = 340  # of canvas and panels, before the graph gets lower
 _MARGIN = 6  # above and below the curve
 _PIN_COLORS = (
     (0.43, 0.66, 1.0, 1.0),
@@ -25,6 +26,12 @@ _PIN_COLORS = (
     (0.95, 0.5, 0.75, 1.0),
     (0.75, 0.62, 1.0, 1.0),
 )
+
+
+def height(scale: float) -> float:
+    """The height of the graph in points, less in a low window. scale: points per design point."""
+    room = imgui.get_main_viewport().size.y / scale - _OTHER_HEIGHT
+    return float(min(max(room, _MIN_HEIGHT), _HEIGHT) * scale)
 
 
 class SpeedGraph:
@@ -40,9 +47,9 @@ class SpeedGraph:
         self._samples.update(state, playback)
         margin = MARK_REACH * scale
         corner, width = ImVec2(time_scale.left - margin, top), time_scale.width + 2 * margin
-        bottom = top + HEIGHT * scale
+        bottom = top + height(scale)
         imgui.set_cursor_screen_pos(corner)
-        imgui.invisible_button("##speed", ImVec2(width, HEIGHT * scale))
+        imgui.invisible_button("##speed", ImVec2(width, bottom - top))
         area = CurveArea(time_scale, top + _MARGIN * scale, bottom - _MARGIN * scale)
         if imgui.is_item_hovered():
             zoom_with_wheel(playback.visible_range, time_scale)
