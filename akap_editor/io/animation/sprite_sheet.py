@@ -5,8 +5,10 @@ import math
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...display_text import display_name, display_text
 from ...errors import FileError, InputError
@@ -70,13 +72,48 @@ def write_sheet(
         visible = image[..., 3] > 0 if visible is None else visible | (image[..., 3] > 0)
         images.append(image)
     assert visible is not None
+    layout = _sheet_layout(visible, len(images))
+    write(path, encode_png_bands(layout.size, _bands(images, layout), is_repetitive=True))
+    write(index_path(path), json.dumps(_sheet_index(path, layout, len(images), fps), indent=1).encode())
+    return layout.columns, layout.rows
+
+
+class _SheetLayout(NamedTuple):
+    """Where the sprites of a sheet are.
+
+    columns, rows: of sprites; box: the part of the frames that is shown; frame_size: (width, height) of the
+    uncropped frames, pixels.
+    """
+
+    columns: int
+    rows: int
+    box: Box
+    frame_size: tuple[int, int]
+
+    @property
+    def sprite_size(self) -> tuple[int, int]:
+        """Width and height of a sprite, pixels."""
+        left, top, right, bottom = self.box
+        return right - left, bottom - top
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the sheet, pixels."""
+        width, height = self.sprite_size
+        return self.columns * (width + GUTTER) + GUTTER, self.rows * (height + GUTTER) + GUTTER
+
+
+def _sheet_layout(visible: NDArray[np.bool_], count: int) -> _SheetLayout:
+    """The layout of ``count`` sprites, nearly square. Raises InputError for a sheet that is too large.
+
+    visible: (h, w) the pixels that any frame shows.
+    """
     height, width = visible.shape
-    left, top, right, bottom = bounding_box(visible) if visible.any() else (0, 0, width, height)
-    w, h = right - left, bottom - top
-    columns = min(len(images), max(1, round(math.sqrt(len(images) * h / w))))
-    rows = math.ceil(len(images) / columns)
-    sheet_width, sheet_height = columns * (w + GUTTER) + GUTTER, rows * (h + GUTTER) + GUTTER
-    if max(sheet_width, sheet_height) > MAX_SHEET_SIDE:
+    box = bounding_box(visible) if visible.any() else (0, 0, width, height)
+    columns = min(count, max(1, round(math.sqrt(count * (box[3] - box[1]) / (box[2] - box[0])))))
+    layout = _SheetLayout(columns, math.ceil(count / columns), box, (width, height))
+    sheet_width, sheet_height = layout.size
+    if max(layout.size) > MAX_SHEET_SIDE:
         raise InputError(
             tr(
                 "sheet: expected at most {most} pixels a side, got {sheet_width} x {sheet_height} for "
@@ -84,15 +121,20 @@ def write_sheet(
                 most=MAX_SHEET_SIDE,
                 sheet_width=sheet_width,
                 sheet_height=sheet_height,
-                count=len(images),
+                count=count,
             )
         )
-    index = []
-    for number in range(len(images)):
-        y, x = (
-            GUTTER + at * (side + GUTTER) for at, side in zip(divmod(number, columns), (h, w), strict=True)
-        )
-        index.append(
+    return layout
+
+
+def _sheet_index(path: Path, layout: _SheetLayout, count: int, fps: float) -> dict[str, object]:
+    """The index of a sheet of ``count`` sprites, for JSON."""
+    (left, top, _, _), (w, h), (width, height) = layout.box, layout.sprite_size, layout.frame_size
+    frames = []
+    for number in range(count):
+        row, column = divmod(number, layout.columns)
+        x, y = GUTTER + column * (w + GUTTER), GUTTER + row * (h + GUTTER)
+        frames.append(
             {
                 "filename": f"{display_text(path.stem)}-{number:04d}",
                 "frame": {"x": x, "y": y, "w": w, "h": h},
@@ -103,6 +145,7 @@ def write_sheet(
                 "duration": round(1000 * (number + 1) / fps) - round(1000 * number / fps),
             }
         )
+    sheet_width, sheet_height = layout.size
     meta = {
         "app": "akap-editor",
         "image": display_name(path),
@@ -111,24 +154,16 @@ def write_sheet(
         "scale": "1",
         "fps": fps,
     }
-    bands = _bands(images, columns, (left, top, right, bottom))
-    write(path, encode_png_bands((sheet_width, sheet_height), bands, is_repetitive=True))
-    write(index_path(path), json.dumps({"frames": index, "meta": meta}, indent=1).encode())
-    return columns, rows
+    return {"frames": frames, "meta": meta}
 
 
-def _bands(images: PackedFrames, columns: int, box: Box) -> Iterator[Picture]:
-    """The sheet (h, w, 4) from top to bottom: a band for each row of sprites, with the gutter above it.
-
-    box: the part of the frames that is shown.
-    """
-    left, top, right, bottom = box
-    width, height = right - left, bottom - top
-    sheet_width = columns * (width + GUTTER) + GUTTER
-    for first in range(0, len(images), columns):
-        band = np.zeros((GUTTER + height, sheet_width, 4), dtype=np.uint8)
-        for number in range(first, min(first + columns, len(images))):
+def _bands(images: PackedFrames, layout: _SheetLayout) -> Iterator[Picture]:
+    """The sheet (h, w, 4) from top to bottom: a band for each row of sprites, with the gutter above it."""
+    (left, top, right, bottom), (width, height) = layout.box, layout.sprite_size
+    for first in range(0, len(images), layout.columns):
+        band = np.zeros((GUTTER + height, layout.size[0], 4), dtype=np.uint8)
+        for number in range(first, min(first + layout.columns, len(images))):
             x = GUTTER + (number - first) * (width + GUTTER)
             band[GUTTER:, x : x + width] = images[number][top:bottom, left:right]
         yield band
-    yield np.zeros((GUTTER, sheet_width, 4), dtype=np.uint8)
+    yield np.zeros((GUTTER, layout.size[0], 4), dtype=np.uint8)
