@@ -94,7 +94,7 @@ def plot(sizes: list[int], rows: list[dict[str, float]], path: str) -> None:
     labels = {
         "libigl": "libigl ARAP, 10 iterations",
         "median": "a step with memory",
-        "wall": "the same with waiting for factors",
+        "longest": "the longest one, with waiting for factors",
         "numeric": "a numeric phase",
         "solve": "a solve",
         "stream": "factors streamed twice",
@@ -120,7 +120,7 @@ def main() -> None:
     speed = bandwidth()
     print(f"bandwidth {speed / 1e9:.1f} GB/s")
     print(f"{'vertices':>9}" + "".join(f"{name:>10}" for name in COLUMNS) + "   factors")
-    frames(elephant(2000))  # loads the compiled functions
+    frames(elephant(3000))  # loads the compiled functions
     counts, rows = [], []
     for size in options.sizes:
         drag = elephant(size)

@@ -25,7 +25,7 @@ MAX_WASTED_ITERATIONS = 2
 MAX_WASTED_ITERATIONS_OF_SMALL = 8  # small meshes factorize at once
 _FACTORIZATION_DELAY = 1  # poses for which the old factors serve while new ones are made beside
 _LONG_DELAY = 2  # the same for many vertices, whose factors take longer than a pose
-MIN_LONG_DELAY_VERTICES = 50_000
+MIN_LARGE_VERTICES = 50_000  # of a mesh on which poses take so long that the longest ones are cut
 _MAX_ITERATIONS = 12  # of one solution; without convergence the current matrix is factorized
 _MIN_REUSE_VERTICES = 100  # of a mesh whose factors serve for several poses: other ones cost nothing
 MIN_THREAD_VERTICES = 1500  # of a mesh that is factorized beside: on smaller ones, a thread costs more
@@ -59,7 +59,9 @@ class PreconditionedCholesky:
         self._matrix = Matrix(*pattern.neighbors(), np.empty(0))
         self._exact, self._confirm = exact, confirm
         self._is_tiny, self._is_small = n < _MIN_REUSE_VERTICES, n < MIN_THREAD_VERTICES
-        self._delay = _LONG_DELAY if n >= MIN_LONG_DELAY_VERTICES else _FACTORIZATION_DELAY
+        is_large = n >= MIN_LARGE_VERTICES
+        self._delay = _LONG_DELAY if is_large else _FACTORIZATION_DELAY
+        self._min_exact_iterations = 1 if is_large and not confirm else _EXACT_ITERATIONS
         self._precision: Precision = np.float64 if exact else np.float16
         self._factors = CholeskyFactors(self.symbolic, self._precision)
         self._spare: CholeskyFactors | None = None  # made beside, or used before
@@ -250,7 +252,7 @@ class PreconditionedCholesky:
         trusted = 1.0 if self._confirm else min(_CONTRACTION_SAFETY * self._contraction, 1.0)
         count, first, last = iterate(
             preconditioner, self._matrix, right, self._frame, earlier, known, tolerance, trusted,
-            _EXACT_ITERATIONS if self._is_exact else 1, _MAX_ITERATIONS, solution,
+            self._min_exact_iterations if self._is_exact else 1, _MAX_ITERATIONS, solution,
         )  # fmt: skip
         if not count:
             return None

@@ -212,6 +212,17 @@ def test_solutions_are_as_near_as_asked_for_while_factors_are_made_beside(system
         assert np.abs(found - solved(system, positions, right)).max() < 1e-9
 
 
+def test_in_a_large_mesh_iterations_end_within_the_tolerance_at_once(system, monkeypatch):
+    monkeypatch.setattr(preconditioned_cholesky, "MIN_LARGE_VERTICES", 0)
+    solver = PreconditionedCholesky(system.pattern, False, system.groups, confirm=False)
+    positions, frame = bent(system.mesh, 0.4)
+    solver.prepare(system.nonzeros(positions), frame)
+    right = right_side(system, 7)
+    found = solver.solve(right, TOLERANCE)
+    assert np.abs(found - solved(system, positions, right)).max() < TOLERANCE
+    assert solver.iterations < 5
+
+
 def test_factors_of_the_very_matrix_give_double_precision(system):
     right = right_side(system, 7)
     found, expected = prepared(system).solve(right, 1e-3), solved(system, system.mesh.vertices, right)
@@ -245,7 +256,7 @@ def test_a_matrix_that_is_not_positive_definite_is_refused(system, is_definite):
 @pytest.mark.parametrize("long_delay", [False, True])
 def test_poses_do_not_depend_on_how_fast_factors_are_made_beside(monkeypatch, slow_calls, long_delay):
     if long_delay:
-        monkeypatch.setattr(preconditioned_cholesky, "MIN_LONG_DELAY_VERTICES", 0)
+        monkeypatch.setattr(preconditioned_cholesky, "MIN_LARGE_VERTICES", 0)
     expected = drag_of_bar()
     factorize, calls = CholeskyFactors.factorize, []
 
@@ -299,7 +310,7 @@ def test_factors_made_ahead_change_no_bit(monkeypatch, announced):
 @pytest.mark.usefixtures("factors_beside")
 @pytest.mark.parametrize(("min_vertices", "delay"), [(10**6, 1), (0, 2)])
 def test_factors_are_taken_over_later_in_a_large_mesh(monkeypatch, system, min_vertices, delay):
-    monkeypatch.setattr(preconditioned_cholesky, "MIN_LONG_DELAY_VERTICES", min_vertices)
+    monkeypatch.setattr(preconditioned_cholesky, "MIN_LARGE_VERTICES", min_vertices)
     solver, start, begun, taken_over = prepared(system), threading.Thread.start, [], []
     monkeypatch.setattr(threading.Thread, "start", lambda thread: (begun.append(pose), start(thread)))
     ones = np.ones(system.size // 2, dtype=complex)
