@@ -95,7 +95,7 @@ def _draw_groups(groups: list[Group], scale: float) -> None:
     columns, widths = _fitting_columns(groups, room.x - 40 * scale - imgui.get_style().scrollbar_size, scale)
     line_count = max(sum(len(lines) + 2 for _, lines in column) for column in columns)
     height = min(line_count * imgui.get_text_line_height_with_spacing(), room.y - 140 * scale)
-    width = sum(map(sum, widths)) - _COLUMN_GAP * scale + imgui.get_style().scrollbar_size
+    width = sum(map(sum, widths)) - _COLUMN_GAP / 2 * scale + imgui.get_style().scrollbar_size
     imgui.begin_child("##all", ImVec2(width, height), 0, imgui.WindowFlags_.no_nav_inputs)
     scrolled_lines = sum(count for key, count in _SCROLL_LINES.items() if imgui.is_key_pressed(key))
     if scrolled_lines:
@@ -123,7 +123,7 @@ def _fitting_columns(
     for count in range(_MAX_COLUMNS, 0, -1):
         columns = columns_of(groups, count)
         widths = [_column_width(column, scale) for column in columns]
-        if sum(map(sum, widths)) - _COLUMN_GAP * scale <= room:
+        if sum(map(sum, widths)) - _COLUMN_GAP / 2 * scale <= room:
             break
     return columns, widths
 
