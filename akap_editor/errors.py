@@ -73,7 +73,7 @@ def error_context(name: str) -> Iterator[None]:
 
 def _as_sentence(reason: str) -> str:
     """The reason with a period, and with a capital letter unless it begins with a name, as in "crop: ..."."""
-    if reason.split(" ", 1)[0].isalpha():
+    if reason.split(" ", 1)[0].replace("-", "").isalpha():
         reason = reason[:1].upper() + reason[1:]
     return reason if reason.endswith((".", "?", "!", "。")) else tr("{sentence}.", sentence=reason)
 

@@ -9,6 +9,7 @@ from akap_editor.errors import FileError, InputError, error_context, file_errors
     ("reason", "sentence"),
     [
         ("permission denied", "Permission denied."),
+        ("read-only file system", "Read-only file system."),
         ("expected a mesh with faces, got none", "Expected a mesh with faces, got none."),
         ("line 5: expected numbers", "Line 5: expected numbers."),
         ("crop: expected one of none, frame, pose", "crop: expected one of none, frame, pose."),

@@ -18,7 +18,7 @@ from ..words import mark
 from .akap.clip import CLIP_FORMAT, decode_clip
 from .akap.json_records import pairs, parse_record, require
 from .akap.pose import POSE_FORMAT
-from .akap.project import decode_document
+from .akap.project import MIMETYPE, decode_document
 from .akap.recording import decode_recording
 from .akap.state_records import read_pins
 from .atomic import read_file
@@ -70,7 +70,7 @@ def inspect(path: str | Path) -> Inspection:
         return Inspection("layers", *_layer_facts("folder", open_layers(path)))
     data = read_file(path, mark("a file"))
     suffix = Path(path).suffix.lower()
-    kind = _kind_by_content(data) or _KIND_OF_SUFFIX.get(suffix, "unknown")
+    kind = _kind_by_content(data, suffix) or _KIND_OF_SUFFIX.get(suffix, "unknown")
     if kind == "unknown":
         came = (
             f"expected a picture, a drawing, a recording or a mesh, got something that begins {data[:12]!r}"
@@ -88,14 +88,17 @@ def inspect(path: str | Path) -> Inspection:
     return Inspection(kind, facts, problems)
 
 
-def _kind_by_content(data: bytes) -> str | None:
-    """The kind of a file by its first bytes, None if they do not tell."""
+def _kind_by_content(data: bytes, suffix: str) -> str | None:
+    """The kind of a file by its first bytes, None if they do not tell.
+
+    suffix: of its name, for zip archives that do not begin with their type.
+    """
     if any(data.startswith(magic) for magic in _PICTURE_KINDS):
         return "picture"
     if has_layers(data):
         return "layers"
     if data.startswith(b"PK"):
-        return "drawing"
+        return "layers" if suffix == ".ora" and MIMETYPE not in data[:100] else "drawing"
     if b'"akap-recording"' in data[:200]:
         return "recording"
     if f'"{POSE_FORMAT}"'.encode() in data[:200]:

@@ -2,6 +2,7 @@
 
 import json
 import struct
+import zipfile
 from dataclasses import replace
 
 import numpy as np
@@ -234,6 +235,10 @@ def test_pictures_in_layers(facts, tmp_path):
         assert (record["kind"], record["sound"], record["facts"]["format"]) == ("layers", True, kind)
         assert (record["facts"]["layers"], record["facts"]["parts"]) == (1, 1)
     assert facts("a.ora")["facts"]["not drawn"] == "“Hi”, which is no picture but of the kind “text”"
+    with zipfile.ZipFile(tmp_path / "a.ora") as packed, zipfile.ZipFile(tmp_path / "b.ora", "w") as other:
+        for name in sorted(packed.namelist(), reverse=True):  # opens, too, although its type is not in front
+            other.writestr(name, packed.read(name), zipfile.ZIP_DEFLATED)
+    assert facts("b.ora")["facts"] == facts("a.ora")["facts"]
     (tmp_path / "a.psd").write_bytes(b"8BPS and nothing else")
     assert not facts("a.psd")["sound"]
     for name, kind in (("a.psd", "a Photoshop"), ("a.PSB", "a Photoshop"), ("a.ora", "an OpenRaster")):
