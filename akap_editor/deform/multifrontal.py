@@ -326,7 +326,7 @@ def iterate(
     """Solve A x = b by preconditioned conjugate gradients, in one call without Python's lock.
 
     right: b (n,); solution: (n,) receives x.
-    frame: (n,) unit complex numbers; earlier: (2, n), of which the first ``known`` are earlier solutions
+    frame: (n,) unit complex numbers; earlier: (w, n), of which the first ``known`` are earlier solutions
     times conj(frame) of their pose, the last one first. Iterations start from the best combination of these;
     the solution is put before them.
     trusted_contraction: the share of an error that a solve is trusted to leave, at most 1. Iterations end
@@ -348,9 +348,10 @@ def iterate(
             first = last
         is_enough = count >= min_solves or last <= _ROUNDING * first
         if is_enough and last * trusted_contraction <= tolerance:
+            for i in range(len(earlier) - 1, 0, -1):
+                earlier[i] = earlier[i - 1]
             for k in range(n):
                 solution[k] += correction[k]
-                earlier[1, k] = earlier[0, k]
                 earlier[0, k] = frame[k].conjugate() * solution[k]
             return count, first, last
         square = dot(residual, correction)
@@ -376,35 +377,33 @@ def _project_on_earlier(
     techniques for iterative solution of Ax = b with successive right-hand sides".
     """
     n = len(residual)
-    if known == 0:
-        return
-    first, second = np.empty_like(residual), np.empty_like(residual)
-    first_image, second_image = np.empty_like(residual), np.empty_like(residual)
-    for k in range(n):
-        first[k], second[k] = frame[k] * earlier[0, k], frame[k] * earlier[1, k]
-    if known == 1:
-        multiply(matrix, first, first_image)
-    else:
-        _multiply_pair(matrix, first, second, first_image, second_image)
-    energy = dot(first, first_image)
-    if not energy > 0:
-        return
-    share = dot(first, residual) / energy
-    for k in range(n):
-        solution[k] += share * first[k]
-        residual[k] -= share * first_image[k]
-    if known == 1:
-        return
-    before, share = dot(second, second_image), dot(first_image, second) / energy
-    for k in range(n):  # make the second one orthogonal to the first
-        second[k] -= share * first[k]
-        second_image[k] -= share * first_image[k]
-    energy = dot(second, second_image)
-    if energy > _DEPENDENT * before:
-        share = dot(second, residual) / energy
+    basis, images = np.empty((known, n), np.complex128), np.empty((known, n), np.complex128)
+    energies = np.zeros(known)
+    for i in range(known):
         for k in range(n):
-            solution[k] += share * second[k]
-            residual[k] -= share * second_image[k]
+            basis[i, k] = frame[k] * earlier[i, k]
+    for i in range(0, known - 1, 2):
+        _multiply_pair(matrix, basis[i], basis[i + 1], images[i], images[i + 1])
+    if known % 2 == 1:
+        multiply(matrix, basis[known - 1], images[known - 1])
+    for i in range(known):
+        vector, image = basis[i], images[i]
+        before = dot(vector, image)
+        for j in range(i):  # make it orthogonal to those before
+            if energies[j] > 0:
+                other, other_image = basis[j], images[j]
+                share = dot(other_image, vector) / energies[j]
+                for k in range(n):
+                    vector[k] -= share * other[k]
+                    image[k] -= share * other_image[k]
+        energy = dot(vector, image)
+        if not energy > _DEPENDENT * before:
+            continue
+        energies[i] = energy
+        share = dot(vector, residual) / energy
+        for k in range(n):
+            solution[k] += share * vector[k]
+            residual[k] -= share * image[k]
 
 
 @compiled_with_fast_sums

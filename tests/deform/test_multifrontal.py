@@ -96,7 +96,7 @@ def test_product_is_that_of_the_sparse_matrix():
     assert np.abs(result.view(np.float64) - expected).max() < 1e-11
 
 
-@pytest.mark.parametrize("known", [0, 1, 2])
+@pytest.mark.parametrize("known", [0, 1, 2, 3])
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_iterations_reach_double_precision(known, precision):
     """From factors at rest, in either precision, at a pose that is stretched by a fifth."""
@@ -107,7 +107,7 @@ def test_iterations_reach_double_precision(known, precision):
     rotation = np.exp(0.4j)
     pose = rotation * (1.2 * case.mesh.vertices[:, 0] + 1j * case.mesh.vertices[:, 1])
     nonzeros, frame = case.nonzeros_at(pose), np.full(n, rotation)
-    right, earlier = random_values(n), np.stack([random_values(n, 1), random_values(n, 2)])
+    right, earlier = random_values(n), np.stack([random_values(n, seed) for seed in (1, 2, 3)])
     before = earlier.copy()
     solution = np.empty(n, dtype=complex)
     count, first, last = iterate(
@@ -119,4 +119,23 @@ def test_iterations_reach_double_precision(known, precision):
     assert last <= 1e-12 < first
     assert np.abs(solution - expected).max() < 1e-11
     assert np.abs(earlier[0] - frame.conj() * solution).max() < 1e-15
-    assert (earlier[1] == before[0]).all()
+    assert (earlier[1:] == before[:-1]).all()
+
+
+def test_iterations_start_from_the_solution_that_earlier_ones_combine_to():
+    """Also where an earlier one is twice the one before it, and adds nothing."""
+    case = Case(shapes.SHAPES["bar"])
+    factors = CholeskyFactors(case.symbolic, np.float64)
+    factors.factorize(case.nonzeros)
+    n = case.size // 2
+    matrix, frame = case.matrix(case.nonzeros), np.exp(1j * np.linspace(0, 1, n))
+    first, other = random_values(n, 1), random_values(n, 2)
+    expected, right, solution = 3.0 * first - 0.5 * other, np.empty_like(first), np.empty_like(first)
+    multiply(matrix, expected, right)
+    earlier = frame.conj() * np.stack([first, 2.0 * first, other])
+    count, largest, _ = iterate(
+        factors.preconditioner(frame), matrix, right, frame, earlier, 3, 1e-9, 1.0, 1, 60, solution
+    )
+    assert count == 1
+    assert largest < 1e-9
+    assert np.abs(solution - expected).max() < 1e-9

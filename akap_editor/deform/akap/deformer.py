@@ -35,7 +35,7 @@ Constraints = Literal["soft", "hard"]
 
 # Lengths are shares of √area.
 _MAX_STEP, _MAX_STEP_WITH_MEMORY = 0.007, 0.05  # of a pin in one substep; without memory errors accumulate
-_TOLERANCE, _TOLERANCE_WITH_MEMORY = 2e-8, 1e-6  # of a field at every vertex
+_TOLERANCE, _TOLERANCE_WITH_MEMORY = 1e-8, 1e-6  # of a field at every vertex
 _PIN_TOLERANCE = 1e-4  # offset of a pin within which it has arrived
 _ANGLE_TOLERANCE = 1e-3  # radians within which the rotation of a pin has arrived
 _MAX_ROTATION = 0.1  # radians that a pin rotates in one substep
@@ -285,7 +285,9 @@ class AkapDeformer(Deformer):
     def _count_substeps(self, pose: Complexes, goals: PinGoals) -> int:
         """The number of substeps from a pose (n,) to the goals, each short enough for one field."""
         distance = float(np.abs(goals.positions - self._system.at_pins(pose)).max())
-        rotation = float(np.nan_to_num(np.abs(self._remaining_rotations(pose, goals.angles))).max())
+        rotation = 0.0
+        if self._pin_rotation is not None:
+            rotation = float(np.nan_to_num(np.abs(self._remaining_rotations(pose, goals.angles))).max())
         return max(1, math.ceil(distance / self._max_step), math.ceil(rotation / _MAX_ROTATION))
 
     def _rigid_motion(self, pose: Complexes, goals: Complexes) -> list[Substep]:
@@ -355,7 +357,7 @@ class AkapDeformer(Deformer):
         """
         pose, share = last.end, 1.0
         was_away = np.abs(goals - self._system.at_pins(before)) > 2 * self._pin_tolerance
-        for _ in range(MAX_CORRECTIONS):
+        for number in range(MAX_CORRECTIONS):
             offsets = goals - self._system.at_pins(pose)
             if last.share < 1:
                 offsets[was_away] = 0.0
@@ -366,7 +368,9 @@ class AkapDeformer(Deformer):
                 self._system.prepare(to_points(pose))
             self._system.measure_gaps(pose)  # not those of the pose that was prepared
             offsets *= 1 - self._pin_tolerance / largest
-            field, _ = self._system.field(offsets, self._dirichlet, "correction")
+            # Recordings with memory replay to the same bits only if both corrections are one series.
+            key = "correction" if self._memory_strength else f"correction {number}"
+            field, _ = self._system.field(offsets, self._dirichlet, key)
             reached = self._system.at_pins(field)
             square = float(np.vdot(reached, reached).real)
             if square == 0:

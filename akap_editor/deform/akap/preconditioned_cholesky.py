@@ -30,7 +30,8 @@ _MAX_ITERATIONS = 12  # of one solution; without convergence the current matrix 
 _MIN_REUSE_VERTICES = 100  # of a mesh whose factors serve for several poses: other ones cost nothing
 MIN_THREAD_VERTICES = 1500  # of a mesh that is factorized beside: on smaller ones, a thread costs more
 _EXACT_ITERATIONS = 5  # that reach double precision from the factors of the very matrix
-_WARM_STARTS = 2  # earlier solutions from which the next one starts
+# Earlier solutions from which the next one starts; if they are not confirmed, errors hide what a third adds.
+_WARM_STARTS, _WARM_STARTS_IF_CONFIRMED = 2, 3
 # The contraction is 1 to 2 % after a factorization, and then grows from pose to pose.
 _CONTRACTION_GROWTH, _CONTRACTION_SAFETY = 1.3, 3.0
 
@@ -44,8 +45,9 @@ class PreconditionedCholesky:
     asked for, and the matrix is factorized when iterations become too expensive or do not converge.
     starts: (f + 1,) the groups of vertices that are eliminated together, see `Dissection`.
     confirm: end iterations only with a correction that is itself within the tolerance, so that the error is a
-    small share of it. Otherwise the last, merely confirming iteration is left out where the contraction last
-    seen leaves an error within the tolerance.
+    small share of it, and start them from three earlier solutions. Otherwise they start from two, and the
+    last, merely confirming one is left out where the contraction last seen leaves an error within the
+    tolerance.
 
     While iterations converge, new factors of large meshes are made in a thread beside, and taken over a fixed
     number of poses later: so solutions do not depend on how fast that was.
@@ -58,6 +60,7 @@ class PreconditionedCholesky:
         self.symbolic = SymbolicCholesky(pattern.rows, pattern.columns, 2, starts)
         self._matrix = Matrix(*pattern.neighbors(), np.empty(0))
         self._exact, self._confirm = exact, confirm
+        self._warm_starts = _WARM_STARTS_IF_CONFIRMED if confirm else _WARM_STARTS
         self._is_tiny, self._is_small = n < _MIN_REUSE_VERTICES, n < MIN_THREAD_VERTICES
         is_large = n >= MIN_LARGE_VERTICES
         self._delay = _LONG_DELAY if is_large else _FACTORIZATION_DELAY
@@ -245,7 +248,7 @@ class PreconditionedCholesky:
 
     def _iterate(self, right: Complexes, tolerance: float, warm_start_key: str) -> Complexes | None:
         """The solution (n,) by preconditioned conjugate gradients; None if they do not converge soon."""
-        earlier, known = np.empty((_WARM_STARTS, len(right)), np.complex128), 0
+        earlier, known = np.empty((self._warm_starts, len(right)), np.complex128), 0
         if warm_start_key:
             earlier, known = self._earlier_solutions.get(warm_start_key, (earlier, 0))
         solution, preconditioner = np.empty_like(right), self._factors.preconditioner(self._rotation)
@@ -256,7 +259,7 @@ class PreconditionedCholesky:
         )  # fmt: skip
         if not count:
             return None
-        self._earlier_solutions[warm_start_key] = earlier, min(known + 1, _WARM_STARTS)
+        self._earlier_solutions[warm_start_key] = earlier, min(known + 1, self._warm_starts)
         if count > 1 and first > 0:
             seen = (last / first) ** (1 / (count - 1))
             self._contraction = max(seen, 0.5 * (seen + self._contraction))
