@@ -64,7 +64,7 @@ class PreconditionedCholesky:
         self._is_tiny, self._is_small = n < _MIN_REUSE_VERTICES, n < MIN_THREAD_VERTICES
         is_large = n >= MIN_LARGE_VERTICES
         self._delay = _LONG_DELAY if is_large else _FACTORIZATION_DELAY
-        self._min_exact_iterations = 1 if is_large and not confirm else _EXACT_ITERATIONS
+        self._min_exact_iterations = _EXACT_ITERATIONS if confirm or self._is_tiny else 1
         self._precision: Precision = np.float64 if exact else np.float16
         self._factors = CholeskyFactors(self.symbolic, self._precision)
         self._spare: CholeskyFactors | None = None  # made beside, or used before
