@@ -25,7 +25,7 @@ MAX_WASTED_ITERATIONS = 2
 MAX_WASTED_ITERATIONS_OF_SMALL = 8  # small meshes factorize at once
 _FACTORIZATION_DELAY = 1  # poses for which the old factors serve while new ones are made beside
 _LONG_DELAY = 2  # the same for many vertices, whose factors take longer than a pose
-MIN_LARGE_VERTICES = 50_000  # of a mesh on which poses take so long that the longest ones are cut
+MIN_LARGE_VERTICES = 50_000  # of a mesh whose factors take longer to make than a pose
 _MAX_ITERATIONS = 12  # of one solution; without convergence the current matrix is factorized
 _MIN_REUSE_VERTICES = 100  # of a mesh whose factors serve for several poses: other ones cost nothing
 MIN_THREAD_VERTICES = 1500  # of a mesh that is factorized beside: on smaller ones, a thread costs more
@@ -62,9 +62,8 @@ class PreconditionedCholesky:
         self._exact, self._confirm = exact, confirm
         self._warm_starts = _WARM_STARTS_IF_CONFIRMED if confirm else _WARM_STARTS
         self._is_tiny, self._is_small = n < _MIN_REUSE_VERTICES, n < MIN_THREAD_VERTICES
-        is_large = n >= MIN_LARGE_VERTICES
-        self._delay = _LONG_DELAY if is_large else _FACTORIZATION_DELAY
-        self._min_exact_iterations = _EXACT_ITERATIONS if confirm or self._is_tiny else 1
+        self._delay = _LONG_DELAY if n >= MIN_LARGE_VERTICES else _FACTORIZATION_DELAY
+        self._min_exact_iterations = _EXACT_ITERATIONS if confirm or self._is_small else 1
         self._precision: Precision = np.float64 if exact else np.float16
         self._factors = CholeskyFactors(self.symbolic, self._precision)
         self._spare: CholeskyFactors | None = None  # made beside, or used before

@@ -212,8 +212,8 @@ def test_solutions_are_as_near_as_asked_for_while_factors_are_made_beside(system
         assert np.abs(found - solved(system, positions, right)).max() < 1e-9
 
 
-def test_in_a_large_mesh_iterations_end_within_the_tolerance_at_once(system, monkeypatch):
-    monkeypatch.setattr(preconditioned_cholesky, "MIN_LARGE_VERTICES", 0)
+@pytest.mark.usefixtures("factors_beside")
+def test_with_memory_iterations_end_within_the_tolerance_at_once(system):
     solver = PreconditionedCholesky(system.pattern, False, system.groups, confirm=False)
     positions, frame = bent(system.mesh, 0.4)
     solver.prepare(system.nonzeros(positions), frame)
