@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import monotonic
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from ..display_text import display_name
 from ..editor import gestures
@@ -60,6 +60,14 @@ class NoticeButton:
     label: str
     icon: str
     run: Callable[[], None]
+
+
+@runtime_checkable
+class WorkingPart(Protocol):
+    """A part of the window that lets threads work for it."""
+
+    def end_work(self) -> None:
+        """End what is under way, without a result."""
 
 
 @dataclass
@@ -187,6 +195,15 @@ class AppState:
         if self.task is not None:
             self.task.cancel()
         self.task = task
+
+    def end_work(self) -> None:
+        """End all that is under way, before the state is dropped: a thread that waits for more would stay."""
+        if self.task is not None:
+            self.task.cancel()
+            self.task = None
+        for part in self._parts.values():
+            if isinstance(part, WorkingPart):
+                part.end_work()
 
     def run_after_frame(self, job: Callable[[], None], notice: str = "") -> None:
         """Run ``job`` after the next whole frame, which shows ``notice``."""

@@ -144,6 +144,7 @@ class Window:
         with self._open_lock:  # a thread that is done later must not call GLFW
             self._is_open = False
         self.remember()
+        self.state.end_work()
         self.state.pose_exports.close()
         self.state.offscreen_renderer.release()
         self.state.thumbnails.release()

@@ -117,6 +117,7 @@ class WindowDriver:
         """
         if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
             imgui.internal.close_popup_to_level(0, False)
+        self.state.end_work()
         wake = self.window.wake
         editor = Editor(clock, BackgroundThread("engine", wake))
         self.window.state = AppState(

@@ -145,6 +145,7 @@ class ExportAnimationDialog:
         start, end = state.timeline.playback.played_range
         if state.document is None or end <= start:
             self.is_open = False
+            self.end_work()
             return
         if not widgets.begin_dialog("Export animation"):
             return
@@ -181,9 +182,13 @@ class ExportAnimationDialog:
             request_file(state, options)
         imgui.end_popup()
 
+    def end_work(self) -> None:
+        """End the estimate of the size."""
+        self._estimate.close()
+
     def _close(self) -> None:
         self.is_open = False
-        self._estimate.close()
+        self.end_work()
         widgets.close_popup()
 
 

@@ -300,6 +300,26 @@ def test_an_export_is_cancelled_while_all_of_it_is_encoded(keyed, tmp_path, monk
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("is_exported", [False, True], ids=["estimate of the size", "export"])
+def test_no_thread_stays_when_the_window_is_closed_meanwhile(keyed, tmp_path, is_exported):
+    def encoders():
+        return {thread for thread in enumerate_threads() if thread.name.startswith("encoder")}
+
+    before = encoders()
+    if is_exported:
+        export_animation(keyed.state, AnimationExportOptions(), tmp_path / "out.webp")
+    else:
+        keyed.state.part(ExportAnimationDialog).open(keyed.state)
+    while not (at_work := encoders() - before):
+        keyed.frame()
+    keyed.state.end_work()  # as `Window.close` does
+    for thread in at_work:
+        thread.join(60)
+        assert not thread.is_alive()
+    assert keyed.state.task is None
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_where_a_picture_cannot_be_drawn_the_export_ends_with_one_sentence(keyed, tmp_path, monkeypatch):
     def fails(*_):
         raise InputError("no memory for a picture")
